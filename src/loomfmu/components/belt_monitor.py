@@ -1,0 +1,281 @@
+"""BeltMonitor: the stability of the rapier belt outside its guide."""
+
+from dataclasses import dataclass
+from math import fabs, pi
+from typing import ClassVar
+
+from ..physics.belt import (
+    NO_LIMIT,
+    critical_force,
+    elastica_deflection,
+    length_factor,
+    margin,
+    speed_limit,
+)
+from ..physics.motion import joined, joined_value
+from ..physics.shaft import carried
+from ..variables import Problem, input_, output, parameter, state
+from .shaft_driven import ShaftDriven
+
+
+@dataclass(slots=True)
+class BeltMonitor(ShaftDriven):
+    """Stability monitor of the rapier belt: margin against buckling, safe speed, deflection.
+
+    Between two samples of its inputs the head moves on the quintic that joins them, so the lowest
+    margin and the lowest speed limit are those of the continuous curve. A step of more than an eighth
+    of a revolution is not joined up: of it only the samples count.
+    """
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "guide_clearance = {guide_clearance}: from 1 mm the belt is to be replaced or the loom slowed",
+            warning=True,
+        ),
+    )
+
+    bending_stiffness: float = parameter(
+        "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6
+    )
+    head_mass: float = parameter(
+        "kg", 0.1105, "Mass of the rapier head with the rigid section of the belt", display="g",
+        minimum=1e-6, maximum=100.0, nominal=0.1,
+    )  # fmt: skip
+    head_length: float = parameter(
+        "m", 0.550, "Length of the rapier head with the rigid section", display="mm", minimum=0.0, maximum=10.0
+    )
+    idle_travel: float = parameter(
+        "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0
+    )
+    prescribe_length_factor: bool = parameter(
+        "1", False, "Use prescribed_length_factor instead of the one that follows from guide_clearance"
+    )
+    prescribed_length_factor: float = parameter(
+        "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
+    )
+    travel: float = input_("m", 0.9667, "Travel of the rapier head", rate="velocity")
+    velocity: float = input_("m/s", 55.835, "Velocity of the rapier head", nominal=10.0, rate="acceleration")
+    acceleration: float = input_("m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0)
+    yarn_tension: float = input_(
+        "N", 0.0, "Weft tension, which presses the belt", display="cN", minimum=-1e6, maximum=1e6
+    )
+    guide_clearance: float = input_(
+        "m", 0.3e-3, "Clearance of the belt in its guide, growing with wear", display="mm",
+        minimum=0.0, maximum=0.05, nominal=1e-3,
+    )  # fmt: skip
+    free_length: float = output(
+        "m", "Length of the belt outside guide and head; negative inside", display="mm", rate="velocity",
+        depends=("travel", "velocity", "acceleration"),
+    )  # fmt: skip
+    inertia_force: float = output(
+        "N", "Inertia force of the head on the belt", nominal=100.0, depends=("acceleration",)
+    )
+    axial_force: float = output(
+        "N", "Compression of the belt: inertia force and weft tension", nominal=100.0,
+        depends=("acceleration", "yarn_tension"),
+    )  # fmt: skip
+    critical_force: float = output(
+        "N", "Critical load of the free section; that of 1 mm while the belt is inside its guide",
+        nominal=100.0, depends=("travel", "velocity", "acceleration", "guide_clearance"),
+    )  # fmt: skip
+    length_factor: float = output("1", "Column length factor in use", depends=("guide_clearance",))
+    margin: float = output("1", "Margin against buckling, 1 - compression / critical load")
+    lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve")
+    speed_limit: float = output(
+        "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min for none",
+        display="rev/min", nominal=100.0,
+    )  # fmt: skip
+    lowest_speed_limit: float = output(
+        "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0
+    )
+    deflection: float = output("m", "Largest deflection of the buckled belt, exact elastica", display="mm")
+    at_risk: bool = output(
+        "1", "The belt is outside its guide and under compression", start=False, variability="discrete"
+    )
+    buckled: bool = output("1", "The belt has buckled at some time so far", start=False, variability="discrete")
+
+    sampled_clearance: float = state("m", "Clearance for which length_factor holds")
+    sampled_time: float = state("s", "Time of the last sample of the inputs")
+    sampled_travel: float = state("m", "Travel at the last sample")
+    sampled_velocity: float = state("m/s", "Velocity at the last sample")
+    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
+    sampled_force: float = state("N", "Weft tension at the last sample")
+    sampled_factor: float = state("1", "Length factor at the last sample")
+    sampled_angle: float = state("rad", "Shaft angle at the last sample")
+    sampled_slope: float = state("m", "Travel by shaft angle at the last sample, first derivative")
+    sampled_bend: float = state("m", "Travel by shaft angle at the last sample, second derivative")
+    sampled_turning: bool = state("1", "Whether the shaft turned at the last sample", start=False)
+    joined_angle: float = state("rad", "Shaft angle of the present sample")
+    joined_slope: float = state("m", "First derivative by shaft angle at the present sample")
+    joined_bend: float = state("m", "Second derivative by shaft angle at the present sample")
+    joined_turning: bool = state("1", "Whether the shaft turns at the present sample", start=False)
+
+    def initialize(self, time: float) -> int:
+        """Take the first sample and forget all extremes."""
+        self.sampled_clearance = -1.0
+        self.lowest_margin = 1e300
+        self.lowest_speed_limit = NO_LIMIT
+        self.buckled = False
+        self.use_clearance()
+        self.take_sample(time, 0.0)
+        self.remember(time)
+        self.judge(0.0)
+        return self.show(0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Judge the way from the last sample of the inputs to this one and show the belt's state."""
+        self.use_clearance()
+        at = time + step_size if self.inputs_at_step_end else time
+        self.take_sample(time, step_size if self.inputs_at_step_end else 0.0)
+        self.judge(at - self.sampled_time)
+        self.remember(at)
+        return self.show(0.0 if self.inputs_at_step_end else step_size)
+
+    def use_clearance(self) -> None:
+        """Find the length factor if the clearance has changed."""
+        if self.prescribe_length_factor:
+            self.length_factor = self.prescribed_length_factor
+        elif self.guide_clearance != self.sampled_clearance:
+            self.length_factor = length_factor(self.guide_clearance)
+            self.sampled_clearance = self.guide_clearance
+
+    def take_sample(self, time: float, lead: float) -> None:
+        """Derivatives of the travel by the shaft angle, from its rates and the shaft's."""
+        angle, speed, acceleration = self.shaft(time, lead)
+        self.joined_angle = angle
+        self.joined_turning = fabs(speed) > 1e-6
+        self.joined_slope = 0.0
+        self.joined_bend = 0.0
+        if self.joined_turning:
+            self.joined_slope = self.velocity / speed
+            self.joined_bend = (self.acceleration - self.joined_slope * acceleration) / (speed * speed)
+
+    def remember(self, time: float) -> None:
+        """Make the present sample the last one."""
+        self.sampled_time = time
+        self.sampled_travel = self.travel
+        self.sampled_velocity = self.velocity
+        self.sampled_acceleration = self.acceleration
+        self.sampled_force = self.yarn_tension
+        self.sampled_factor = self.length_factor
+        self.sampled_angle = self.joined_angle
+        self.sampled_slope = self.joined_slope
+        self.sampled_bend = self.joined_bend
+        self.sampled_turning = self.joined_turning
+
+    def either_at(
+        self, limit: bool, start_rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
+        share: float,
+    ) -> float:  # fmt: skip
+        """Speed limit or margin at a share of the way from the last sample to this one."""
+        travel, second = joined_value(self.sampled_travel, start_rate, a0, a1, a2, a3, share)
+        second = second / (step * step)
+        tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
+        factor = self.sampled_factor + share * (self.length_factor - self.sampled_factor)
+        free_length = travel - self.idle_travel - self.head_length
+        if limit:
+            return speed_limit(
+                free_length, second, factor, self.bending_stiffness, self.head_mass, tension
+            )
+        return margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
+
+    def lowest_between(self, limit: bool, lowest: float, duration: float) -> float:
+        """Lowest speed limit or margin on the way from the last sample to this one, if below `lowest`.
+
+        Five values find the neighbourhood, golden sections the place: the value at a minimum is then
+        exact to rounding. What is farther above `lowest` than the five differ is not searched.
+        """
+        # by shaft angle for the limit, by time for the margin
+        step = self.joined_angle - self.sampled_angle if limit else duration
+        rate = self.sampled_slope if limit else self.sampled_velocity
+        second = self.sampled_bend if limit else self.sampled_acceleration
+        end_rate = self.joined_slope if limit else self.velocity
+        end_second = self.joined_bend if limit else self.acceleration
+        rate = rate * step
+        a0, a1, a2, a3 = joined(
+            self.sampled_travel, rate, second * step * step,
+            self.travel, end_rate * step, end_second * step * step,
+        )  # fmt: skip
+        nearest = 1e300
+        farthest = -1e300
+        place = 0
+        for quarter in range(5):
+            value = self.either_at(limit, rate, a0, a1, a2, a3, step, 0.25 * quarter)
+            if value < nearest:
+                nearest = value
+                place = quarter
+            if value > farthest:
+                farthest = value
+        if nearest - (farthest - nearest) >= lowest:
+            return lowest
+        low = 0.25 * (place - 1) if place > 0 else 0.0
+        high = 0.25 * (place + 1) if place < 4 else 1.0
+        golden = 0.6180339887498949
+        left = high - golden * (high - low)
+        right = low + golden * (high - low)
+        at_left = self.either_at(limit, rate, a0, a1, a2, a3, step, left)
+        at_right = self.either_at(limit, rate, a0, a1, a2, a3, step, right)
+        for _ in range(40):
+            if at_left < at_right:
+                high = right
+                right = left
+                at_right = at_left
+                left = high - golden * (high - low)
+                at_left = self.either_at(limit, rate, a0, a1, a2, a3, step, left)
+            else:
+                low = left
+                left = right
+                at_left = at_right
+                right = low + golden * (high - low)
+                at_right = self.either_at(limit, rate, a0, a1, a2, a3, step, right)
+        if at_left < nearest:
+            nearest = at_left
+        if at_right < nearest:
+            nearest = at_right
+        return nearest if nearest < lowest else lowest
+
+    def judge(self, duration: float) -> None:
+        """Bring the lowest margin and speed limit up to the present sample."""
+        guide = self.idle_travel + self.head_length
+        force = self.head_mass * self.acceleration + self.yarn_tension
+        here = margin(self.travel - guide, force, self.length_factor, self.bending_stiffness)
+        if here < self.lowest_margin:
+            self.lowest_margin = here
+        if self.joined_turning:
+            limit = speed_limit(
+                self.travel - guide, self.joined_bend, self.length_factor, self.bending_stiffness,
+                self.head_mass, self.yarn_tension,
+            )  # fmt: skip
+            if limit < self.lowest_speed_limit:
+                self.lowest_speed_limit = limit
+        turn = fabs(self.joined_angle - self.sampled_angle)
+        outside = self.travel > guide or self.sampled_travel > guide
+        if duration > 0.0 and outside and turn <= 0.25 * pi:
+            if force > 0.0 or self.head_mass * self.sampled_acceleration + self.sampled_force > 0.0:
+                self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
+            pushed = self.joined_bend > 0.0 or self.sampled_bend > 0.0
+            if pushed and self.joined_turning and self.sampled_turning and turn > 0.0:
+                self.lowest_speed_limit = self.lowest_between(True, self.lowest_speed_limit, duration)
+        if self.lowest_margin < 0.0:
+            self.buckled = True
+
+    def show(self, lead: float) -> int:
+        """Outputs at the end of the step, the inputs carried over `lead` if they hold at its start."""
+        travel = carried(self.travel, self.velocity, self.acceleration, lead)
+        bend = self.joined_bend
+        self.free_length = travel - self.idle_travel - self.head_length
+        self.inertia_force = self.head_mass * self.acceleration
+        self.axial_force = self.inertia_force + self.yarn_tension
+        self.critical_force = critical_force(
+            self.free_length if self.free_length > 1e-3 else 1e-3, self.length_factor, self.bending_stiffness
+        )
+        self.margin = margin(self.free_length, self.axial_force, self.length_factor, self.bending_stiffness)
+        self.speed_limit = NO_LIMIT
+        if self.joined_turning:
+            self.speed_limit = speed_limit(
+                self.free_length, bend, self.length_factor, self.bending_stiffness, self.head_mass,
+                self.yarn_tension,
+            )  # fmt: skip
+        self.deflection = elastica_deflection(1.0 - self.margin, self.free_length)
+        self.at_risk = self.free_length > 0.0 and self.axial_force > 0.0
+        return 1 if self.guide_clearance > 1e-3 and not self.prescribe_length_factor else 0

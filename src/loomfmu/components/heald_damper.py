@@ -1,0 +1,296 @@
+"""HealdDamper: the heald carrier on springs inside its frame."""
+
+from dataclasses import dataclass
+from math import fabs, sqrt
+from typing import ClassVar
+
+from ..physics.damper import (
+    CONTACT_CHANGE,
+    LOAD_RATE,
+    RATE,
+    contact_change,
+    locate,
+    next_contact,
+    propagate,
+    stop_damping_ratio,
+)
+from ..physics.motion import joined, largest_between
+from ..variables import Component, Problem, input_, output, parameter, state
+
+
+@dataclass(slots=True)
+class HealdDamper(Component):
+    """Heald-frame damper: the carrier on four springs, free between two stops, driven by its frame.
+
+    Exact between two samples of the inputs, whatever the step: the frame moves on the quintic that
+    joins them, contacts with the stops are located inside the step. Unconnected, it answers a steady
+    acceleration of the frame.
+    """
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the carrier changes its contact or its piece of motion more than a million times in one step"
+            " (spring_stiffness = {spring_stiffness}, damping_ratio = {damping_ratio}, stop_stiffness ="
+            " {stop_stiffness}, carrier_mass = {carrier_mass}); take a smaller step"
+        ),
+        Problem(
+            "start_displacement = {start_displacement} is beyond the stops at free_travel = {free_travel}"
+        ),
+    )
+
+    carrier_mass: float = parameter(
+        "kg", 15.0, "Mass of the heald carrier", minimum=1e-3, maximum=1e3, nominal=10.0
+    )
+    spring_stiffness: float = parameter(
+        "N/m", 5960.0, "Stiffness of one of the four springs", display="N/mm", minimum=0.0, maximum=1e12,
+        nominal=1e4,
+    )  # fmt: skip
+    damping_ratio: float = parameter(
+        "1", 0.05, "Damping of the suspension, share of the critical (assumed: none is published)",
+        minimum=0.0, maximum=100.0,
+    )  # fmt: skip
+    free_travel: float = parameter(
+        "m", 0.015, "Free way of the carrier to either side", display="mm", minimum=0.0, maximum=1.0,
+        nominal=0.01,
+    )  # fmt: skip
+    stop_stiffness: float = parameter(
+        "N/m", 2e6, "Stiffness of a stop (assumed: none is published)", display="N/mm", minimum=1.0,
+        maximum=1e12, nominal=1e6,
+    )  # fmt: skip
+    stop_restitution: float = parameter(
+        "1", 0.5, "Share of its speed with which a stop throws the carrier back (assumed)",
+        minimum=0.15, maximum=1.0,
+    )  # fmt: skip
+    start_displacement: float = parameter(
+        "m", 0.0, "Displacement of the carrier at the start", display="mm", minimum=-1.0, maximum=1.0
+    )
+    start_rate: float = parameter(
+        "m/s", 0.0, "Rate of the displacement at the start", minimum=-1e3, maximum=1e3
+    )
+    inputs_at_step_end: bool = parameter(
+        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+    )
+    lift: float = input_("m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity")
+    velocity: float = input_("m/s", 0.0, "Velocity of the frame", rate="acceleration")
+    acceleration: float = input_("m/s2", 10.0, "Acceleration of the frame", nominal=10.0)
+    warp_force: float = input_("N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0)
+    displacement: float = output(
+        "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
+    )
+    rate: float = output("m/s", "Rate of the displacement")
+    spring_force: float = output("N", "Force of the four springs on the frame", nominal=100.0)
+    stop_force: float = output("N", "Force of the carrier on a stop", nominal=1000.0)
+    transmitted_force: float = output(
+        "N", "Force of the carrier on the frame: springs, damping, stops", nominal=1000.0
+    )
+    carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
+    stop_contacts: int = output("1", "Contacts with a stop so far", start=0, variability="discrete")
+    peak_load: float = output("N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0)
+    acceleration_ratio: float = output(
+        "1", "Largest acceleration of the carrier over the largest of the frame, so far", nominal=10.0
+    )
+    damping: float = state("N.s/m", "Damping of the suspension")
+    stop_damping: float = state("N.s/m", "Damping of a stop")
+    contact: int = state(
+        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 let go by it", start=0
+    )
+    sampled_lift: float = state("m", "Lift at the last sample of the inputs")
+    sampled_velocity: float = state("m/s", "Velocity at the last sample")
+    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
+    sampled_force: float = state("N", "Warp load at the last sample")
+    peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far")
+    peak_frame: float = state("m/s2", "Largest acceleration of the frame so far")
+
+    def check(self) -> int:
+        """Whether the carrier starts between its stops."""
+        if fabs(self.start_displacement) > self.free_travel:
+            return 2
+        return 0
+
+    def initialize(self, time: float) -> int:
+        """Place the carrier and forget all peaks."""
+        problem = self.check()
+        if problem != 0:
+            return problem
+        self.damping = 2.0 * self.damping_ratio * sqrt(4.0 * self.spring_stiffness * self.carrier_mass)
+        self.stop_damping = (
+            2.0 * stop_damping_ratio(self.stop_restitution) * sqrt(self.stop_stiffness * self.carrier_mass)
+        )
+        self.displacement = self.start_displacement
+        self.rate = self.start_rate
+        self.contact = 0
+        self.stop_contacts = 0
+        self.peak_load = 0.0
+        self.peak_carrier = 0.0
+        self.peak_frame = fabs(self.acceleration)
+        self.remember()
+        self.show(self.acceleration, self.warp_force)
+        return 0
+
+    def remember(self) -> None:
+        """Keep the present inputs as the last sample."""
+        self.sampled_lift = self.lift
+        self.sampled_velocity = self.velocity
+        self.sampled_acceleration = self.acceleration
+        self.sampled_force = self.warp_force
+
+    def step(self, time: float, step_size: float) -> int:
+        """Move the carrier over the step and show its state."""
+        if step_size <= 0.0:
+            return 0
+        a0 = self.acceleration
+        a1 = 0.0
+        a2 = 0.0
+        a3 = 0.0
+        load = self.warp_force
+        load_rate = 0.0
+        if self.inputs_at_step_end:
+            h = step_size
+            a0, a1, a2, a3 = joined(
+                self.sampled_lift, h * self.sampled_velocity, h * h * self.sampled_acceleration,
+                self.lift, h * self.velocity, h * h * self.acceleration,
+            )  # fmt: skip
+            a0 = a0 / (h * h)
+            a1 = a1 / (h * h)
+            a2 = a2 / (h * h)
+            a3 = a3 / (h * h)
+            load = self.sampled_force
+            load_rate = (self.warp_force - self.sampled_force) / step_size
+        frame = largest_between(a0, a1, a2, a3)
+        if frame > self.peak_frame:
+            self.peak_frame = frame
+        problem = self.move(step_size, a0, a1, a2, a3, load, load_rate)
+        self.remember()
+        self.show(self.acceleration, self.warp_force)
+        return problem
+
+    def on_stop(self) -> float:
+        """1 or -1 while the carrier presses on the upper or lower stop, else 0."""
+        if self.contact == 1 or self.contact == -1:
+            return 1.0 * self.contact
+        return 0.0
+
+    def move(
+        self, duration: float, a0: float, a1: float, a2: float, a3: float, load: float, load_rate: float
+    ) -> int:
+        """Move the carrier piece by piece: short against its own motion, one contact each."""
+        mass = self.carrier_mass
+        elapsed = 0.0
+        pieces = 0
+        while elapsed < duration:
+            pieces = pieces + 1
+            if pieces > 1000000:
+                return 1
+            side = self.on_stop()
+            stiffness = (4.0 * self.spring_stiffness + side * side * self.stop_stiffness) / mass
+            damping = (self.damping + side * side * self.stop_damping) / mass
+            preload = side * self.stop_stiffness * self.free_travel / mass
+            piece = duration - elapsed
+            rest = piece
+            own = sqrt(stiffness) + damping
+            if own * piece > 0.5:
+                piece = 0.5 / own
+            u = elapsed / duration
+            weight = load + load_rate * elapsed
+            changed = self.move_piece(
+                stiffness, damping, preload,
+                preload + weight / mass - (a0 + u * (a1 + u * (a2 + u * a3))),
+                load_rate / mass - (a1 + u * (2.0 * a2 + u * 3.0 * a3)) / duration,
+                -(a2 + 3.0 * a3 * u) / (duration * duration),
+                -a3 / (duration * duration * duration),
+                weight, piece,
+            )  # fmt: skip
+            if changed >= rest:
+                elapsed = duration
+            else:
+                elapsed = elapsed + changed
+        return 0
+
+    def move_piece(
+        self, stiffness: float, damping: float, preload: float,
+        u0: float, u1: float, u2: float, u3: float, load: float, piece: float,
+    ) -> float:  # fmt: skip
+        """Move over one piece, or up to the change of contact within it; the time that took."""
+        z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, piece)
+        change = contact_change(
+            self.contact, z, v, self.free_travel, self.stop_stiffness, self.stop_damping
+        )
+        taken = piece
+        if change <= 0.0 and self.contact == 0 and self.rate * v < 0.0:
+            # it may have been at a stop and come back
+            reach = fabs(self.displacement) + piece * (fabs(self.rate) + fabs(v))
+            if reach > self.free_travel:
+                turn = locate(
+                    RATE, 0, self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3,
+                    self.free_travel, self.stop_stiffness, self.stop_damping, piece,
+                )  # fmt: skip
+                farthest, _rate = propagate(
+                    self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, turn
+                )
+                if fabs(farthest) > self.free_travel:
+                    taken = turn
+                    change = 1.0
+        if change > 0.0:
+            taken = locate(
+                CONTACT_CHANGE, self.contact, self.displacement, self.rate, stiffness, damping,
+                u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, taken,
+            )  # fmt: skip
+            z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, taken)
+        self.note_peaks(stiffness, damping, preload, u0, u1, u2, u3, load, taken, z, v)
+        self.displacement = z
+        self.rate = v
+        if change > 0.0:
+            before = self.contact
+            self.contact = next_contact(
+                before, z, v, self.free_travel, self.stop_stiffness, self.stop_damping
+            )
+            if before == 0:
+                self.stop_contacts = self.stop_contacts + 1
+        return taken
+
+    def note_peaks(
+        self, stiffness: float, damping: float, preload: float,
+        u0: float, u1: float, u2: float, u3: float, load: float, piece: float, z: float, v: float,
+    ) -> None:  # fmt: skip
+        """Bring the largest transmitted force and carrier acceleration over a piece up to date."""
+        mass = self.carrier_mass
+        end_drive = u0 + piece * (u1 + piece * (u2 + piece * u3))
+        first = stiffness * self.displacement + damping * self.rate
+        last = stiffness * z + damping * v
+        first_rate = stiffness * self.rate + damping * (u0 - first)
+        last_rate = stiffness * v + damping * (end_drive - last)
+        self.note_load(mass * (first - preload), load)
+        self.note_load(mass * (last - preload), load)
+        if first_rate * last_rate < 0.0:
+            bound = fabs(first - preload) + fabs(last - preload)
+            bound = bound + piece * (fabs(first_rate) + fabs(last_rate))
+            if mass * bound > self.peak_load:
+                turn = locate(
+                    LOAD_RATE, self.contact, self.displacement, self.rate, stiffness, damping,
+                    u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, piece,
+                )  # fmt: skip
+                z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, turn)
+                self.note_load(mass * (stiffness * z + damping * v - preload), load)
+
+    def note_load(self, transmitted: float, load: float) -> None:
+        """Keep the largest transmitted force and carrier acceleration."""
+        if fabs(transmitted) > self.peak_load:
+            self.peak_load = fabs(transmitted)
+        carrier = fabs(load - transmitted) / self.carrier_mass
+        if carrier > self.peak_carrier:
+            self.peak_carrier = carrier
+
+    def show(self, acceleration: float, load: float) -> None:
+        """Outputs that follow from the carrier's state."""
+        side = self.on_stop()
+        self.spring_force = 4.0 * self.spring_stiffness * self.displacement
+        self.stop_force = side * side * (
+            self.stop_stiffness * (self.displacement - side * self.free_travel)
+            + self.stop_damping * self.rate
+        )
+        self.transmitted_force = self.spring_force + self.damping * self.rate + self.stop_force
+        self.note_load(self.transmitted_force, load)
+        self.carrier_acceleration = (load - self.transmitted_force) / self.carrier_mass
+        self.acceleration_ratio = 0.0
+        if self.peak_frame > 0.0:
+            self.acceleration_ratio = self.peak_carrier / self.peak_frame

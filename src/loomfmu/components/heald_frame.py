@@ -1,0 +1,101 @@
+"""HealdFrame: a heald frame that follows its pattern."""
+
+from dataclasses import dataclass
+from math import pi
+
+from ..physics.heald import lift_fraction, peg, slow_points_passed
+from ..physics.shaft import carried
+from ..variables import Component, input_, output, parameter
+
+
+@dataclass(slots=True)
+class HealdFrame(Component):
+    """Heald frame: at each slow point of the rotor it changes or holds, as its pattern asks.
+
+    At the slow point of pick k the frame rests where peg k wants it: raised for 1, lowered for 0. Then
+    it changes if peg k + 1 differs, and holds if not. The pattern repeats after `pattern_length` picks.
+    """
+
+    stroke: float = parameter(
+        "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
+    )
+    frame_mass: float = parameter("kg", 15.0, "Mass of the frame", minimum=0.0, maximum=1e3, nominal=10.0)
+    warp_ratio: float = parameter(
+        "1", 0.16666666666666666, "Warp height at the rapier's station for a lift of the frame",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)
+    pattern_1: int = parameter("1", 1, "Picks 0 to 15, least bit first", minimum=0, maximum=65535)
+    pattern_2: int = parameter("1", 0, "Picks 16 to 31", minimum=0, maximum=65535)
+    pattern_3: int = parameter("1", 0, "Picks 32 to 47", minimum=0, maximum=65535)
+    pattern_4: int = parameter("1", 0, "Picks 48 to 63", minimum=0, maximum=65535)
+    pattern_5: int = parameter("1", 0, "Picks 64 to 79", minimum=0, maximum=65535)
+    pattern_6: int = parameter("1", 0, "Picks 80 to 95", minimum=0, maximum=65535)
+    pattern_7: int = parameter("1", 0, "Picks 96 to 111", minimum=0, maximum=65535)
+    pattern_8: int = parameter("1", 0, "Picks 112 to 127", minimum=0, maximum=65535)
+    inputs_at_step_end: bool = parameter(
+        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+    )
+    rotor_angle: float = input_(
+        "rad", 3.141592653589793, "Rotor angle from the slow point of pick 0, not wrapped", display="deg",
+        unbounded=True, nominal=6.0, rate="rotor_velocity",
+    )  # fmt: skip
+    rotor_velocity: float = input_(
+        "rad/s", 41.88790204786391, "Rotor velocity", display="rev/min", nominal=50.0,
+        rate="rotor_acceleration",
+    )  # fmt: skip
+    rotor_acceleration: float = input_("rad/s2", 0.0, "Rotor acceleration", nominal=1000.0)
+    lift: float = output(
+        "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity"
+    )
+    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration")
+    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0)
+    warp_height: float = output(
+        "m", "Height of the warp above the closed shed, at the rapier's station", display="mm", nominal=0.01
+    )
+    inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0)
+    moving: bool = output("1", "The frame changes between these slow points", start=False,
+                          variability="discrete")  # fmt: skip
+
+    def requested(self, pick: int) -> int:
+        """Position that the pattern asks for at a pick: 1 raised, 0 lowered."""
+        index = pick % self.pattern_length
+        word = self.pattern_1
+        if index >= 112:
+            word = self.pattern_8
+        elif index >= 96:
+            word = self.pattern_7
+        elif index >= 80:
+            word = self.pattern_6
+        elif index >= 64:
+            word = self.pattern_5
+        elif index >= 48:
+            word = self.pattern_4
+        elif index >= 32:
+            word = self.pattern_3
+        elif index >= 16:
+            word = self.pattern_2
+        return peg(word, index % 16)
+
+    def initialize(self, time: float) -> int:
+        """Place the frame."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Move the frame: a function of the rotor and the pattern alone."""
+        angle = self.rotor_angle
+        velocity = self.rotor_velocity
+        if not self.inputs_at_step_end:
+            angle = carried(angle, velocity, self.rotor_acceleration, step_size)
+            velocity = velocity + self.rotor_acceleration * step_size
+        pick = slow_points_passed(angle)
+        before = self.requested(pick)
+        change = self.requested(pick + 1) - before
+        share, rate, second = lift_fraction(angle - 2.0 * pi * pick, velocity, self.rotor_acceleration)
+        self.lift = self.stroke * (before + change * share)
+        self.velocity = self.stroke * change * rate
+        self.acceleration = self.stroke * change * second
+        self.warp_height = self.warp_ratio * (self.lift - 0.5 * self.stroke)
+        self.inertia_force = self.frame_mass * self.acceleration
+        self.moving = change != 0
+        return 0

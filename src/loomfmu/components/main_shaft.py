@@ -1,0 +1,50 @@
+"""MainShaft: the loom's main shaft, which all mechanisms follow."""
+
+from dataclasses import dataclass
+
+from ..physics.shaft import shaft_motion
+from ..variables import Component, output, parameter
+
+
+@dataclass(slots=True)
+class MainShaft(Component):
+    """The loom's main shaft: constant speed, a smooth start-up ramp, a speed ripple."""
+
+    speed: float = parameter(
+        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up (picks per minute)",
+        display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
+    )  # fmt: skip
+    start_angle: float = parameter(
+        "rad", 0.0, "Shaft angle at time 0; 0 is the rapiers' outer dead centre", display="deg",
+        minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
+    ramp_duration: float = parameter(
+        "s", 0.0, "Duration of the start-up from rest at time 0; 0 for none", minimum=0.0, maximum=1e4
+    )
+    ripple_amplitude: float = parameter(
+        "1", 0.0, "Share of the speed by which it ripples", minimum=0.0, maximum=0.95
+    )
+    ripple_order: int = parameter("1", 2, "Ripples in one revolution", minimum=1, maximum=100)
+    angle: float = output(
+        "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
+    )
+    velocity: float = output(
+        "rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration"
+    )
+    acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
+
+    def initialize(self, time: float) -> int:
+        """Place the shaft where it is at the start."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Turn the shaft: a closed form of time, exact for every step."""
+        self.angle, self.velocity, self.acceleration = shaft_motion(
+            time + step_size,
+            self.speed,
+            self.start_angle,
+            self.ramp_duration,
+            self.ripple_amplitude,
+            self.ripple_order,
+        )
+        return 0

@@ -1,0 +1,47 @@
+"""What the mechanisms share that are driven by the main shaft."""
+
+from dataclasses import dataclass
+
+from ..physics.shaft import carried
+from ..variables import Component, input_, parameter
+
+
+@dataclass(slots=True)
+class ShaftDriven(Component):
+    """A mechanism on the main shaft: at its own constant speed, or following shaft signals."""
+
+    speed: float = parameter(
+        "rad/s", 41.88790204786391, "Constant shaft speed, used while follow_shaft is false",
+        display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
+    )  # fmt: skip
+    start_angle: float = parameter(
+        "rad", 0.0, "Shaft angle at time 0, used while follow_shaft is false", display="deg",
+        minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
+    follow_shaft: bool = parameter(
+        "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of the own speed"
+    )
+    inputs_at_step_end: bool = parameter(
+        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+    )
+    shaft_angle: float = input_(
+        "rad", 0.0, "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0,
+        rate="shaft_velocity",
+    )  # fmt: skip
+    shaft_velocity: float = input_(
+        "rad/s", 41.88790204786391, "Shaft velocity", display="rev/min", nominal=50.0,
+        rate="shaft_acceleration",
+    )  # fmt: skip
+    shaft_acceleration: float = input_("rad/s2", 0.0, "Shaft acceleration", nominal=100.0)
+
+    def shaft(self, time: float, step_size: float) -> tuple[float, float, float]:
+        """Angle, velocity and acceleration of the shaft at the end of the step."""
+        if not self.follow_shaft:
+            return self.start_angle + self.speed * (time + step_size), self.speed, 0.0
+        if self.inputs_at_step_end:
+            return self.shaft_angle, self.shaft_velocity, self.shaft_acceleration
+        return (
+            carried(self.shaft_angle, self.shaft_velocity, self.shaft_acceleration, step_size),
+            self.shaft_velocity + self.shaft_acceleration * step_size,
+            self.shaft_acceleration,
+        )

@@ -1,0 +1,140 @@
+"""WeftInsertion: from the main shaft to the travel of the rapier head."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+from ..physics.linkage import (
+    four_bar_margin,
+    spherical_margin,
+    spherical_rocker,
+    weft_motion,
+    wrapped,
+)
+from ..variables import Problem, output, parameter, state
+from .shaft_driven import ShaftDriven
+
+
+@dataclass(slots=True)
+class WeftInsertion(ShaftDriven):
+    """Weft insertion: spherical crank-rocker, planar four-bar, sector gear, rapier wheel, rapier head."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the spherical linkage does not close over a whole turn: |cos(rocker_angle = {rocker_angle})|"
+            " exceeds |cos(crank_cone = {crank_cone})|; choose rocker_angle nearer to 90 deg or a"
+            " smaller crank_cone"
+        ),
+        Problem(
+            "the planar four-bar does not close over the rocker's swing: crank_length = {crank_length},"
+            " coupler_length = {coupler_length}, output_length = {output_length}, pivot at"
+            " ({pivot_x}, {pivot_y}), a dead point {closure} short"
+        ),
+        Problem("assembly = {assembly} is outside {{-1, 1}}"),
+    )
+
+    rocker_angle: float = parameter(
+        "rad", 1.0471975511965976, "Arc between the axes BC and AC", display="deg",
+        minimum=0.0, maximum=3.141592653589793,
+    )  # fmt: skip
+    crank_cone: float = parameter(
+        "rad", 0.4886921905584123, "Half-angle of the crank's cone, AC to OC", display="deg",
+        minimum=0.0, maximum=1.5707963267948966,
+    )  # fmt: skip
+    crank_phase: float = parameter(
+        "rad", 0.0, "Crank angle at shaft angle 0", display="deg", minimum=-7.0, maximum=7.0
+    )
+    rocker_offset: float = parameter(
+        "rad", 0.1712167996137471, "Angle between the rocker's arms BC and DC", display="deg",
+        minimum=-7.0, maximum=7.0,
+    )  # fmt: skip
+    planar_linkage: bool = parameter("1", True, "Whether a planar four-bar C-D-K-G follows the rocker")
+    crank_length: float = parameter(
+        "m", 0.150, "Length DC", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    )
+    coupler_length: float = parameter(
+        "m", 0.245, "Length DK", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    )
+    output_length: float = parameter(
+        "m", 0.121, "Length KG", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    )
+    pivot_x: float = parameter("m", 0.243, "Place of G from C, x", display="mm", minimum=-10.0, maximum=10.0)
+    pivot_y: float = parameter("m", 0.258, "Place of G from C, y", display="mm", minimum=-10.0, maximum=10.0)
+    assembly: int = parameter("1", 1, "Way of closing the four-bar: 1 or -1", minimum=-1, maximum=1)
+    gear_ratio: float = parameter("1", 9.625, "Sector gear to rapier wheel", minimum=1e-3, maximum=1e3)
+    wheel_diameter: float = parameter(
+        "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
+    )
+    moving_mass: float = parameter(
+        "kg", 0.1105, "Mass moved with the head, reflected to the shaft", display="g",
+        minimum=0.0, maximum=100.0, nominal=0.1,
+    )  # fmt: skip
+    wheel_inertia: float = parameter(
+        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none is published)", minimum=0.0, maximum=10.0
+    )
+    travel: float = output(
+        "m", "Travel of the rapier head from its outer dead centre", rate="velocity",
+        depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
+    )  # fmt: skip
+    velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
+    acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
+    stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
+    shaft_torque: float = output("N.m", "Torque that the moving masses ask of the shaft", nominal=10.0)
+    travel_per_angle: float = state("m", "Travel for one radian of the sector gear, with its sign")
+    sector_start: float = state("rad", "Angle of the sector gear at shaft angle 0")
+    closure: float = state("m", "By how much the four-bar closes over the rocker's swing")
+
+    def sector(self, theta: float) -> tuple[float, float, float]:
+        """Angle of the sector gear at a shaft angle, with its derivatives."""
+        return weft_motion(
+            theta + self.crank_phase, self.rocker_angle, self.crank_cone, self.rocker_offset,
+            self.planar_linkage, self.crank_length, self.coupler_length, self.output_length,
+            self.pivot_x, self.pivot_y, self.assembly,
+        )  # fmt: skip
+
+    def check(self) -> int:
+        """Whether both linkages close over a whole turn."""
+        if spherical_margin(self.rocker_angle, self.crank_cone) < 0.0:
+            return 1
+        if self.assembly == 0:
+            return 3
+        if self.planar_linkage:
+            one_end, _first, _second = spherical_rocker(0.0, self.rocker_angle, self.crank_cone)
+            other_end, _first, _second = spherical_rocker(pi, self.rocker_angle, self.crank_cone)
+            low = (one_end if one_end < other_end else other_end) + self.rocker_offset
+            high = (other_end if one_end < other_end else one_end) + self.rocker_offset
+            self.closure = four_bar_margin(
+                low, high, self.crank_length, self.coupler_length, self.output_length,
+                self.pivot_x, self.pivot_y,
+            )  # fmt: skip
+            if self.closure < 0.0:
+                return 2
+        return 0
+
+    def initialize(self, time: float) -> int:
+        """Check the linkages, find the stroke and the sign of the travel, place the head."""
+        problem = self.check()
+        if problem != 0:
+            return problem
+        self.sector_start, _first, _second = self.sector(0.0)
+        middle, _first, _second = self.sector(pi)
+        swing = wrapped(middle - self.sector_start)
+        self.travel_per_angle = 0.5 * self.gear_ratio * self.wheel_diameter
+        if swing < 0.0:
+            self.travel_per_angle = -self.travel_per_angle
+        self.stroke = self.travel_per_angle * swing
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Move the head: a function of the shaft alone, exact for every step."""
+        theta, speed, acceleration = self.shaft(time, step_size)
+        angle, first, second = self.sector(theta)
+        first = self.travel_per_angle * first
+        second = self.travel_per_angle * second
+        self.travel = self.travel_per_angle * wrapped(angle - self.sector_start)
+        self.velocity = first * speed
+        self.acceleration = second * speed * speed + first * acceleration
+        wheel_radius = 0.5 * self.wheel_diameter
+        reflected = self.moving_mass + self.wheel_inertia / (wheel_radius * wheel_radius)
+        self.shaft_torque = reflected * self.acceleration * first
+        return 0

@@ -1,0 +1,1 @@
+"""FMI packaging: knows FMI and pythonfmu, and no physics."""

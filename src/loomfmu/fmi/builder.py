@@ -1,0 +1,155 @@
+"""Builds live FMUs: the same bytes from the same source."""
+
+import hashlib
+import io
+import os
+import re
+import tempfile
+import uuid
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import pythonfmu
+
+from .. import units
+from ..components import COMPONENTS
+from ..variables import Component, variables_of
+from . import documentation, live_slave
+from .model_description import FMI_TYPES, model_description
+from .source import flatten
+
+EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
+NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
+
+
+def version() -> str:
+    """The version of this package."""
+    return metadata.version("loomfmu")
+
+
+def folder(component: type[Component]) -> Path:
+    """Where README, icon and reference of an FMU lie: in the package, or beside it in a checkout."""
+    name = re.sub(r"(?<!^)(?=[A-Z])", "_", component.__name__).lower()
+    package = Path(__file__).parents[1]
+    installed = package / "fmus" / name
+    return installed if installed.is_dir() else package.parents[1] / "fmus" / name
+
+
+def build(name: str, directory: Path) -> Path:
+    """Build one FMU into a directory and return its path.
+
+    Raises KeyError for an unknown name and OSError where the directory cannot be written.
+    """
+    directory.mkdir(parents=True, exist_ok=True)
+    target = directory / f"{name}.fmu"
+    handle, temporary = tempfile.mkstemp(dir=directory, prefix=f".{name}.", suffix=".fmu")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(archive(COMPONENTS[name]))
+        Path(temporary).replace(target)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return target
+
+
+def archive(component: type[Component]) -> bytes:
+    """The FMU as bytes."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as zipped:
+        for name, content in sorted(_contents(component).items()):
+            entry = zipfile.ZipInfo(name, EARLIEST)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+            zipped.writestr(entry, content)
+    return buffer.getvalue()
+
+
+def guid(component: type[Component]) -> str:
+    """Identity of an FMU: of its variables, its source and the slave that runs it."""
+    digest = hashlib.sha256()
+    for part in (_rows(component), flatten(component), _slave_source(), version()):
+        digest.update(part.encode())
+    return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
+
+
+def _contents(component: type[Component]) -> dict[str, bytes]:
+    """All files of an FMU by their names in it."""
+    name = component.__name__
+    identity = guid(component)
+    # every FMU of a process shares one set of Python modules: the name must belong to this content alone
+    package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
+    source = folder(component)
+    readme = documentation.with_table((source / "README.md").read_text(encoding="utf-8"), component)
+    files = {
+        "modelDescription.xml": model_description(component, identity, version()),
+        "model.png": (source / "icon.png").read_bytes(),
+        "documentation/index.html": documentation.page(name, readme),
+        "documentation/externalDependencies.html": documentation.external_dependencies(name),
+        "documentation/licenses/license.txt": _license("loomfmu"),
+        "documentation/licenses/pythonfmu.txt": _license("pythonfmu"),
+        "resources/slavemodule.txt": f"{package}_entry".encode(),
+        f"resources/{package}_entry.py": _entry(component, package, identity).encode(),
+        f"resources/{package}/__init__.py": b"",
+        f"resources/{package}/component.py": flatten(component).encode(),
+        f"resources/{package}/slave.py": _slave_source().encode(),
+    }
+    for binary in sorted((Path(pythonfmu.__file__).parent / "resources" / "binaries").rglob("*")):
+        if binary.is_file():
+            files[f"binaries/{binary.parent.name}/{name}{binary.suffix}"] = binary.read_bytes()
+    return files
+
+
+def _entry(component: type[Component], package: str, identity: str) -> str:
+    """The module that pythonfmu's wrapper runs anew for every instance: so it is short.
+
+    It needs a function of its own: without one the wrapper frees the module's names under it.
+    """
+    return f'''"""Entry of the FMU {component.__name__}."""
+
+import {package}.component as _component
+import {package}.slave as _slave
+
+_Row = _slave.Row
+
+
+class {component.__name__}Slave(_slave.LiveSlave):
+    """{component.__name__} as a co-simulation slave."""
+
+    component_class = _component.{component.__name__}
+    guid = {identity!r}
+    problems = {tuple((problem.text, problem.warning) for problem in component.problems)!r}
+    rows = (
+{_rows(component)}
+    )
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+'''
+
+
+def _rows(component: type[Component]) -> str:
+    """The variables as the live slave needs them: the index is the value reference."""
+    lines = []
+    for variable in variables_of(component):
+        low = -live_slave.LARGEST if variable.minimum is None else variable.minimum
+        high = live_slave.LARGEST if variable.maximum is None else variable.maximum
+        row = (
+            variable.name, FMI_TYPES[variable.type], variable.causality, low, high, variable.display,
+            units.unit(variable.display).factor,
+        )  # fmt: skip
+        lines.append(f"        _Row{row!r},")
+    return "\n".join(lines)
+
+
+def _slave_source() -> str:
+    return Path(live_slave.__file__).read_text(encoding="utf-8")
+
+
+def _license(distribution: str) -> bytes:
+    """The licence text that a distribution carries, or that lies at the root of a checkout."""
+    for file in metadata.files(distribution) or ():
+        if "license" in file.name.lower():
+            return file.read_binary() if hasattr(file, "read_binary") else Path(str(file.locate())).read_bytes()
+    return (Path(__file__).parents[3] / "LICENSE").read_bytes()

@@ -1,0 +1,140 @@
+"""modelDescription.xml of an FMI 2.0 co-simulation FMU, derived from a component's declarations."""
+
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from .. import units
+from ..variables import Component, Variable, variables_of
+from .live_slave import CATEGORIES
+
+FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
+DEFAULT_STOP_TIME = 1.0
+DEFAULT_STEP_SIZE = 1e-4
+
+
+def model_description(component: type[Component], guid: str, version: str) -> bytes:
+    """The model description as XML text, the same bytes for the same declarations."""
+    variables = variables_of(component)
+    name = component.__name__
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=name,
+        guid=guid,
+        description=(component.__doc__ or "").splitlines()[0],
+        version=version,
+        license="MIT",
+        generationTool=f"loomfmu {version}",
+        variableNamingConvention="flat",
+    )
+    SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier=name,
+        needsExecutionTool="false",
+        canHandleVariableCommunicationStepSize="true",
+        canInterpolateInputs="false",
+        canBeInstantiatedOnlyOncePerProcess="false",
+        canNotUseMemoryManagementFunctions="true",
+        canGetAndSetFMUstate="true",
+        canSerializeFMUstate="true",
+    )
+    _units(root, variables)
+    _types(root, name, variables)
+    categories = SubElement(root, "LogCategories")
+    for category, description in CATEGORIES.values():
+        SubElement(categories, "Category", name=category, description=description)
+    SubElement(
+        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
+        stepSize=repr(DEFAULT_STEP_SIZE),
+    )  # fmt: skip
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(variables):
+        _scalar(listed, reference, variable, name)
+    _structure(root, variables)
+    indent(root)
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="utf-8") + b"\n"
+
+
+def _units(root: Element, variables: tuple[Variable, ...]) -> None:
+    """Every unit in use, with its SI exponents and its display units."""
+    displays: dict[str, set[str]] = {}
+    for variable in variables:
+        if variable.type is float:
+            displays.setdefault(variable.unit, set()).add(variable.display)
+    definitions = SubElement(root, "UnitDefinitions")
+    for name in sorted(displays):
+        known = units.unit(name)
+        definition = SubElement(definitions, "Unit", name=name)
+        exponents = zip(("kg", "m", "s", "rad"), known.dimension, strict=True)
+        SubElement(definition, "BaseUnit", {base: str(power) for base, power in exponents if power})
+        for display in sorted(displays[name] - {name}):
+            factor = known.factor / units.unit(display).factor
+            SubElement(definition, "DisplayUnit", name=display, factor=repr(factor))
+
+
+def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:
+    """An enumeration type for each variable that has choices."""
+    chosen = [variable for variable in variables if variable.choices]
+    if not chosen:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for variable in chosen:
+        simple = SubElement(definitions, "SimpleType", name=f"{name}.{variable.name}")
+        enumeration = SubElement(simple, "Enumeration")
+        for value, choice in enumerate(variable.choices, start=1):
+            SubElement(enumeration, "Item", name=choice, value=str(value))
+
+
+def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> None:
+    """One variable with its type, unit, limits and start."""
+    scalar = SubElement(
+        listed,
+        "ScalarVariable",
+        name=variable.name,
+        valueReference=str(reference),
+        causality=variable.causality,
+        variability=variable.variability if variable.type is float or variable.causality != "input" else "discrete",
+        description=variable.description,
+    )
+    attributes: dict[str, str] = {}
+    kind = FMI_TYPES[variable.type]
+    if variable.settable:
+        attributes["start"] = _text(variable.start)
+    else:
+        scalar.set("initial", "calculated")
+    if kind != "Boolean":
+        for key, value in (("min", variable.minimum), ("max", variable.maximum)):
+            if value is not None:
+                attributes[key] = _text(variable.type(value))
+    if kind == "Real":
+        attributes["unit"] = variable.unit
+        if variable.display != variable.unit:
+            attributes["displayUnit"] = variable.display
+        if variable.nominal is not None:
+            attributes["nominal"] = _text(variable.nominal)
+        if variable.unbounded:
+            attributes["unbounded"] = "true"
+    if variable.choices:
+        kind = "Enumeration"
+        attributes["declaredType"] = f"{model}.{variable.name}"
+    SubElement(scalar, kind, attributes)
+
+
+def _text(value: float | int | bool) -> str:
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
+    """Outputs with the inputs they depend on, and the unknowns of the initialization."""
+    index = {variable.name: position for position, variable in enumerate(variables, start=1)}
+    inputs = [variable.name for variable in variables if variable.causality == "input"]
+    structure = SubElement(root, "ModelStructure")
+    outputs = SubElement(structure, "Outputs")
+    unknowns = SubElement(structure, "InitialUnknowns")
+    for variable in variables:
+        if variable.causality != "output":
+            continue
+        needed = inputs if variable.depends is None else variable.depends
+        dependencies = " ".join(str(index[name]) for name in sorted(needed, key=index.__getitem__))
+        SubElement(outputs, "Unknown", index=str(index[variable.name]), dependencies=dependencies)
+        SubElement(unknowns, "Unknown", index=str(index[variable.name]))

@@ -1,0 +1,1 @@
+"""The mechanisms' mathematics: pure functions of floats that also translate to C."""

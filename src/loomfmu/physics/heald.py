@@ -1,0 +1,47 @@
+"""Heald frame: motion from the rotor's angle, and the pattern that asks for it.
+
+Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6.
+"""
+
+from math import cos, floor, pi, sin
+
+
+def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[float, float, float]:
+    """Share of the stroke of a frame that changes at every pick: `(1 - cos(S/2)) / 2`.
+
+    Half a turn of the frame's crank belongs to one turn of the rotor.
+
+    Args:
+        angle, velocity, acceleration: of the rotor [rad, rad/s, rad/s2]
+
+    Returns:
+        share [1], its rate [1/s] and second rate [1/s2]
+
+    >>> lift_fraction(0.0, 10.0, 0.0)
+    (0.0, 0.0, 12.5)
+    """
+    sine = sin(0.5 * angle)
+    cosine = cos(0.5 * angle)
+    return (
+        0.5 * (1.0 - cosine),
+        0.25 * sine * velocity,
+        0.125 * cosine * velocity * velocity + 0.25 * sine * acceleration,
+    )
+
+
+def slow_points_passed(angle: float) -> int:
+    """Number of slow points that the rotor has passed: whole turns of its angle.
+
+    >>> slow_points_passed(-0.1), slow_points_passed(0.0), slow_points_passed(7.0)
+    (-1, 0, 1)
+    """
+    return int(floor(angle / (2.0 * pi)))
+
+
+def peg(word: int, pick: int) -> int:
+    """The bit that a pattern word of 16 picks holds for a pick: 1 for a raised frame.
+
+    >>> [peg(0b0110, pick) for pick in range(4)]
+    [0, 1, 1, 0]
+    """
+    return (word >> pick) & 1

@@ -1,0 +1,135 @@
+"""Units of measurement: SI inside, anything people write at the boundaries.
+
+Names are Modelica's (`rad/s`, `N.m2`, `rev/min`), as FMI model descriptions and SDF use them;
+`udunits` gives the spelling that CF and xarray use.
+"""
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+
+
+class UnitError(ValueError):
+    """A quantity that cannot be read, or two units that do not meet."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit: its SI exponents (kg, m, s, rad) and the factor that leads to the SI base units."""
+
+    kg: int = 0
+    m: int = 0
+    s: int = 0
+    rad: int = 0
+    factor: float = 1.0
+
+    @property
+    def dimension(self) -> tuple[int, int, int, int]:
+        """SI exponents of kg, m, s and rad."""
+        return self.kg, self.m, self.s, self.rad
+
+
+STANDARD_GRAVITY = 9.80665  # m/s2, exact by definition
+
+UNITS = {
+    "1": Unit(),
+    "%": Unit(factor=0.01),
+    "m": Unit(m=1),
+    "mm": Unit(m=1, factor=1e-3),
+    "cm": Unit(m=1, factor=1e-2),
+    "kg": Unit(kg=1),
+    "g": Unit(kg=1, factor=1e-3),
+    "s": Unit(s=1),
+    "ms": Unit(s=1, factor=1e-3),
+    "1/s": Unit(s=-1),
+    "1/s2": Unit(s=-2),
+    "rad": Unit(rad=1),
+    "deg": Unit(rad=1, factor=math.pi / 180),
+    "rev": Unit(rad=1, factor=2 * math.pi),
+    "rad/s": Unit(rad=1, s=-1),
+    "rev/min": Unit(rad=1, s=-1, factor=2 * math.pi / 60),
+    "rad/s2": Unit(rad=1, s=-2),
+    "m/s": Unit(m=1, s=-1),
+    "m/s2": Unit(m=1, s=-2),
+    "N": Unit(kg=1, m=1, s=-2),
+    "kN": Unit(kg=1, m=1, s=-2, factor=1e3),
+    "cN": Unit(kg=1, m=1, s=-2, factor=1e-2),
+    "gf": Unit(kg=1, m=1, s=-2, factor=1e-3 * STANDARD_GRAVITY),
+    "N/m": Unit(kg=1, s=-2),
+    "N/mm": Unit(kg=1, s=-2, factor=1e3),
+    "N.s/m": Unit(kg=1, s=-1),
+    "N.m": Unit(kg=1, m=2, s=-2),
+    "N.m2": Unit(kg=1, m=3, s=-2),
+    "kg.m2": Unit(kg=1, m=2),
+}
+
+ALIASES = {"": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+
+
+def unit(name: str) -> Unit:
+    """The unit of that name.
+
+    Raises:
+        UnitError: there is none; the message names the nearest.
+    """
+    known = UNITS.get(ALIASES.get(name, name))
+    if known is None:
+        near = difflib.get_close_matches(name, [*UNITS, *ALIASES], n=1, cutoff=0.4)
+        hint = f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(UNITS)}"
+        raise UnitError(f"unknown unit {name!r}{hint}")
+    return known
+
+
+def parse(quantity: str | float, target: str) -> float:
+    """A quantity as people write it, in the unit `target`.
+
+    A bare number counts as SI already. Raises UnitError for a text that is no quantity, an unknown
+    unit, or one of another dimension than `target`.
+
+    >>> round(parse("685 rpm", "rad/s"), 4)
+    71.733
+    >>> parse("0.3mm", "m")
+    0.0003
+    >>> parse(0.8, "1")
+    0.8
+    """
+    if isinstance(quantity, bool) or not isinstance(quantity, str | int | float):
+        raise UnitError(f"{quantity!r} is not a quantity such as \"685 rpm\"")
+    if not isinstance(quantity, str):
+        return float(quantity)
+    match = _QUANTITY.fullmatch(quantity)
+    if match is None:
+        raise UnitError(f"{quantity!r} is not a quantity such as \"685 rpm\"")
+    number, name = match.groups()
+    if name == "" and target != "1":
+        return float(number)  # SI, as for a bare number
+    given, wanted = unit(name), unit(target)
+    if given.dimension != wanted.dimension:
+        raise UnitError(f"{quantity!r} is in {name or '1'}, which is no unit of {target}")
+    return float(number) * given.factor / wanted.factor
+
+
+def show(value: float, name: str) -> str:
+    """An SI value with the unit people read it in.
+
+    >>> show(62.83185307179586, "rev/min")
+    '600 rev/min'
+    """
+    return f"{value / unit(name).factor:.7g}" + ("" if name == "1" else f" {name}")
+
+
+def udunits(name: str) -> str:
+    """The UDUNITS spelling of a Modelica unit name.
+
+    >>> udunits("kg.m2"), udunits("m/s2"), udunits("N.s/m")
+    ('kg m2', 'm s-2', 'N s m-1')
+    """
+    numerator, _, denominator = name.partition("/")
+    parts = [] if numerator == "1" and denominator else numerator.split(".")
+    if denominator:
+        base = denominator.rstrip("0123456789")
+        parts.append(f"{base}-{denominator[len(base):] or 1}")
+    return " ".join(parts)

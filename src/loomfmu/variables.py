@@ -1,0 +1,196 @@
+"""How a component declares its variables: once, and everything else is derived from it.
+
+A component is a dataclass whose fields are made by `parameter`, `input_`, `output` and `state`.
+The model description, the FMU's state, the attributes of the traces, the variable tables of the
+documentation, the checks of limits and the C struct all come from `variables_of(component)`.
+"""
+
+import math
+from dataclasses import MISSING, Field, dataclass, field, fields
+from typing import Any, ClassVar
+
+from . import units
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of a component, as it was declared.
+
+    `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
+    derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
+    names of an enumeration's values, counted from 1.
+    """
+
+    name: str
+    type: type
+    causality: str
+    variability: str
+    unit: str
+    display: str
+    start: float | int | bool
+    description: str
+    minimum: float | None = None
+    maximum: float | None = None
+    nominal: float | None = None
+    unbounded: bool = False
+    rate: str | None = None
+    depends: tuple[str, ...] | None = None
+    choices: tuple[str, ...] = ()
+
+    @property
+    def settable(self) -> bool:
+        """Whether a user or a master sets it."""
+        return self.causality in ("parameter", "input")
+
+    def complaint(self, value: float | int | bool) -> str:
+        """What is wrong with that value, or an empty text."""
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
+        if low <= value <= high and math.isfinite(value):
+            return ""
+        shown = units.show(value, self.display)
+        low, high = (bound / units.unit(self.display).factor for bound in (low, high))
+        label = "" if self.display == "1" else f" {self.display}"
+        return f"{self.name} = {shown} is outside [{low:.7g}, {high:.7g}]{label}"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem that a component reports by its number, counted from 1.
+
+    `text` may hold `{variable}` for the value of a variable. A warning is told once and the run goes
+    on; anything else ends the step.
+    """
+
+    text: str
+    warning: bool = False
+
+
+def _declare(
+    causality: str,
+    variability: str,
+    unit: str,
+    start: float | int | bool,
+    description: str,
+    display: str | None,
+    **rest: Any,
+) -> Any:
+    declared = {
+        "causality": causality,
+        "variability": variability,
+        "unit": unit,
+        "display": display or unit,
+        "description": description,
+        **rest,
+    }
+    return field(default=start, metadata=declared)
+
+
+def parameter(
+    unit: str,
+    start: float | int | bool,
+    description: str,
+    *,
+    display: str | None = None,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    nominal: float | None = None,
+    choices: tuple[str, ...] = (),
+) -> Any:
+    """A value that is set before a run and fixed during it."""
+    if choices:
+        minimum, maximum = 1, len(choices)
+    return _declare(
+        "parameter", "fixed", unit, start, description, display,
+        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices,
+    )  # fmt: skip
+
+
+def input_(
+    unit: str,
+    start: float,
+    description: str,
+    *,
+    display: str | None = None,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    nominal: float | None = None,
+    unbounded: bool = False,
+    rate: str | None = None,
+) -> Any:
+    """A value that comes from outside at every step."""
+    return _declare(
+        "input", "continuous", unit, start, description, display,
+        minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate,
+    )  # fmt: skip
+
+
+def output(
+    unit: str,
+    description: str,
+    *,
+    start: float | int | bool = 0.0,
+    display: str | None = None,
+    variability: str = "continuous",
+    nominal: float | None = None,
+    unbounded: bool = False,
+    rate: str | None = None,
+    depends: tuple[str, ...] | None = None,
+) -> Any:
+    """A value that the component computes."""
+    return _declare(
+        "output", variability, unit, start, description, display,
+        nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
+    )  # fmt: skip
+
+
+def state(unit: str, description: str, *, start: float | int | bool = 0.0) -> Any:
+    """A value that the component carries from one step to the next, or computes once."""
+    variability = "continuous" if isinstance(start, float) else "discrete"
+    return _declare("local", variability, unit, start, description, None)
+
+
+def _variable(declared: Field[Any]) -> Variable:
+    start = declared.default
+    if start is MISSING or "causality" not in declared.metadata:
+        raise TypeError(f"{declared.name} is not declared by parameter, input_, output or state")
+    return Variable(name=declared.name, type=type(start), start=start, **declared.metadata)
+
+
+@dataclass(slots=True)
+class Component:
+    """What every component is: declared variables, `initialize` and `step`.
+
+    The methods of a component and the functions they call keep to the Python that also translates to
+    C: floats, ints and bools, if, while and for-range, `math`, tuples for several results.
+    """
+
+    problems: ClassVar[tuple[Problem, ...]] = ()
+
+    def __post_init__(self) -> None:
+        for variable in variables_of(type(self)):
+            complaint = variable.complaint(getattr(self, variable.name)) if variable.settable else ""
+            if complaint:
+                raise ValueError(f"{type(self).__name__}.{complaint}")
+
+    def check(self) -> int:
+        """The number of the first problem of the parameters, or 0."""
+        return 0
+
+    def initialize(self, time: float) -> int:
+        """Compute what is computed once and the outputs at `time`; 0 or a problem's number."""
+        raise NotImplementedError
+
+    def step(self, time: float, step_size: float) -> int:
+        """Go from `time` to `time + step_size`; 0 or a problem's number."""
+        raise NotImplementedError
+
+
+def variables_of(component: type[Component]) -> tuple[Variable, ...]:
+    """All variables of a component in the order of their declaration; the index is the value reference."""
+    return tuple(_variable(declared) for declared in fields(component))
+
+
+def problem_text(text: str, values: dict[str, Any], displays: dict[str, str]) -> str:
+    """A problem's text with the values of its variables, each in its display unit."""
+    return text.format(**{name: units.show(values[name], display) for name, display in displays.items()})
