@@ -4,13 +4,14 @@ Names are Modelica's (`rad/s`, `N.m2`, `rev/min`), as FMI model descriptions and
 `udunits` gives the spelling that CF and xarray use.
 """
 
-import difflib
 import math
 import re
 from dataclasses import dataclass
 
+from .errors import LoomfmuError, suggestion
 
-class UnitError(ValueError):
+
+class UnitError(LoomfmuError):
     """A quantity that cannot be read, or two units that do not meet."""
 
 
@@ -77,9 +78,7 @@ def unit(name: str) -> Unit:
     """
     known = UNITS.get(ALIASES.get(name, name))
     if known is None:
-        near = difflib.get_close_matches(name, [*UNITS, *ALIASES], n=1, cutoff=0.4)
-        hint = f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(UNITS)}"
-        raise UnitError(f"unknown unit {name!r}{hint}")
+        raise UnitError(f"unknown unit {name!r}{suggestion(name, [*UNITS, *ALIASES])}")
     return known
 
 
@@ -97,12 +96,12 @@ def parse(quantity: str | float, target: str) -> float:
     0.8
     """
     if isinstance(quantity, bool) or not isinstance(quantity, str | int | float):
-        raise UnitError(f"{quantity!r} is not a quantity such as \"685 rpm\"")
+        raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
     if not isinstance(quantity, str):
         return float(quantity)
     match = _QUANTITY.fullmatch(quantity)
     if match is None:
-        raise UnitError(f"{quantity!r} is not a quantity such as \"685 rpm\"")
+        raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
     number, name = match.groups()
     if name == "" and target != "1":
         return float(number)  # SI, as for a bare number
@@ -131,5 +130,5 @@ def udunits(name: str) -> str:
     parts = [] if numerator == "1" and denominator else numerator.split(".")
     if denominator:
         base = denominator.rstrip("0123456789")
-        parts.append(f"{base}-{denominator[len(base):] or 1}")
+        parts.append(f"{base}-{denominator[len(base) :] or 1}")
     return " ".join(parts)

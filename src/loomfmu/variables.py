@@ -189,8 +189,3 @@ class Component:
 def variables_of(component: type[Component]) -> tuple[Variable, ...]:
     """All variables of a component in the order of their declaration; the index is the value reference."""
     return tuple(_variable(declared) for declared in fields(component))
-
-
-def problem_text(text: str, values: dict[str, Any], displays: dict[str, str]) -> str:
-    """A problem's text with the values of its variables, each in its display unit."""
-    return text.format(**{name: units.show(values[name], display) for name, display in displays.items()})

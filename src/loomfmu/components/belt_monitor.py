@@ -42,7 +42,7 @@ class BeltMonitor(ShaftDriven):
         minimum=1e-6, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     head_length: float = parameter(
-        "m", 0.550, "Length of the rapier head with the rigid section", display="mm", minimum=0.0, maximum=10.0
+        "m", 0.550, "Length of the head with the rigid section", display="mm", minimum=0.0, maximum=10.0
     )
     idle_travel: float = parameter(
         "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0
@@ -64,7 +64,7 @@ class BeltMonitor(ShaftDriven):
         minimum=0.0, maximum=0.05, nominal=1e-3,
     )  # fmt: skip
     free_length: float = output(
-        "m", "Length of the belt outside guide and head; negative inside", display="mm", rate="velocity",
+        "m", "Length of the belt outside guide and head; negative inside", display="mm",
         depends=("travel", "velocity", "acceleration"),
     )  # fmt: skip
     inertia_force: float = output(
@@ -92,7 +92,9 @@ class BeltMonitor(ShaftDriven):
     at_risk: bool = output(
         "1", "The belt is outside its guide and under compression", start=False, variability="discrete"
     )
-    buckled: bool = output("1", "The belt has buckled at some time so far", start=False, variability="discrete")
+    buckled: bool = output(
+        "1", "The belt has buckled at some time so far", start=False, variability="discrete"
+    )
 
     sampled_clearance: float = state("m", "Clearance for which length_factor holds")
     sampled_time: float = state("s", "Time of the last sample of the inputs")
@@ -174,9 +176,7 @@ class BeltMonitor(ShaftDriven):
         factor = self.sampled_factor + share * (self.length_factor - self.sampled_factor)
         free_length = travel - self.idle_travel - self.head_length
         if limit:
-            return speed_limit(
-                free_length, second, factor, self.bending_stiffness, self.head_mass, tension
-            )
+            return speed_limit(free_length, second, factor, self.bending_stiffness, self.head_mass, tension)
         return margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
 
     def lowest_between(self, limit: bool, lowest: float, duration: float) -> float:

@@ -54,7 +54,7 @@ class DobbyDrive(ShaftDriven):
     def step(self, time: float, step_size: float) -> int:
         """Turn the rotor: a function of the shaft alone, exact for every step."""
         theta, speed, acceleration = self.shaft(time, step_size)
-        turns = int(floor((theta - self.slow_point) / (2.0 * pi)))
+        turns = floor((theta - self.slow_point) / (2.0 * pi))
         angle, first, second = rotor_law(
             self.law, theta - self.slow_point - 2.0 * pi * turns, self.speed_reduction
         )
@@ -64,5 +64,5 @@ class DobbyDrive(ShaftDriven):
         self.lift_fraction, self.lift_rate, self.lift_acceleration = lift_fraction(
             self.rotor_angle, self.rotor_velocity, self.rotor_acceleration
         )
-        self.pick = int(floor(theta / (2.0 * pi)))
+        self.pick = floor(theta / (2.0 * pi))
         return 0

@@ -85,15 +85,15 @@ class HealdDamper(Component):
     )
     carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
     stop_contacts: int = output("1", "Contacts with a stop so far", start=0, variability="discrete")
-    peak_load: float = output("N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0)
+    peak_load: float = output(
+        "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0
+    )
     acceleration_ratio: float = output(
         "1", "Largest acceleration of the carrier over the largest of the frame, so far", nominal=10.0
     )
     damping: float = state("N.s/m", "Damping of the suspension")
     stop_damping: float = state("N.s/m", "Damping of a stop")
-    contact: int = state(
-        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 let go by it", start=0
-    )
+    contact: int = state("1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 let go by it", start=0)
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
@@ -212,9 +212,7 @@ class HealdDamper(Component):
     ) -> float:  # fmt: skip
         """Move over one piece, or up to the change of contact within it; the time that took."""
         z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, piece)
-        change = contact_change(
-            self.contact, z, v, self.free_travel, self.stop_stiffness, self.stop_damping
-        )
+        change = contact_change(self.contact, z, v, self.free_travel, self.stop_stiffness, self.stop_damping)
         taken = piece
         if change <= 0.0 and self.contact == 0 and self.rate * v < 0.0:
             # it may have been at a stop and come back
@@ -284,9 +282,13 @@ class HealdDamper(Component):
         """Outputs that follow from the carrier's state."""
         side = self.on_stop()
         self.spring_force = 4.0 * self.spring_stiffness * self.displacement
-        self.stop_force = side * side * (
-            self.stop_stiffness * (self.displacement - side * self.free_travel)
-            + self.stop_damping * self.rate
+        self.stop_force = (
+            side
+            * side
+            * (
+                self.stop_stiffness * (self.displacement - side * self.free_travel)
+                + self.stop_damping * self.rate
+            )
         )
         self.transmitted_force = self.spring_force + self.damping * self.rate + self.stop_force
         self.note_load(self.transmitted_force, load)

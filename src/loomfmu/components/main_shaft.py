@@ -28,9 +28,7 @@ class MainShaft(Component):
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
     )
-    velocity: float = output(
-        "rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration"
-    )
+    velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
 
     def initialize(self, time: float) -> int:

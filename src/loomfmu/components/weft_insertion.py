@@ -22,7 +22,7 @@ class WeftInsertion(ShaftDriven):
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "the spherical linkage does not close over a whole turn: |cos(rocker_angle = {rocker_angle})|"
-            " exceeds |cos(crank_cone = {crank_cone})|; choose rocker_angle nearer to 90 deg or a"
+            " reaches or exceeds |cos(crank_cone = {crank_cone})|; choose rocker_angle nearer to 90 deg or a"
             " smaller crank_cone"
         ),
         Problem(
@@ -45,7 +45,7 @@ class WeftInsertion(ShaftDriven):
         "rad", 0.0, "Crank angle at shaft angle 0", display="deg", minimum=-7.0, maximum=7.0
     )
     rocker_offset: float = parameter(
-        "rad", 0.1712167996137471, "Angle between the rocker's arms BC and DC", display="deg",
+        "rad", 0.17121679962064373, "Angle between the rocker's arms BC and DC", display="deg",
         minimum=-7.0, maximum=7.0,
     )  # fmt: skip
     planar_linkage: bool = parameter("1", True, "Whether a planar four-bar C-D-K-G follows the rocker")
@@ -70,7 +70,7 @@ class WeftInsertion(ShaftDriven):
         minimum=0.0, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     wheel_inertia: float = parameter(
-        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none is published)", minimum=0.0, maximum=10.0
+        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published)", minimum=0.0, maximum=10.0
     )
     travel: float = output(
         "m", "Travel of the rapier head from its outer dead centre", rate="velocity",
@@ -93,8 +93,8 @@ class WeftInsertion(ShaftDriven):
         )  # fmt: skip
 
     def check(self) -> int:
-        """Whether both linkages close over a whole turn."""
-        if spherical_margin(self.rocker_angle, self.crank_cone) < 0.0:
+        """Whether both linkages close over a whole turn, clear of their dead points by more than rounding."""
+        if spherical_margin(self.rocker_angle, self.crank_cone) < 1e-9:
             return 1
         if self.assembly == 0:
             return 3
@@ -107,7 +107,7 @@ class WeftInsertion(ShaftDriven):
                 low, high, self.crank_length, self.coupler_length, self.output_length,
                 self.pivot_x, self.pivot_y,
             )  # fmt: skip
-            if self.closure < 0.0:
+            if self.closure < 1e-9:
                 return 2
         return 0
 

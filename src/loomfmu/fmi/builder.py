@@ -66,6 +66,14 @@ def archive(component: type[Component]) -> bytes:
     return buffer.getvalue()
 
 
+def write_readmes() -> None:
+    """Bring the tables of variables in all READMEs up to date."""
+    for component in COMPONENTS.values():
+        readme = folder(component) / "README.md"
+        text = documentation.with_table(readme.read_text(encoding="utf-8"), component)
+        readme.write_text(text, encoding="utf-8")
+
+
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of its variables, its source and the slave that runs it."""
     digest = hashlib.sha256()
@@ -151,5 +159,5 @@ def _license(distribution: str) -> bytes:
     """The licence text that a distribution carries, or that lies at the root of a checkout."""
     for file in metadata.files(distribution) or ():
         if "license" in file.name.lower():
-            return file.read_binary() if hasattr(file, "read_binary") else Path(str(file.locate())).read_bytes()
+            return Path(str(file.locate())).read_bytes()
     return (Path(__file__).parents[3] / "LICENSE").read_bytes()

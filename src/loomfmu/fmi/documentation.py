@@ -3,7 +3,6 @@
 import html
 import math
 import re
-from pathlib import Path
 
 from markdown_it import MarkdownIt
 
@@ -84,10 +83,3 @@ def page(title: str, markdown: str) -> bytes:
 def external_dependencies(name: str) -> bytes:
     """What the live flavour needs of its host, as an HTML page."""
     return page(f"{name}: external dependencies", DEPENDENCIES.format(name=name))
-
-
-def write_readmes(folders: dict[Path, type[Component]]) -> None:
-    """Bring the tables of all READMEs up to date."""
-    for folder, component in folders.items():
-        readme = folder / "README.md"
-        readme.write_text(with_table(readme.read_text(encoding="utf-8"), component), encoding="utf-8")

@@ -93,14 +93,14 @@ class LiveSlave(Fmi2Slave):
         if self.mode != STEPPING:
             self._fail(DISCARD, "a step was asked for before the initialization was finished")
         elif not (math.isfinite(current_time) and 0.0 <= step_size <= LARGEST):
-            self._fail(DISCARD, f"step from {current_time!r} s by {step_size!r} s: neither may be NaN, infinite"
-                                " or go back")  # fmt: skip
+            text = f"a step from {current_time!r} s by {step_size!r} s: finite and forward is asked for"
+            self._fail(DISCARD, text)
         if self.failure:
             self._log(DISCARD, self.failure)
             return False
         try:
             problem = self.component.step(current_time, step_size)
-        except Exception as error:
+        except BaseException as error:  # Ctrl-C too: nothing may reach the wrapper
             self._fail(DISCARD, f"at {current_time!r} s: {type(error).__name__}: {error}")
             return False
         self.time = current_time + step_size
@@ -204,7 +204,7 @@ class LiveSlave(Fmi2Slave):
         self.stale = False
         try:
             problem = self.component.initialize(self.time)
-        except Exception as error:
+        except BaseException as error:  # Ctrl-C too: nothing may reach the wrapper
             self._fail(ERROR, f"at the start: {type(error).__name__}: {error}")
             return
         if problem:
@@ -260,7 +260,9 @@ class LiveSlave(Fmi2Slave):
             return b""
         guid, mode, time, stale, failure, values = state
         text = failure.encode()[:60000]
-        return struct.pack(cls._format(), guid.encode(), mode.encode(), time, stale, len(text), *values) + text
+        head = (guid.encode(), mode.encode(), time, stale, len(text))
+        packed: bytes = struct.pack(cls._format(), *head, *values) + text
+        return packed
 
     @classmethod
     def _fmu_state_from_bytes(cls, data: bytes) -> tuple[Any, ...] | None:

@@ -52,7 +52,8 @@ def model_description(component: type[Component], guid: str, version: str) -> by
         _scalar(listed, reference, variable, name)
     _structure(root, variables)
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="utf-8") + b"\n"
+    text: str = tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
 def _units(root: Element, variables: tuple[Variable, ...]) -> None:
@@ -93,7 +94,7 @@ def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> 
         name=variable.name,
         valueReference=str(reference),
         causality=variable.causality,
-        variability=variable.variability if variable.type is float or variable.causality != "input" else "discrete",
+        variability=variable.variability,
         description=variable.description,
     )
     attributes: dict[str, str] = {}

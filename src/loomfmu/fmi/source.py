@@ -7,7 +7,6 @@ after the other, with an `__init__` that lists the declared fields. The module i
 import inspect
 import math
 import textwrap
-from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
@@ -64,7 +63,7 @@ def _collect(
                 _collect(used, functions, constants, from_math)
                 functions[name] = used
             elif known is not used:
-                raise SourceError(f"{function.__module__}.{function.__name__}: two functions are called {name}")
+                raise SourceError(f"{function.__module__}: two functions are called {name}")
         elif isinstance(used, int | float):
             constants[name] = used
         else:
@@ -74,7 +73,7 @@ def _collect(
             )
 
 
-def _class(component: type[Component], methods: dict[str, Callable[..., Any]]) -> str:
+def _class(component: type[Component], methods: dict[str, FunctionType]) -> str:
     """The class with its fields and methods."""
     lines = [f"class {component.__name__}:", f'    """{component.__doc__}"""', ""]
     lines += ["    def __init__(self) -> None:"]

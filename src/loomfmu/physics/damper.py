@@ -230,9 +230,7 @@ def locate(
     at_low = watched(
         what, contact, position, rate, acceleration, stiffness, damping, travel, stop_stiffness, stop_damping
     )
-    z, v = propagate(
-        position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, high
-    )
+    z, v = propagate(position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, high)
     force = drive + high * (drive_1 + high * (drive_2 + high * drive_3))
     at_high = watched(
         what, contact, z, v, force - stiffness * z - damping * v,

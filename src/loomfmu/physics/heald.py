@@ -35,7 +35,7 @@ def slow_points_passed(angle: float) -> int:
     >>> slow_points_passed(-0.1), slow_points_passed(0.0), slow_points_passed(7.0)
     (-1, 0, 1)
     """
-    return int(floor(angle / (2.0 * pi)))
+    return floor(angle / (2.0 * pi))
 
 
 def peg(word: int, pick: int) -> int:

@@ -189,9 +189,7 @@ def weft_motion(
     alpha, first, second = spherical_rocker(theta, rocker, cone)
     if not planar:
         return alpha, first, second
-    return four_bar(
-        alpha + offset, first, second, crank, coupler, output, pivot_x, pivot_y, assembly
-    )
+    return four_bar(alpha + offset, first, second, crank, coupler, output, pivot_x, pivot_y, assembly)
 
 
 def wrapped(angle: float) -> float:

@@ -1,0 +1,40 @@
+# Two commands do all the set-up: `make demo` and `make test`. Both work in .venv.
+
+PYTHON ?= python3
+BIN := .venv/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+.PHONY: demo test check docs clean
+
+demo: .venv/installed
+	$(BIN)/loomfmu build
+	$(BIN)/loomfmu run sims/wl680_3600.toml
+
+test: .venv/installed-for-tests check
+	$(BIN)/python -m pytest --cov --cov-report=term
+
+check: .venv/installed-for-tests
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# the tables of variables in the READMEs of the FMUs
+docs: .venv/installed
+	$(BIN)/python -c "from loomfmu.fmi.builder import write_readmes; write_readmes()"
+
+.venv/created:
+	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"
+	$(PYTHON) -m venv .venv
+	touch $@
+
+.venv/installed: .venv/created pyproject.toml constraints.txt
+	$(INSTALL) --editable .
+	touch $@
+
+.venv/installed-for-tests: .venv/created pyproject.toml constraints.txt
+	$(INSTALL) --editable .[test]
+	touch .venv/installed $@
+
+clean:
+	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

@@ -1,0 +1,89 @@
+"""Draws the icon of every FMU: one characteristic curve, computed by the component itself."""
+
+from math import pi
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from matplotlib.patches import FancyBboxPatch
+
+from loomfmu.components import BeltMonitor, DobbyDrive, HealdDamper, HealdFrame, MainShaft, WeftInsertion
+from loomfmu.variables import Component
+
+HERE = Path(__file__).parent
+BLUE, RED, PALE, GROUND, EDGE = "#1f5f8b", "#d1495b", "#a9bfcd", "#f5f8fa", "#8fa5b3"
+# an input of a component takes the output of the same name of the component before it
+WIRES = ("rotor_angle", "rotor_velocity", "rotor_acceleration", "travel", "lift", "velocity", "acceleration")
+
+
+def trace(chain: list[Component], turns: float, *names: str) -> list[list[float]]:
+    """Shaft revolutions and the named outputs of the last component of a chain, run in dependency order."""
+    period = 2 * pi / chain[0].speed
+    samples = 720
+    h = turns * period / samples
+    rows = []
+    for step in range(samples + 1):
+        for before, component in zip([None, *chain], chain, strict=False):
+            for name in WIRES:
+                if hasattr(before, name) and hasattr(component, name):
+                    setattr(component, name, getattr(before, name))
+            problem = component.step((step - 1) * h, h) if step else component.initialize(0.0)
+            assert problem == 0, f"{type(component).__name__} reports problem {problem}"
+        rows.append([step * h / period, *(getattr(chain[-1], name) for name in names)])
+    return [list(column) for column in zip(*rows, strict=True)]
+
+
+def draw(
+    name: str,
+    *curves: tuple[list[float], list[float], str],
+    levels: tuple[float, ...] = (),
+    level_colour: str = PALE,
+) -> None:
+    """Write one icon: curves over thin level lines on a light ground in a rounded frame."""
+    figure = plt.figure(figsize=(1.28, 1.28), dpi=100)
+    frame = FancyBboxPatch(
+        (0.03, 0.03), 0.94, 0.94, boxstyle="round,pad=0,rounding_size=0.16", zorder=-1,
+        transform=figure.transFigure, facecolor=GROUND, edgecolor=EDGE, linewidth=1.2,
+    )  # fmt: skip
+    figure.add_artist(frame)
+    axes = figure.add_axes((0.13, 0.17, 0.74, 0.66))
+    axes.axis("off")
+    axes.margins(x=0.0, y=0.0)
+    for level in levels:
+        axes.axhline(level, color=level_colour, linewidth=1.3, clip_on=False)
+    for x, y, colour in curves:
+        axes.plot(x, y, color=colour, linewidth=2.8, solid_capstyle="round", clip_on=False)
+    figure.savefig(HERE / name / "icon.png", transparent=True, metadata={"Software": None})
+    plt.close(figure)
+
+
+def main() -> None:
+    """Draw all six."""
+    time, velocity = trace([MainShaft(ramp_duration=0.2, ripple_amplitude=0.06)], 2, "velocity")
+    draw("main_shaft", (time, velocity, BLUE), levels=(0.0,))
+
+    time, travel = trace([WeftInsertion()], 1, "travel")
+    draw("weft_insertion", (time, travel, BLUE), levels=(0.0,))
+
+    fast = 650 * 2 * pi / 60
+    chain = [WeftInsertion(speed=fast), BeltMonitor(speed=fast, inputs_at_step_end=True)]
+    time, load, critical, free = trace(chain, 1, "axial_force", "critical_force", "free_length")
+    rows = zip(time, critical, free, strict=True)
+    window = [(at, force) for at, force, length in rows if length > 0.0 and force < max(load)]
+    draw("belt_monitor", (*map(list, zip(*window, strict=True)), RED), (time, load, BLUE), levels=(0.0,))
+
+    time, velocity = trace([DobbyDrive(speed_reduction=0.7)], 2, "rotor_velocity")
+    draw("dobby_drive", (time, velocity, BLUE), levels=(DobbyDrive().speed,))
+
+    time, lift = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True)], 2, "lift")
+    time, other = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True, pattern_1=2)], 2, "lift")
+    draw("heald_frame", (time, other, PALE), (time, lift, BLUE))
+
+    carrier = HealdDamper(inputs_at_step_end=True)
+    frame = HealdFrame(inputs_at_step_end=True)
+    time, displacement = trace([DobbyDrive(speed=20 * pi), frame, carrier], 2, "displacement")
+    stops = (-carrier.free_travel, carrier.free_travel)
+    draw("heald_damper", (time, displacement, BLUE), levels=stops, level_colour=RED)
+
+
+if __name__ == "__main__":
+    main()

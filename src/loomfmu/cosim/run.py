@@ -1,0 +1,204 @@
+"""Running a scene: co-simulate, record, judge."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LoomfmuError, suggestion
+from ..traces import ROWS, Channel, Trace, TraceWriter
+from . import scene as scenes
+from .claims import KINDS, Verdict, judge, signals_of
+from .fmus import Port
+from .master import Interrupted, Master
+from .scene import Scene
+
+LONG_RUN = 20_000  # steps from which a progress bar is shown
+
+
+@dataclass(frozen=True)
+class Result:
+    """A finished run: its trace, the verdicts on its claims, and what the FMUs warned of."""
+
+    scene: Scene
+    path: Path
+    claims: tuple[Verdict, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every claim holds."""
+        return all(self.claims)
+
+    @cached_property
+    def trace(self) -> Trace:
+        """The recorded trace: `result.trace["belt.margin"]` are the signal's values in SI."""
+        return Trace(self.path)
+
+
+def run(
+    scene: str | Path | Scene,
+    *,
+    set: dict[str, Any] | None = None,  # the command's own word
+    output: str | Path | None = None,
+    progress: bool = False,
+) -> Result:
+    """Co-simulate a scene, record it to HDF5 and judge its claims.
+
+    Args:
+        scene: path of a scene file, or a scene that was read before
+        set: values that differ from the scene's, such as {"shaft.speed": "685 rpm"}; numbers are SI
+        output: path of the trace; `results/<scene>.h5` below the current directory by default
+        progress: show a progress bar on a long run, if standard error is a terminal
+
+    Raises:
+        LoomfmuError: bad input, or an FMU that failed; one line that names what and where
+        KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
+    """
+    if not isinstance(scene, Scene):
+        scene = scenes.load(scene, set)
+    elif set:
+        scene = scenes.parse(scene.text, scene.name, set)
+    path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
+    check_claims(scene)
+    with Master(scene) as master:
+        master.initialize()
+        writer = _writer(scene, master, path)
+        try:
+            with _bar(scene, progress) as advance:
+                master.run(ROWS, _recorder(scene, master, writer), advance)
+        except Interrupted:
+            kept = writer.abandon("interrupted")
+            raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
+        except OSError as error:
+            kept = writer.abandon("failed")
+            raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {kept}") from None
+        except BaseException:
+            writer.abandon("failed")
+            raise
+        warnings = tuple(master.warnings())
+    return Result(scene, path, _finish(scene, writer), warnings)
+
+
+def _finish(scene: Scene, writer: TraceWriter) -> tuple[Verdict, ...]:
+    """Seal the trace, judge it, store the verdicts and give it its final name."""
+    try:
+        writer.seal("complete")
+        with Trace(writer.partial) as trace:
+            verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
+        writer.complete([verdict.as_dict() for verdict in verdicts])
+    except OSError as error:
+        raise LoomfmuError(f"{writer.path}: cannot be written ({error.strerror or error})") from None
+    return verdicts
+
+
+def check_claims(scene: Scene) -> None:
+    """Refuse a claim that cannot be judged before the run, not after it."""
+    for claim in scene.claims:
+        kind = claim.get("kind")
+        if kind not in KINDS:
+            raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), KINDS)}")
+        for signal in signals_of(claim):
+            _output(scene, signal, f"claim {kind!r}")
+
+
+def _output(scene: Scene, signal: str, where: str) -> Port:
+    """The output that a signal names."""
+    instance, _, variable = signal.partition(".")
+    if instance not in scene.instances:
+        hint = suggestion(instance, scene.instances)
+        raise LoomfmuError(f"{where}: there is no instance {instance!r}{hint}")
+    ports = scene.instances[instance].fmu.ports
+    outputs = [port.name for port in ports.values() if port.causality == "output"]
+    if variable not in outputs:
+        raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
+    return ports[variable]
+
+
+def _recorded(scene: Scene) -> list[str]:
+    """What the scene records, what its claims need, and the rates of that."""
+    wanted = ["shaft.angle", *scene.record, *(s for claim in scene.claims for s in signals_of(claim))]
+    names: dict[str, None] = {}
+    for signal in wanted:
+        while signal and signal not in names:
+            names[signal] = None
+            rate = _output(scene, signal, "record").rate
+            signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
+    return list(names)
+
+
+def _writer(scene: Scene, master: Master, path: Path) -> TraceWriter:
+    channels = []
+    for signal in _recorded(scene):
+        port = _output(scene, signal, "record")
+        instance, variable = signal.split(".")
+        kind, slot = master.slots[instance, variable]
+        meanings = ("no", "yes") if kind == "Boolean" else port.choices
+        channels.append(
+            Channel(
+                instance=instance,
+                variable=variable,
+                unit=port.unit,
+                display=port.display,
+                description=port.description,
+                column=slot,
+                real=kind == "Real",
+                rate=port.rate,
+                meanings=meanings,
+                first_flag=port.first_choice if port.choices else 0,
+            )
+        )
+    fmus = {instance.fmu.name: instance.fmu for instance in scene.instances.values()}
+    attributes = {
+        "title": scene.title,
+        "scene": scene.text,
+        "software": f"loomfmu {version('loomfmu')}",
+        "steps_per_revolution": str(scene.steps_per_revolution),
+        **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
+        **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
+    }
+    parameters = {
+        name: {
+            port.name: instance.values.get(port.name, port.start or 0)
+            for port in instance.fmu.ports.values()
+            if port.causality == "parameter"
+        }
+        for name, instance in scene.instances.items()
+    }
+    try:
+        return TraceWriter(path, attributes, channels, parameters)
+    except OSError as error:
+        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _recorder(
+    scene: Scene, master: Master, writer: TraceWriter
+) -> Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]], None]:
+    """What takes the master's blocks to the trace."""
+    _kind, angle = master.slots["shaft", "angle"]
+
+    def write(times: NDArray[np.float64], reals: NDArray[np.float64], integers: NDArray[np.int32]) -> None:
+        writer.append(times, reals[:, angle], reals, integers)
+
+    return write
+
+
+@contextmanager
+def _bar(scene: Scene, wanted: bool) -> Iterator[Callable[[int], None]]:
+    """A progress bar, where one is wanted, the run is long and somebody is looking."""
+    if not wanted or scene.steps < LONG_RUN or not sys.stderr.isatty():
+        yield lambda _step: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(scene.name, total=scene.steps)
+        yield lambda step: bar.update(task, completed=step)

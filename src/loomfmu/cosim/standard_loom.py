@@ -1,0 +1,95 @@
+"""The loom that a scene need not spell out: its instances, their components and their wiring."""
+
+import re
+from typing import Any
+
+from ..errors import LoomfmuError, suggestion
+
+COMPONENT_OF = {
+    "shaft": "MainShaft",
+    "weft": "WeftInsertion",
+    "belt": "BeltMonitor",
+    "dobby": "DobbyDrive",
+    "heald": "HealdFrame",
+    "damper": "HealdDamper",
+}
+
+_SHAFT = {
+    "shaft_angle": "shaft.angle",
+    "shaft_velocity": "shaft.velocity",
+    "shaft_acceleration": "shaft.acceleration",
+}
+
+# component -> input -> output it is wired to if that instance is there; # is the instance's own number
+WIRES = {
+    "WeftInsertion": _SHAFT,
+    "DobbyDrive": _SHAFT,
+    "BeltMonitor": _SHAFT
+    | {"travel": "weft.travel", "velocity": "weft.velocity", "acceleration": "weft.acceleration"},
+    "HealdFrame": {
+        "rotor_angle": "dobby.rotor_angle",
+        "rotor_velocity": "dobby.rotor_velocity",
+        "rotor_acceleration": "dobby.rotor_acceleration",
+    },
+    "HealdDamper": {
+        "lift": "heald_#.lift",
+        "velocity": "heald_#.velocity",
+        "acceleration": "heald_#.acceleration",
+    },
+}
+
+LOOM_KEYS = ("machine", "head", "weave", "dampers")
+PICKS_IN_A_WORD = 16
+MOST_PICKS = 128
+
+
+def stem(instance: str) -> str:
+    """An instance's name without its number: `heald_3` is a `heald`."""
+    return re.sub(r"_\d+$", "", instance)
+
+
+def loom(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Instances of a standard loom, each with the keys that a scene would give it.
+
+    `machine` and `head` name published ones, `weave` is one string of pegs for each frame
+    (`"10/01"` or a list), `dampers` hangs each frame's carrier on springs.
+    """
+    for key in table:
+        if key not in LOOM_KEYS:
+            raise LoomfmuError(f"loom.{key} is unknown{suggestion(key, LOOM_KEYS)}")
+    weave = table.get("weave", [])
+    frames = weave.split("/") if isinstance(weave, str) else list(weave)
+    machine = {key: table[key] for key in ("machine",) if key in table}
+    head = {key: table[key] for key in ("head",) if key in table}
+    instances: dict[str, dict[str, Any]] = {"shaft": {}, "weft": machine | head, "belt": machine | head}
+    if frames:
+        instances["dobby"] = {}
+    for number, pegs in enumerate(frames, start=1):
+        instances[f"heald_{number}"] = {"pattern": pegs}
+    if table.get("dampers", False):
+        for number, _pegs in enumerate(frames, start=1):
+            instances[f"damper_{number}"] = {}
+    return instances
+
+
+def pattern(pegs: Any, where: str) -> dict[str, int]:
+    """Parameters of a heald frame for a string of pegs, the first pick first: 1 raised, 0 lowered.
+
+    >>> pattern("10", "heald_1.pattern")["pattern_1"]
+    1
+    """
+    if not isinstance(pegs, str) or not re.fullmatch("[01]+", pegs):
+        raise LoomfmuError(f'{where} = {pegs!r} is no string of pegs such as "1010"')
+    if len(pegs) > MOST_PICKS:
+        raise LoomfmuError(f"{where} has {len(pegs)} picks; the dobby holds {MOST_PICKS}")
+    values = {"pattern_length": len(pegs)}
+    for word in range(MOST_PICKS // PICKS_IN_A_WORD):
+        part = pegs[word * PICKS_IN_A_WORD : (word + 1) * PICKS_IN_A_WORD]
+        values[f"pattern_{word + 1}"] = int(part[::-1] or "0", 2)
+    return values
+
+
+def wires(instance: str, component: str) -> dict[str, str]:
+    """Where the inputs of an instance are wired to in a standard loom."""
+    number = instance.removeprefix(stem(instance))
+    return {name: source.replace("_#", number) for name, source in WIRES.get(component, {}).items()}

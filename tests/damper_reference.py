@@ -1,0 +1,192 @@
+"""The heald damper integrated by scipy, to judge the component by; `convergence` gives the table of errors.
+
+Equations and contact rules stand here a second time, as an initial value problem with events. Nothing of
+the component or of `loomfmu.physics.damper` is used but the damping ratio of a stop.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import copysign, log2, pi, sqrt
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from loomfmu.components import HealdDamper
+from loomfmu.physics.damper import stop_damping_ratio
+from loomfmu.physics.heald import lift_fraction
+from loomfmu.physics.rotor import SLOPED_SINE, rotor_law
+
+STROKE = 0.098  # m, the frame's default
+REDUCTION = 0.5
+STEPS = (45, 90, 180, 360, 720, 1440, 2880, 5760)  # in a revolution
+
+FREE, PRESSING, LET_GO = "free", "pressing", "let go"
+
+
+def frame(time: float, speed: float, law: int = SLOPED_SINE) -> tuple[float, float, float]:
+    """Lift, velocity and acceleration of a frame in plain weave; its rotor is slowest at half a turn."""
+    x = speed * time - pi
+    turns = x // (2.0 * pi)
+    angle, first, second = rotor_law(law, x - 2.0 * pi * turns, REDUCTION)
+    share, rate, second_rate = lift_fraction(angle + 2.0 * pi * turns, first * speed, second * speed**2)
+    return STROKE * share, STROKE * rate, STROKE * second_rate
+
+
+def knots(speed: float, turns: int) -> list[float]:
+    """Times at which the third derivative of the rotor law jumps: pi/8 to either side of the slow point."""
+    return [(2.0 * pi * turn + pi + side * pi / 8.0) / speed for turn in range(turns) for side in (-1, 1)]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Displacement, rate and transmitted force at given times, and the contacts with a stop on the way."""
+
+    displacement: np.ndarray
+    rate: np.ndarray
+    force: np.ndarray
+    contacts: int
+
+    @property
+    def peak(self) -> float:
+        """Largest displacement."""
+        return float(np.max(np.abs(self.displacement)))
+
+
+class Carrier:
+    """The carrier as an initial value problem, one contact after the other."""
+
+    def __init__(self, damper: HealdDamper) -> None:
+        self.mass = damper.carrier_mass
+        self.spring = 4.0 * damper.spring_stiffness
+        self.damping = 2.0 * damper.damping_ratio * sqrt(self.spring * self.mass)
+        self.travel = damper.free_travel
+        self.stop_spring = damper.stop_stiffness
+        ratio = stop_damping_ratio(damper.stop_restitution)
+        self.stop_damping = 2.0 * ratio * sqrt(self.stop_spring * self.mass)
+        self.start = (damper.start_displacement, damper.start_rate)
+
+    def press(self, side: float, z: float, v: float) -> float:
+        """Force of a stop, were it to act."""
+        return self.stop_spring * (side * z - self.travel) + self.stop_damping * side * v
+
+    def force(self, contact: str, side: float, z: Any, v: Any) -> Any:
+        """Force of the carrier on the frame."""
+        free = self.spring * z + self.damping * v
+        return free + side * self.press(side, z, v) if contact == PRESSING else free
+
+    def events(self, contact: str, side: float) -> list[Callable[..., float]]:
+        """What ends a contact, each with the sign that its zero is passed in."""
+
+        def passed(value: Callable[[float, float], float], direction: int) -> Callable[..., float]:
+            def event(_time: float, state: np.ndarray) -> float:
+                return value(*state)
+
+            event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
+            return event
+
+        if contact == FREE:
+            return [passed(lambda z, v: z - self.travel, 1), passed(lambda z, v: -z - self.travel, 1)]
+        falls = passed(lambda z, v: self.press(side, z, v), -1)
+        left = passed(lambda z, v: side * z - self.travel, -1)
+        rises = passed(lambda z, v: self.press(side, z, v), 1)
+        return [falls] if contact == PRESSING else [left, rises]
+
+    def after(self, contact: str, side: float, which: int, z: float) -> tuple[str, float]:
+        """Contact that follows an event."""
+        if contact == FREE:
+            return PRESSING, copysign(1.0, z)
+        if contact == PRESSING and side * z > self.travel:
+            return LET_GO, side
+        if contact == PRESSING:
+            return FREE, 0.0
+        return (FREE, 0.0) if which == 0 else (PRESSING, side)
+
+    def integrate(self, speed: float, turns: int, times: np.ndarray, law: int = SLOPED_SINE) -> Trace:
+        """Trace at sorted times from 0 to the end of the turns."""
+        end = 2.0 * pi * turns / speed
+        state, contact, side, contacts = np.array(self.start), FREE, 0.0, 0
+        rows = np.zeros((len(times), 3))
+        begin = 0.0
+        for stop in [*knots(speed, turns), end]:
+            while begin < stop:
+
+                def motion(
+                    time: float, state: np.ndarray, contact: str = contact, side: float = side
+                ) -> tuple[float, float]:
+                    z, v = state
+                    return v, -self.force(contact, side, z, v) / self.mass - frame(time, speed, law)[2]
+
+                # a step of 0.2 ms keeps the interpolation between scipy's steps as exact as the steps
+                run = solve_ivp(
+                    motion, (begin, stop), state, method="DOP853", rtol=1e-12, atol=1e-14, max_step=2e-4,
+                    dense_output=True, events=self.events(contact, side),
+                )  # fmt: skip
+                until = run.t[-1]
+                inside = (times >= begin) & (times <= until)
+                if inside.any():
+                    z, v = run.sol(times[inside])
+                    rows[inside] = np.column_stack([z, v, self.force(contact, side, z, v)])
+                state, begin = run.y[:, -1], until
+                if run.status == 1:
+                    which = next(index for index, found in enumerate(run.t_events) if len(found))
+                    contacts += contact == FREE
+                    contact, side = self.after(contact, side, which, state[0])
+        return Trace(*rows.T, contacts)
+
+
+def simulated(
+    damper: HealdDamper, speed: float, turns: int, steps: int, law: int = SLOPED_SINE
+) -> tuple[Trace, HealdDamper]:
+    """The component's trace, fed with the exact motion of the frame at the end of each step."""
+    damper.inputs_at_step_end = True
+    damper.lift, damper.velocity, damper.acceleration = frame(0.0, speed, law)
+    assert damper.initialize(0.0) == 0
+    step = 2.0 * pi / speed / steps
+    rows = [(damper.displacement, damper.rate, damper.transmitted_force)]
+    for n in range(turns * steps):
+        damper.lift, damper.velocity, damper.acceleration = frame((n + 1) * step, speed, law)
+        assert damper.step(n * step, step) == 0
+        rows.append((damper.displacement, damper.rate, damper.transmitted_force))
+    return Trace(*np.array(rows).T, damper.stop_contacts), damper
+
+
+@dataclass(frozen=True)
+class Row:
+    """Errors for one number of steps in a revolution, in shares of the peak."""
+
+    steps: int
+    displacement: float
+    rate: float
+    order: float
+
+    def __str__(self) -> str:
+        order = "" if np.isnan(self.order) else f"{self.order:6.2f}"
+        return f"{self.steps:6d}  {self.displacement:12.3e}  {self.rate:12.3e}  {order}"
+
+
+def convergence(
+    speed: float, turns: int = 1, steps: tuple[int, ...] = STEPS, law: int = SLOPED_SINE, **parameters: float
+) -> list[Row]:
+    """Errors against the integration for each number of steps, with the order seen from one to the next.
+
+    The order is that of the displacement's error, by the number of steps.
+    """
+    finest = max(steps)
+    times = np.arange(turns * finest + 1) * (2.0 * pi / speed / finest)
+    times[-1] = 2.0 * pi * turns / speed
+    exact = Carrier(HealdDamper(**parameters)).integrate(speed, turns, times, law)
+    rows: list[Row] = []
+    for count in steps:
+        trace, _ = simulated(HealdDamper(**parameters), speed, turns, count, law)
+        every = slice(None, None, finest // count)
+        z = float(np.max(np.abs(trace.displacement - exact.displacement[every]))) / exact.peak
+        v = float(np.max(np.abs(trace.rate - exact.rate[every]))) / float(np.max(np.abs(exact.rate)))
+        order = log2(rows[-1].displacement / z) / log2(count / rows[-1].steps) if rows else float("nan")
+        rows.append(Row(count, z, v, order))
+    return rows
+
+
+def table(rows: list[Row]) -> str:
+    """The rows as text."""
+    return "\n".join([" steps  displacement          rate   order", *map(str, rows)])
