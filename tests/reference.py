@@ -173,3 +173,51 @@ def machine(name: str) -> Machine:
 
 
 ALL_MACHINES = tuple(MACHINES)
+
+
+class Rotor:
+    """A rotor law, integrated from its acceleration alone.
+
+    Korolev, equations (3.1) to (3.24), each law's acceleration in its corrected form: as the gain times
+    a shape over half a turn. The velocity starts at `1 - reduction`; the gain follows from closing,
+    `S(pi) = pi`, not from the source's formula.
+    """
+
+    def __init__(self, law: str, reduction: float) -> None:
+        self.reduction = MP.mpf(reduction)
+        self.end = MP.pi / 4 if law == "harmonic_ends" else MP.pi / 8
+        self.middle: Any = {
+            "uniform": lambda x: 0 * x,
+            "harmonic_ends": lambda x: 0 * x,
+            "sloped_line": lambda x: -8 * (x - MP.pi) / (7 * MP.pi),
+            "sloped_sine": lambda x: -(8 * (x - MP.pi) / 7 + MP.sin(8 * (x - MP.pi / 8) / 7)) / MP.pi,
+        }[law]
+        self.gain = MP.mpf(0)
+        if law != "uniform":
+            self.gain = MP.mpf(1)
+            self.gain = self.reduction * MP.pi / self.moment(MP.pi)
+        else:
+            self.reduction = MP.mpf(0)
+
+    def acceleration(self, x: Any) -> Any:
+        return self.gain * (MP.sin(4 * x) if x < self.end else self.middle(x))
+
+    def pieces(self, x: Any) -> list[Any]:
+        return [0, self.end, x] if x > self.end else [0, x]
+
+    def moment(self, x: Any) -> Any:
+        """What the acceleration adds to the angle by x."""
+        return MP.quad(lambda t: (x - t) * self.acceleration(t), self.pieces(x))
+
+    def velocity(self, x: Any) -> Any:
+        return 1 - self.reduction + MP.quad(self.acceleration, self.pieces(x))
+
+    def angle(self, x: Any) -> Any:
+        return (1 - self.reduction) * x + self.moment(x)
+
+    def dwell(self, tolerance: float) -> Any:
+        """Angle during which a frame stays within that share of its stroke: twice where S = 4 asin(..)."""
+        target = 4 * MP.asin(MP.sqrt(MP.mpf(tolerance)))
+        bracket = (MP.mpf(0), MP.pi + MP.mpf("1e-9"))
+        x = MP.findroot(lambda x: self.angle(x) - target, bracket, solver="ridder", tol=1e-60)
+        return 2 * x
