@@ -7,6 +7,11 @@ import matplotlib.pyplot as plt
 from matplotlib.patches import FancyBboxPatch
 
 from loomfmu.components import BeltMonitor, DobbyDrive, HealdDamper, HealdFrame, MainShaft, WeftInsertion
+from loomfmu.components.belt_wrap import BeltWrap
+from loomfmu.components.detaching_roller import DetachingRoller
+from loomfmu.components.pattern_lock import PatternLock
+from loomfmu.components.reed_beat_up import ReedBeatUp
+from loomfmu.components.warp_tension import WarpTension
 from loomfmu.variables import Component
 
 HERE = Path(__file__).parent
@@ -56,8 +61,15 @@ def draw(
     plt.close(figure)
 
 
+def wrapped_load(diameter: float, clearance: float) -> float:
+    """Load of a block on the belt around a wheel."""
+    belt = BeltWrap(wheel_diameter=diameter, block_clearance=clearance)
+    assert belt.initialize(0.0) == 0
+    return belt.restraint_load
+
+
 def main() -> None:
-    """Draw all six."""
+    """Draw all of them."""
     time, velocity = trace([MainShaft(ramp_duration=0.2, ripple_amplitude=0.06)], 2, "velocity")
     draw("main_shaft", (time, velocity, BLUE), levels=(0.0,))
 
@@ -83,6 +95,29 @@ def main() -> None:
     time, displacement = trace([DobbyDrive(speed=20 * pi), frame, carrier], 2, "displacement")
     stops = (-carrier.free_travel, carrier.free_travel)
     draw("heald_damper", (time, displacement, BLUE), levels=stops, level_colour=RED)
+
+    time, acceleration = trace([ReedBeatUp(beat_up_angle=pi)], 1, "acceleration")
+    draw("reed_beat_up", (time, acceleration, BLUE), levels=(0.0,))
+
+    clearances = [1e-5 * step for step in range(5, 106)]
+    small, large = (
+        [wrapped_load(diameter, clearance) for clearance in clearances] for diameter in (0.250, 0.397)
+    )
+    draw("belt_wrap", (clearances, small, PALE), (clearances, large, BLUE), levels=(0.0,))
+
+    time, torque, drafting = trace([DetachingRoller(speed=10 * pi)], 1, "unit_torque", "drafting_torque")
+    window = [(at, drafts) for at, drafts in zip(time, drafting, strict=True) if drafts > 0.0]
+    draw(
+        "detaching_roller", (*map(list, zip(*window, strict=True)), RED), (time, torque, BLUE), levels=(0.0,)
+    )
+
+    warp = WarpTension(inputs_at_step_end=True)
+    time, tension = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True), warp], 2, "tension")
+    draw("warp_tension", (time, tension, BLUE), levels=(0.0, warp.pretension))
+
+    time, turn, velocity = trace([PatternLock()], 2, "turn", "turn_velocity")
+    largest = max(velocity) / max(turn)
+    draw("pattern_lock", (time, [rate / largest for rate in velocity], PALE), (time, turn, BLUE))
 
 
 if __name__ == "__main__":

@@ -53,6 +53,7 @@ UNITS = {
     "rad/s2": Unit(rad=1, s=-2),
     "m/s": Unit(m=1, s=-1),
     "m/s2": Unit(m=1, s=-2),
+    "m/s3": Unit(m=1, s=-3),
     "N": Unit(kg=1, m=1, s=-2),
     "kN": Unit(kg=1, m=1, s=-2, factor=1e3),
     "cN": Unit(kg=1, m=1, s=-2, factor=1e-2),
@@ -62,6 +63,7 @@ UNITS = {
     "N.s/m": Unit(kg=1, s=-1),
     "N.m": Unit(kg=1, m=2, s=-2),
     "N.m2": Unit(kg=1, m=3, s=-2),
+    "W": Unit(kg=1, m=2, s=-3),
     "kg.m2": Unit(kg=1, m=2),
 }
 

@@ -1,0 +1,48 @@
+"""BeltWrap: what holds the rapier belt on its wheel."""
+
+from dataclasses import dataclass
+
+from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
+from ..variables import Component, input_, output, parameter
+
+
+@dataclass(slots=True)
+class BeltWrap(Component):
+    """Belt wrapped on the rapier wheel: load of the blocks that press it there."""
+
+    bending_stiffness: float = parameter(
+        "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6
+    )
+    wheel_diameter: float = parameter(
+        "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
+    )
+    wrap_angle: float = parameter(
+        "rad", 3.141592653589793, "Angle of the belt on the wheel, for the record: without influence",
+        display="deg", minimum=0.0, maximum=6.283185307179586,
+    )  # fmt: skip
+    block_clearance: float = input_(
+        "m", 0.3e-3, "Clearance between block and belt, growing with wear", display="mm",
+        minimum=1e-6, maximum=0.01, nominal=1e-3,
+    )  # fmt: skip
+    lever_arm: float = output(
+        "m", "Lever arm of the restraint load", display="mm", nominal=0.01, depends=("block_clearance",)
+    )
+    restraint_load: float = output(
+        "N", "Load of each block on the belt", nominal=10.0, depends=("block_clearance",)
+    )
+    bending_moment: float = output(
+        "N.m", "Moment that bends the belt to the wheel", variability="discrete", depends=()
+    )
+
+    def initialize(self, time: float) -> int:
+        """Bend the belt to the wheel."""
+        self.bending_moment = bending_moment(self.bending_stiffness, self.wheel_diameter)
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Follow the clearance: a function of it alone."""
+        self.lever_arm = lever_arm(self.wheel_diameter, self.block_clearance)
+        self.restraint_load = restraint_load(
+            self.bending_stiffness, self.wheel_diameter, self.block_clearance
+        )
+        return 0

@@ -1,0 +1,115 @@
+"""DetachingRoller: the torques that drive the detaching rollers of a cotton comber."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..physics.detaching_roller import (
+    DRAFT_END,
+    DRAFT_START,
+    assumed_fibre_share,
+    assumed_motion,
+    division_of,
+    drafting_force,
+    top_roller_torque,
+)
+from ..variables import Problem, input_, output, parameter
+from .shaft_driven import ShaftDriven
+
+_OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
+
+
+@dataclass(slots=True)
+class DetachingRoller(ShaftDriven):
+    """Detaching rollers of a comber: driving torques over a nip, one revolution of the comb cylinder.
+
+    The shaft is the comb cylinder's: its revolutions are the nips. With `use_table` the rollers follow a
+    built-in motion, an assumption; without it the inputs say how they move.
+    """
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the top roller's inertia takes more than the friction of the nip can hold at roller_acceleration"
+            " = {roller_acceleration}: raise nip_load = {nip_load} or slow down; the drafting force of the"
+            " model is negative there",
+            warning=True,
+        ),
+    )
+
+    use_table: bool = parameter(
+        "1", True, "Use the built-in motion (assumed) instead of acceleration and fibre_share"
+    )
+    roller_radius: float = parameter(
+        "m", 0.0125, "Radius of a detaching roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
+    )
+    top_radius: float = parameter(
+        "m", 0.01225, "Radius of a top roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
+    )
+    roller_inertia: float = parameter(
+        "kg.m2", 135.64e-6, "Inertia of a detaching roller, one unit's share", minimum=0.0, maximum=1.0,
+        nominal=1e-4,
+    )  # fmt: skip
+    top_inertia: float = parameter(
+        "kg.m2", 33.98e-6, "Inertia of a top roller", minimum=0.0, maximum=1.0, nominal=1e-5
+    )
+    nip_load: float = parameter(
+        "N", 300.0, "Load of a top roller on its roller", minimum=0.0, maximum=1e5, nominal=100.0
+    )
+    friction: float = parameter(
+        "1", 0.33, "Static friction between fibres and roller", minimum=0.0, maximum=2.0
+    )
+    units: int = parameter("1", 8, "Units of the machine side by side", minimum=1, maximum=1000)
+    acceleration: float = input_(
+        "rad/s2", 8699.498672957831, "Acceleration of the rollers, used while use_table is false",
+        nominal=10000.0,
+    )  # fmt: skip
+    fibre_share: float = input_(
+        "1", 1.0, "Fibres in the nip over the most of them, used while use_table is false",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    division: float = output(
+        "1", "Division of the nip, 0 to 40", nominal=10.0,
+        depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
+    )  # fmt: skip
+    roller_acceleration: float = output(
+        "rad/s2", "Acceleration of the rollers in use", nominal=10000.0, depends=_OF_MOTION
+    )
+    drafted_share: float = output("1", "Share of fibres in use; 0 outside divisions 18 to 30")
+    drafting_force: float = output("N", "Force that drafts the fibres of a unit", nominal=10.0)
+    drafting_torque: float = output("N.m", "Torque of the drafting force on the back roller, M11")
+    top_roller_torque: float = output("N.m", "Torque of a top roller on its roller, M12", depends=_OF_MOTION)
+    inertia_torque: float = output("N.m", "Torque of a roller's own inertia, M13", depends=_OF_MOTION)
+    back_torque: float = output("N.m", "Driving torque of the back roller of a unit, M1")
+    front_torque: float = output(
+        "N.m", "Driving torque of the front roller of a unit, M2", depends=_OF_MOTION
+    )
+    unit_torque: float = output("N.m", "Driving torque of both rollers of a unit, M")
+    machine_torque: float = output("N.m", "Driving torque of all units, M0", nominal=10.0)
+
+    def initialize(self, time: float) -> int:
+        """Place the rollers."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Torques at the end of the step: a function of the shaft, or of the inputs, alone."""
+        theta, speed, shaft_acceleration = self.shaft(time, step_size)
+        self.division = division_of(theta)
+        drafting = self.division > DRAFT_START and self.division <= DRAFT_END
+        if self.use_table:
+            first, second = assumed_motion(self.division)
+            self.roller_acceleration = second * speed * speed + first * shaft_acceleration
+            self.drafted_share = assumed_fibre_share(self.division)
+        else:
+            self.roller_acceleration = self.acceleration
+            self.drafted_share = self.fibre_share if drafting else 0.0
+        self.top_roller_torque = top_roller_torque(
+            self.roller_acceleration, self.roller_radius, self.top_radius, self.top_inertia
+        )
+        self.inertia_torque = self.roller_inertia * self.roller_acceleration
+        resistance = self.top_roller_torque / self.roller_radius
+        self.drafting_force = drafting_force(self.drafted_share, self.friction, self.nip_load, resistance)
+        self.drafting_torque = self.drafting_force * self.roller_radius
+        self.front_torque = self.top_roller_torque + self.inertia_torque
+        self.back_torque = self.drafting_torque + self.front_torque
+        self.unit_torque = self.back_torque + self.front_torque
+        self.machine_torque = self.units * self.unit_torque
+        return 1 if self.drafted_share > 0.0 and self.drafting_force < 0.0 else 0

@@ -1,0 +1,148 @@
+"""PatternLock: the sprung pawl that changes a coupling of the dobby."""
+
+from dataclasses import dataclass
+from math import fabs, floor, pi
+
+from ..physics.pattern_lock import (
+    available_time,
+    engagement,
+    friction_power,
+    largest_bend,
+    pawl_inertia,
+    pawl_turn,
+    release_time,
+    torque_speed_limit,
+)
+from ..variables import output, parameter, state
+from .shaft_driven import ShaftDriven
+
+
+@dataclass(slots=True)
+class PatternLock(ShaftDriven):
+    """Pattern lock: the pawl of a frame that changes at every pick, its torque, its time, its friction.
+
+    In even picks the pawl turns from one disc to the other, in odd picks back, a pick lasting from one
+    start of the engagement to the next.
+    """
+
+    pawl_mass: float = parameter(
+        "kg", 0.170, "Mass of the pawl", display="g", minimum=1e-6, maximum=100.0, nominal=0.1
+    )
+    pawl_length: float = parameter(
+        "m", 0.160, "Length of the pawl", display="mm", minimum=1e-3, maximum=10.0, nominal=0.1
+    )
+    pawl_width: float = parameter(
+        "m", 0.030, "Width of the pawl", display="mm", minimum=1e-4, maximum=10.0, nominal=0.01
+    )
+    rest_share: float = parameter(
+        "1", 0.15, "Share of the pawl's width that does not enter the slot", minimum=0.0, maximum=1.0
+    )
+    engagement_start: float = parameter(
+        "rad", 2.4870941840919194, "Shaft angle at which the engagement begins", display="deg",
+        minimum=-6.283185307179586, maximum=6.283185307179586,
+    )  # fmt: skip
+    engagement_angle: float = parameter(
+        "rad", 1.3089969389957472, "Shaft angle that the engagement takes", display="deg",
+        minimum=1e-3, maximum=6.283185307179586,
+    )  # fmt: skip
+    spring_force: float = parameter(
+        "N", 20.0, "Force of the spring, and of the pawl on its disc", minimum=1e-6, maximum=1e6,
+        nominal=10.0,
+    )  # fmt: skip
+    spring_stiffness: float = parameter(
+        "N/m", 2500.0, "Stiffness of the spring", display="N/mm", minimum=1e-3, maximum=1e9, nominal=1e3
+    )
+    lever_arm: float = parameter(
+        "m", 0.050, "Lever arm of the spring", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    )
+    available_angle: float = parameter(
+        "rad", 1.5707963267948966, "Shaft angle of the rotor's dwell, within which the pawl is to be over",
+        display="deg", minimum=0.0, maximum=6.283185307179586,
+    )  # fmt: skip
+    frame_count: int = parameter("1", 20, "Frames of the dobby, with a pawl each", minimum=0, maximum=1000)
+    friction_coefficient: float = parameter(
+        "1", 0.1, "Friction of a pawl on its disc", minimum=0.0, maximum=10.0
+    )
+    friction_radius: float = parameter(
+        "m", 0.0875, "Radius at which a pawl rubs", display="mm", minimum=0.0, maximum=10.0, nominal=0.1
+    )
+    rotor_ratio: float = parameter(
+        "1", 1.4, "Largest speed of the rotor over that of the shaft", minimum=0.0, maximum=100.0
+    )
+    gear_ratio: float = parameter(
+        "1", 3.0, "Speed of the rotor over that of the disc", minimum=1e-3, maximum=1e3
+    )
+    turn: float = output("rad", "Turn of the pawl", display="deg", nominal=0.1, rate="turn_velocity")
+    turn_velocity: float = output("rad/s", "Rate of the turn", nominal=10.0, rate="turn_acceleration")
+    turn_acceleration: float = output("rad/s2", "Second rate of the turn", nominal=1000.0)
+    inertia_torque: float = output("N.m", "Torque that the pawl's inertia asks of its spring")
+    torque_margin: float = output("1", "Share of the spring's torque that the pawl's inertia leaves")
+    release_time: float = output(
+        "s", "Time in which the spring throws the pawl over", display="ms", variability="discrete",
+        nominal=0.01, depends=(),
+    )  # fmt: skip
+    available_time: float = output(
+        "s", "Time that the dwell leaves at the present speed; 1e6 s for a standing shaft", display="ms",
+        nominal=0.01, depends=("shaft_velocity", "shaft_acceleration"),
+    )  # fmt: skip
+    in_time: bool = output(
+        "1", "At the present speed the pawl is over in time and its spring strong enough", start=False,
+        variability="discrete", depends=("shaft_velocity", "shaft_acceleration"),
+    )  # fmt: skip
+    torque_speed_limit: float = output(
+        "rad/s", "Shaft speed up to which the spring is strong enough", display="rev/min",
+        variability="discrete", nominal=100.0, depends=(),
+    )  # fmt: skip
+    release_speed_limit: float = output(
+        "rad/s", "Shaft speed up to which the pawl is over in time", display="rev/min",
+        variability="discrete", nominal=100.0, depends=(),
+    )  # fmt: skip
+    speed_limit: float = output(
+        "rad/s", "The lower of the two speed limits", display="rev/min", variability="discrete",
+        nominal=100.0, depends=(),
+    )  # fmt: skip
+    friction_power: float = output(
+        "W", "Power lost by all pawls on the discs, at the rotor's highest speed", nominal=100.0,
+        depends=("shaft_velocity", "shaft_acceleration"),
+    )  # fmt: skip
+    inertia: float = state("kg.m2", "Moment of inertia of the pawl")
+    whole_turn: float = state("rad", "Turn of the pawl from one disc to the other")
+
+    def initialize(self, time: float) -> int:
+        """Find what depends on the parameters alone and place the pawl."""
+        self.inertia = pawl_inertia(self.pawl_mass, self.pawl_length, self.pawl_width)
+        self.whole_turn = pawl_turn(self.pawl_length, self.pawl_width, self.rest_share)
+        self.release_time = release_time(self.inertia, self.spring_stiffness, self.lever_arm)
+        self.torque_speed_limit = torque_speed_limit(
+            self.inertia,
+            largest_bend(self.engagement_angle, self.whole_turn),
+            self.spring_force * self.lever_arm,
+        )
+        self.release_speed_limit = self.available_angle / self.release_time
+        self.speed_limit = self.torque_speed_limit
+        if self.release_speed_limit < self.speed_limit:
+            self.speed_limit = self.release_speed_limit
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Turn the pawl: a function of the shaft alone, exact for every step."""
+        theta, speed, acceleration = self.shaft(time, step_size)
+        x = theta - self.engagement_start
+        turns = floor(x / (2.0 * pi))
+        angle, first, second = engagement(x - 2.0 * pi * turns, self.engagement_angle, self.whole_turn)
+        if turns % 2 != 0:
+            angle = self.whole_turn - angle
+            first = -first
+            second = -second
+        self.turn = angle
+        self.turn_velocity = first * speed
+        self.turn_acceleration = second * speed * speed + first * acceleration
+        self.inertia_torque = self.inertia * self.turn_acceleration
+        self.torque_margin = 1.0 - fabs(self.inertia_torque) / (self.spring_force * self.lever_arm)
+        self.available_time = available_time(self.available_angle, fabs(speed))
+        self.in_time = self.release_time <= self.available_time and fabs(speed) <= self.torque_speed_limit
+        self.friction_power = friction_power(
+            self.friction_coefficient, self.spring_force, self.friction_radius,
+            self.rotor_ratio / self.gear_ratio * fabs(speed), float(self.frame_count),
+        )  # fmt: skip
+        return 0

@@ -1,0 +1,204 @@
+"""ReedBeatUp: from the main shaft to the reed."""
+
+from dataclasses import dataclass
+from math import cos, fabs, pi, sin, sqrt
+from typing import ClassVar
+
+from ..physics.linkage import four_bar, four_bar_margin, wrapped
+from ..physics.reed import (
+    dead_centre,
+    in_line_margin,
+    reed_motion,
+    rod_margin,
+    smallest_transmission_angle,
+    transmission_angle,
+)
+from ..variables import Problem, output, parameter, state
+from .shaft_driven import ShaftDriven
+
+
+@dataclass(slots=True)
+class ReedBeatUp(ShaftDriven):
+    """Reed beat-up: a crank-rocker, a rod and a reed on a line; one beat-up in a revolution."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the crank does not turn over: crank_length = {crank_length}, coupler_length = {coupler_length},"
+            " rocker_length = {rocker_length}, crank at ({crank_x}, {crank_y}), margin {closure}; the"
+            " crank must be the shortest of the four, and with the longest shorter than the other two"
+        ),
+        Problem(
+            "the reed's rod does not reach its line over the rocker's swing: arm_length = {arm_length},"
+            " rod_length = {rod_length}, reed_height = {reed_height}, margin {reach}"
+        ),
+        Problem(
+            "the rocker's arm and the reed's rod come in line within the swing, and the reed would turn back"
+            " there: arm_length = {arm_length}, rod_length = {rod_length}, reed_height = {reed_height},"
+            " margin {clearance}"
+        ),
+        Problem("assembly = {assembly} or crank_direction = {crank_direction} is outside {{-1, 1}}"),
+    )
+
+    crank_length: float = parameter(
+        "m", 0.065168, "Length of the crank", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
+    )
+    coupler_length: float = parameter(
+        "m", 0.146334, "Length of the coupler from crank to rocker", display="mm",
+        minimum=1e-4, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    rocker_length: float = parameter(
+        "m", 0.550, "Length of the rocker up to the coupler", display="mm",
+        minimum=1e-4, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    crank_x: float = parameter(
+        "m", -0.207977, "Place of the crank's centre from the rocker's pivot, towards the fell",
+        display="mm", minimum=-10.0, maximum=10.0,
+    )  # fmt: skip
+    crank_y: float = parameter(
+        "m", 0.525749, "Place of the crank's centre from the rocker's pivot, upwards",
+        display="mm", minimum=-10.0, maximum=10.0,
+    )  # fmt: skip
+    assembly: int = parameter("1", -1, "Way of closing the four-bar: 1 or -1", minimum=-1, maximum=1)
+    crank_direction: int = parameter(
+        "1", 1, "Sense in which the crank turns: 1 from x to y, or -1", minimum=-1, maximum=1
+    )
+    arm_length: float = parameter(
+        "m", 0.67984, "Length of the rocker's arm up to the reed's rod", display="mm",
+        minimum=1e-4, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    arm_angle: float = parameter(
+        "rad", 0.0, "Angle from the rocker to its arm", display="deg", minimum=-7.0, maximum=7.0
+    )
+    rod_length: float = parameter(
+        "m", 0.48748, "Length of the rod that drives the reed", display="mm",
+        minimum=1e-4, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    reed_height: float = parameter(
+        "m", 0.66933, "Height of the reed's line above the rocker's pivot", display="mm",
+        minimum=-10.0, maximum=10.0,
+    )  # fmt: skip
+    beat_up_angle: float = parameter(
+        "rad", 0.0, "Shaft angle of the beat-up, the reed's front dead centre", display="deg",
+        minimum=-7.0, maximum=7.0,
+    )  # fmt: skip
+    reed_mass: float = parameter(
+        "kg", 1.0, "Mass that moves with the reed (none published: the torque is that of one kilogram)",
+        minimum=0.0, maximum=1e4,
+    )  # fmt: skip
+    rocker_inertia: float = parameter(
+        "kg.m2", 0.0, "Inertia of the rocker about its pivot (none published)", minimum=0.0, maximum=1e4
+    )
+    position: float = output(
+        "m", "Reed coordinate from the rocker's pivot, towards the fell", display="mm", nominal=0.1,
+        rate="velocity",
+    )  # fmt: skip
+    velocity: float = output("m/s", "Velocity of the reed", rate="acceleration")
+    acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
+    transmission_angle: float = output(
+        "rad", "Transmission angle of the crank-rocker, 90 deg at best", display="deg"
+    )
+    smallest_transmission_angle: float = output(
+        "rad", "Smallest transmission angle of the revolution", display="deg", variability="discrete",
+        depends=(),
+    )  # fmt: skip
+    pressure_angle: float = output(
+        "rad", "Pressure angle of the reed's rod: its slope against the reed's line", display="deg"
+    )
+    front_limit: float = output(
+        "m", "Reed coordinate at the beat-up", display="mm", variability="discrete", depends=()
+    )
+    back_limit: float = output(
+        "m", "Reed coordinate at the back dead centre", display="mm", variability="discrete", depends=()
+    )
+    stroke: float = output(
+        "m", "Way of the reed between its limits", display="mm", variability="discrete", depends=()
+    )
+    shaft_torque: float = output("N.m", "Torque that the moving masses ask of the shaft", nominal=10.0)
+    beat_up_crank: float = state("rad", "Crank angle at the beat-up")
+    closure: float = state("m", "By how much the crank-rocker closes over a whole turn")
+    reach: float = state("m", "By how much the rod reaches the reed's line over the swing")
+    clearance: float = state("rad", "How far the swing stays clear of arm and rod in line")
+
+    def rocker(self, crank: float, crank_first: float) -> tuple[float, float, float]:
+        """Angle of the rocker at a crank angle, with its derivatives by the shaft angle."""
+        return four_bar(
+            crank, crank_first, 0.0, self.crank_length, self.coupler_length, self.rocker_length,
+            -self.crank_x, -self.crank_y, self.assembly,
+        )  # fmt: skip
+
+    def swing_end(self, extended: bool) -> tuple[float, float]:
+        """Crank angle and angle of the rocker's arm at an end of the swing."""
+        crank = dead_centre(
+            self.crank_length, self.coupler_length, self.rocker_length, -self.crank_x, -self.crank_y,
+            self.assembly, extended,
+        )  # fmt: skip
+        angle, _first, _second = self.rocker(crank, 0.0)
+        return crank, angle + self.arm_angle
+
+    def check(self) -> int:
+        """Whether the crank turns over and the rod moves the reed to and fro, clear of all dead points."""
+        if self.assembly == 0 or self.crank_direction == 0:
+            return 4
+        frame = sqrt(self.crank_x * self.crank_x + self.crank_y * self.crank_y)
+        self.closure = four_bar_margin(
+            0.0, 2.0 * pi, self.crank_length, self.coupler_length, self.rocker_length,
+            -self.crank_x, -self.crank_y,
+        )  # fmt: skip
+        if frame - self.crank_length < self.closure:
+            self.closure = frame - self.crank_length
+        if self.closure < 1e-9:
+            return 1
+        _crank, one_end = self.swing_end(True)
+        _crank, other_end = self.swing_end(False)
+        half_swing = 0.5 * wrapped(other_end - one_end)
+        middle = one_end + half_swing
+        half_swing = fabs(half_swing)
+        self.reach = rod_margin(middle, half_swing, self.arm_length, self.rod_length, self.reed_height)
+        if self.reach < 1e-9:
+            return 2
+        self.clearance = in_line_margin(
+            middle, half_swing, self.arm_length, self.rod_length, self.reed_height
+        )
+        return 3 if self.clearance < 1e-9 else 0
+
+    def initialize(self, time: float) -> int:
+        """Check the linkages, find the limits of the reed, place it."""
+        problem = self.check()
+        if problem != 0:
+            return problem
+        frame = sqrt(self.crank_x * self.crank_x + self.crank_y * self.crank_y)
+        self.smallest_transmission_angle = smallest_transmission_angle(
+            self.crank_length, self.coupler_length, self.rocker_length, frame
+        )
+        self.beat_up_crank, arm = self.swing_end(True)
+        self.front_limit, _first, _second, _pressure = self.reed(arm, 0.0, 0.0)
+        other_crank, arm = self.swing_end(False)
+        self.back_limit, _first, _second, _pressure = self.reed(arm, 0.0, 0.0)
+        if self.front_limit < self.back_limit:
+            self.front_limit, self.back_limit = self.back_limit, self.front_limit
+            self.beat_up_crank = other_crank
+        self.stroke = self.front_limit - self.back_limit
+        return self.step(time, 0.0)
+
+    def reed(self, arm: float, first: float, second: float) -> tuple[float, float, float, float]:
+        """Reed coordinate with its derivatives by the shaft angle, and the pressure angle."""
+        return reed_motion(arm, first, second, self.arm_length, self.rod_length, self.reed_height)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Move the reed: a function of the shaft alone, exact for every step."""
+        theta, speed, acceleration = self.shaft(time, step_size)
+        crank = self.beat_up_crank + self.crank_direction * (theta - self.beat_up_angle)
+        angle, first, second = self.rocker(crank, 1.0 * self.crank_direction)
+        self.position, by_theta, bend, self.pressure_angle = self.reed(angle + self.arm_angle, first, second)
+        self.velocity = by_theta * speed
+        self.acceleration = bend * speed * speed + by_theta * acceleration
+        x = self.crank_x + self.crank_length * cos(crank)
+        y = self.crank_y + self.crank_length * sin(crank)
+        self.transmission_angle = transmission_angle(
+            sqrt(x * x + y * y), self.coupler_length, self.rocker_length
+        )
+        rocker_acceleration = second * speed * speed + first * acceleration
+        self.shaft_torque = (
+            self.reed_mass * self.acceleration * by_theta + self.rocker_inertia * rocker_acceleration * first
+        )
+        return 0

@@ -1,0 +1,218 @@
+"""WarpTension: the tension of the warp threads that a heald frame lifts."""
+
+from dataclasses import dataclass
+
+from ..physics.motion import joined
+from ..physics.shaft import carried
+from ..physics.warp import (
+    eye_pull,
+    thread_drive,
+    thread_extension,
+    thread_force,
+    thread_growth,
+    thread_locate,
+    turns_once,
+)
+from ..variables import Component, input_, output, parameter, state
+
+
+@dataclass(slots=True)
+class WarpTension(Component):
+    """Warp tension: viscoelastic threads, stretched by the shed, and their load on the heald carrier.
+
+    Exact between two samples of the inputs, whatever the step: the extension runs on the quintic that
+    joins them, extremes and mean are those of the continuous curve. A thread carries no compression: the
+    law goes on below zero, the tension stays at zero and `slack` tells so. Unconnected, the thread of a
+    raised frame relaxes.
+    """
+
+    thread_count: int = parameter("1", 1260, "Threads in the frame", minimum=1, maximum=1000000)
+    stroke: float = parameter(
+        "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
+    )
+    shed_offset: float = parameter(
+        "m", 0.0018, "Height of the eyes above the line of the warp when the frame is half-way (assumed)",
+        display="mm", minimum=-1.0, maximum=1.0, nominal=0.001,
+    )  # fmt: skip
+    front_length: float = parameter(
+        "m", 0.25, "Way from the cloth's fell to the healds (assumed)", display="mm",
+        minimum=1e-3, maximum=100.0,
+    )  # fmt: skip
+    back_length: float = parameter(
+        "m", 0.5, "Way from the healds to the back rest (assumed)", display="mm", minimum=1e-3, maximum=100.0
+    )
+    pretension: float = parameter(
+        "N", 0.15, "Tension of a thread at rest in the closed shed", display="cN", minimum=0.0, maximum=1e3
+    )
+    thread_stiffness: float = parameter(
+        "N/m", 67.0, "Stiffness b of a thread (assumed)", minimum=0.0, maximum=1e9, nominal=100.0
+    )
+    creep_rate: float = parameter(
+        "1/s", 5.0, "Creep rate n of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0
+    )
+    relaxation_rate: float = parameter(
+        "1/s", 10.0, "Relaxation rate r of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0
+    )
+    inputs_at_step_end: bool = parameter(
+        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+    )
+    lift: float = input_("m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity")
+    velocity: float = input_("m/s", 0.0, "Velocity of the frame", rate="acceleration")
+    acceleration: float = input_("m/s2", 0.0, "Acceleration of the frame", nominal=10.0)
+    extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
+    tension: float = output("N", "Tension of a thread", display="cN")
+    highest_tension: float = output("N", "Highest tension so far, on the continuous curve", display="cN")
+    lowest_tension: float = output("N", "Lowest tension so far, on the continuous curve", display="cN")
+    mean_tension: float = output("N", "Mean of the tension over the time so far", display="cN")
+    frame_load: float = output("N", "Load of the warp on the heald carrier, upwards", nominal=100.0)
+    slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
+    elapsed: float = state("s", "Time that the extremes and the mean are taken over")
+    pending: float = state("s", "Time from the last sample of the inputs to the next")
+    sampled_extension: float = state("m", "Extension at the last sample")
+    sampled_rate: float = state("m/s", "Rate of the extension at the last sample")
+    sampled_second: float = state("m/s2", "Second rate of the extension at the last sample")
+    sampled_force: float = state("N", "Force of the thread above its pretension at the last sample")
+
+    def initialize(self, time: float) -> int:
+        """Stretch the threads at once to where their eyes are, and forget all extremes."""
+        extension, rate, second = self.sample(0.0)
+        self.sampled_force = self.thread_stiffness * extension
+        self.remember(extension, rate, second)
+        self.elapsed = 0.0
+        self.pending = 0.0
+        self.mean_tension = self.pretension + self.sampled_force
+        self.highest_tension = self.mean_tension
+        self.lowest_tension = self.mean_tension
+        self.show(0.0)
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Follow the threads from the last sample of the inputs to this one and show their state."""
+        extension, rate, second = self.sample(0.0)
+        if self.inputs_at_step_end:
+            self.follow(step_size, extension, rate, second)
+        else:
+            self.follow(self.pending, extension, rate, second)
+        self.remember(extension, rate, second)
+        self.pending = step_size
+        self.show(0.0 if self.inputs_at_step_end else step_size)
+        return 0
+
+    def sample(self, lead: float) -> tuple[float, float, float]:
+        """Extension of a thread and its rates, the inputs carried over `lead`."""
+        lift = carried(self.lift, self.velocity, self.acceleration, lead)
+        return thread_extension(
+            lift - 0.5 * self.stroke + self.shed_offset, self.velocity + self.acceleration * lead,
+            self.acceleration, self.front_length, self.back_length,
+        )  # fmt: skip
+
+    def remember(self, extension: float, rate: float, second: float) -> None:
+        """Make the present sample the last one."""
+        self.sampled_extension = extension
+        self.sampled_rate = rate
+        self.sampled_second = second
+
+    def drive(
+        self, duration: float, extension: float, rate: float, second: float
+    ) -> tuple[float, float, float, float, float, float]:
+        """What drives a thread from the last sample to this one."""
+        a0, a1, a2, a3 = joined(
+            self.sampled_extension, duration * self.sampled_rate, duration * duration * self.sampled_second,
+            extension, duration * rate, duration * duration * second,
+        )  # fmt: skip
+        return thread_drive(
+            self.thread_stiffness, self.creep_rate * duration, self.sampled_extension, extension,
+            a0, a1, a2, a3,
+        )  # fmt: skip
+
+    def follow(self, duration: float, extension: float, rate: float, second: float) -> None:
+        """Bring force, extremes and mean from the last sample to this one.
+
+        Where the force may turn more than once on the way, each eighth of it is looked at.
+        """
+        p0, p1, p2, p3, p4, p5 = self.drive(duration, extension, rate, second)
+        decay = self.relaxation_rate * duration
+        panels = 1 if turns_once(p1, p2, p3, p4, p5) else 8
+        low = 0.0
+        force = self.sampled_force
+        area = 0.0
+        total = 0.0
+        for panel in range(panels):
+            high = (panel + 1) / panels
+            end, end_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, high)
+            total = total + self.panel_area(
+                decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area
+            )
+            low = high
+            force = end
+            area = end_area
+        self.sampled_force = force
+        if duration > 0.0:
+            self.elapsed = self.elapsed + duration
+            self.mean_tension = self.mean_tension + (total - self.mean_tension) * duration / self.elapsed
+
+    def panel_area(
+        self, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
+        low: float, force: float, area: float, high: float, end: float, end_area: float,
+    ) -> float:  # fmt: skip
+        """Integral of the tension over a piece of the way on which the force turns at most once."""
+        growth = thread_growth(force, decay, p0, p1, p2, p3, p4, p5, low)
+        if growth * thread_growth(end, decay, p0, p1, p2, p3, p4, p5, high) < 0.0:
+            # it gets no farther than it would at the rate of the start
+            tension = self.pretension + force
+            bound = tension + growth * (high - low)
+            if bound > self.highest_tension or bound < self.lowest_tension or bound * tension < 0.0:
+                turn = thread_locate(True, 0.0, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high)
+                there, there_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, turn)
+                before = self.piece_area(
+                    decay, p0, p1, p2, p3, p4, p5, low, force, area, turn, there, there_area
+                )
+                return before + self.piece_area(
+                    decay, p0, p1, p2, p3, p4, p5, turn, there, there_area, high, end, end_area
+                )
+        return self.piece_area(decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area)
+
+    def piece_area(
+        self, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
+        low: float, force: float, area: float, high: float, end: float, end_area: float,
+    ) -> float:  # fmt: skip
+        """Integral of the tension over a piece on which it passes zero at most once; notes its end."""
+        tension = self.pretension + force
+        end_tension = self.pretension + end
+        self.note(end_tension)
+        if tension <= 0.0 and end_tension <= 0.0:
+            return 0.0
+        if tension < 0.0 or end_tension < 0.0:
+            passed = thread_locate(
+                False, -self.pretension, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high
+            )
+            _force, passed_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, passed)
+            if tension < 0.0:
+                return self.pretension * (high - passed) + end_area - passed_area
+            return self.pretension * (passed - low) + passed_area - area
+        return self.pretension * (high - low) + end_area - area
+
+    def note(self, tension: float) -> None:
+        """Keep the highest and the lowest tension."""
+        carried_tension = tension if tension > 0.0 else 0.0
+        if carried_tension > self.highest_tension:
+            self.highest_tension = carried_tension
+        if carried_tension < self.lowest_tension:
+            self.lowest_tension = carried_tension
+
+    def show(self, lead: float) -> None:
+        """Outputs at the end of the step, the inputs carried over `lead` if they hold at its start."""
+        force = self.sampled_force
+        self.extension = self.sampled_extension
+        if lead > 0.0:
+            extension, rate, second = self.sample(lead)
+            p0, p1, p2, p3, p4, p5 = self.drive(lead, extension, rate, second)
+            force, _area = thread_force(force, self.relaxation_rate * lead, p0, p1, p2, p3, p4, p5, 1.0)
+            self.extension = extension
+        tension = self.pretension + force
+        self.slack = tension < 0.0
+        self.tension = 0.0 if self.slack else tension
+        height = carried(self.lift, self.velocity, self.acceleration, lead)
+        height = height - 0.5 * self.stroke + self.shed_offset
+        pull = eye_pull(height, self.front_length, self.back_length)
+        self.frame_load = -self.thread_count * self.tension * pull

@@ -1,0 +1,165 @@
+"""Pattern lock of a rotary dobby: the sprung pawls that change the couplings.
+
+Source: Korolev, thesis on rotary dobbies (Moscow), section 3.6.1, equations (3.30) to (3.48), in the
+corrected form.
+"""
+
+from math import cos, pi, sin, sqrt
+
+# A time longer than any that matters: what a standing shaft leaves to the pawl.
+UNLIMITED_TIME = 1e6
+
+
+def pawl_inertia(mass: float, length: float, width: float) -> float:
+    """Moment of inertia of a pawl about its middle, `I = M (b^2 + c^2) / 12`, equation (3.31).
+
+    Args:
+        mass: M [kg]
+        length, width: b and c [m]
+
+    Returns:
+        moment of inertia [kg m2]; erratum: 375e-6 is also printed as 3750e-6
+
+    >>> round(1e6 * pawl_inertia(0.170, 0.16, 0.03), 1)
+    375.4
+    """
+    return mass * (length * length + width * width) / 12.0
+
+
+def pawl_turn(length: float, width: float, rest_share: float) -> float:
+    """Whole turn of a pawl from one disc to the other, `(c + c0) / b`, equation (3.30).
+
+    Args:
+        length, width: b and c [m]
+        rest_share: share c0 / c of its width that does not enter the slot [1]
+
+    Returns:
+        turn [rad]
+
+    >>> round(pawl_turn(0.16, 0.03, 0.15), 3)
+    0.216
+    """
+    return (1.0 + rest_share) * width / length
+
+
+def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]:
+    """Turn of the pawl by the shaft angle: `phi0 (x/T - sin(2 pi x/T) / (2 pi))`, equations (3.33), (3.34).
+
+    At rest before and after; velocity and acceleration are continuous.
+
+    Args:
+        x: shaft angle since the engagement began [rad]
+        span: shaft angle T that it takes [rad]
+        turn: whole turn phi0 [rad]
+
+    Returns:
+        turn [rad] and its first and second derivative by the shaft angle [1, 1/rad]; erratum: (3.33)
+        prints 1/T before the sine
+
+    >>> engagement(0.0, 1.3, 0.2), engagement(1.3, 1.3, 0.2)[0]
+    ((0.0, 0.0, 0.0), 0.2)
+    """
+    if x <= 0.0:
+        return 0.0, 0.0, 0.0
+    if x >= span:
+        return turn, 0.0, 0.0
+    share = x / span
+    wave = 2.0 * pi * share
+    return (
+        turn * (share - sin(wave) / (2.0 * pi)),
+        turn / span * (1.0 - cos(wave)),
+        2.0 * pi * turn / (span * span) * sin(wave),
+    )
+
+
+def largest_bend(span: float, turn: float) -> float:
+    """Largest second derivative of `engagement` by the shaft angle, `2 pi phi0 / T^2`, equation (3.34).
+
+    Args:
+        span, turn: T and phi0 [rad]
+
+    Returns:
+        acceleration for unit shaft speed [1/rad]; erratum: its figure is printed as 0.32
+
+    >>> from math import radians
+    >>> round(largest_bend(radians(75), radians(12)), 3)
+    0.768
+    """
+    return 2.0 * pi * turn / (span * span)
+
+
+def torque_speed_limit(inertia: float, bend: float, torque: float) -> float:
+    """Shaft speed at which the pawl's inertia uses up the torque of its spring.
+
+    `sqrt(M / (I bend))`, from the condition before (3.35).
+
+    Args:
+        inertia: I [kg m2]
+        bend: largest second derivative of the turn by the shaft angle [1/rad]
+        torque: of the spring M [N m]
+
+    Returns:
+        speed [rad/s]
+
+    >>> from math import radians
+    >>> round(torque_speed_limit(375.4e-6, largest_bend(radians(75), radians(12)), 1.0) * 30 / pi)
+    562
+    """
+    return sqrt(torque / (inertia * bend))
+
+
+def release_time(inertia: float, stiffness: float, arm: float) -> float:
+    """Time in which the spring throws the pawl over: a quarter of its swing, equations (3.38) and (3.47).
+
+    `T_f = pi / (2 k)`, `k^2 = C R^2 / I`, whatever the angle.
+
+    Args:
+        inertia: I [kg m2]
+        stiffness: of the spring C [N/m]
+        arm: lever arm R [m]
+
+    Returns:
+        time [s]; erratum: the source divides by k^2 and finds 0.001 s
+
+    >>> round(1e3 * release_time(375.4e-6, 2500.0, 0.05), 2)
+    12.17
+    """
+    return 0.5 * pi * sqrt(inertia / (stiffness * arm * arm))
+
+
+def available_time(angle: float, speed: float) -> float:
+    """Time in which the shaft turns through an angle, at most 1e6 s.
+
+    Args:
+        angle: during which the rotor dwells [rad]
+        speed: of the shaft, not negative [rad/s]
+
+    Returns:
+        time [s]
+
+    >>> from math import radians
+    >>> round(1e3 * available_time(radians(90), 620 * pi / 30), 1)
+    24.2
+    """
+    if angle >= UNLIMITED_TIME * speed:
+        return UNLIMITED_TIME
+    return angle / speed
+
+
+def friction_power(coefficient: float, force: float, radius: float, speed: float, count: float) -> float:
+    """Power that the pawls lose on the discs they rub, `W = f N r w K`, equation (3.48).
+
+    Args:
+        coefficient: of friction f [1]
+        force: of a pawl on its disc N [N]
+        radius: at which it rubs r [m]
+        speed: of the disc w [rad/s]
+        count: of frames, with a pawl each, K [1]
+
+    Returns:
+        power [W]
+
+    >>> round(friction_power(0.1, 20.0, 0.0875, 1.4 / 3 * 650 * pi / 30, 20.0))
+    111
+    """
+    return coefficient * force * radius * speed * count

@@ -1,0 +1,285 @@
+"""Warp thread: extension from the shed's geometry and the viscoelastic law of its tension, exactly.
+
+Source: Korolev, thesis on rotary dobbies (Moscow), sections 3.5 and 5.1, equations (3.28) and (3.29), with
+the law after Kragelsky in the form that (3.29) belongs to: `F' + r F = b (x' + n x)`. Over a step the
+extension is a polynomial of the share u of the way; then so is the drive, and the force follows in closed
+form from the moments of a fading memory, which are computed without cancellation for every rate and step.
+"""
+
+from math import exp, fabs, sqrt
+
+
+def eye_pull(height: float, front: float, back: float) -> float:
+    """Share of its tension with which a thread pulls its heald eye back: the sum of its two sines.
+
+    It is also the extension's derivative by the height of the eye.
+
+    Args:
+        height: of the eye above the line from the cloth's fell to the back rest [m]
+        front, back: distances of the eye from the fell and from the back rest, in that line [m]
+
+    Returns:
+        share, with the sign of the height [1]
+
+    >>> round(eye_pull(0.3, 0.4, 0.4), 12)
+    1.2
+    """
+    return height / sqrt(front * front + height * height) + height / sqrt(back * back + height * height)
+
+
+def thread_extension(
+    height: float, velocity: float, acceleration: float, front: float, back: float
+) -> tuple[float, float, float]:
+    """Extension of a thread by its heald eye, `x = sqrt(l1^2 + y^2) - l1 + sqrt(l2^2 + y^2) - l2`.
+
+    Written as `y^2 / (sqrt(l^2 + y^2) + l)` for each part: nothing cancels in a nearly closed shed.
+
+    Args:
+        height, velocity, acceleration: y of the eye and its rates [m, m/s, m/s2]
+        front, back: l1 and l2 as for `eye_pull` [m]
+
+    Returns:
+        x [m], its rate [m/s] and second rate [m/s2]
+
+    >>> [round(each, 12) for each in thread_extension(0.3, 1.0, 0.0, 0.4, 0.4)]
+    [0.2, 1.2, 2.56]
+    """
+    square = height * height
+    to_fell = sqrt(front * front + square)
+    to_rest = sqrt(back * back + square)
+    share_1 = front / to_fell
+    share_2 = back / to_rest
+    slope = height / to_fell + height / to_rest
+    bend = share_1 * share_1 / to_fell + share_2 * share_2 / to_rest
+    return (
+        square / (to_fell + front) + square / (to_rest + back),
+        slope * velocity,
+        bend * velocity * velocity + slope * acceleration,
+    )
+
+
+def constant_rate_force(time: float, rate: float, stiffness: float, creep: float, relaxation: float) -> float:
+    """Force of a thread that is stretched from rest at a constant rate, `x = v t`.
+
+    `F = b v [n t / r + (1 - n/r) (1 - exp(-r t)) / r]`, the exact solution of the law. Equation (3.29) is its
+    counterpart for a force that rises at a constant rate.
+
+    Args:
+        time: t since the start [s]
+        rate: of the extension v [m/s]
+        stiffness: b [N/m]
+        creep, relaxation: n and r [1/s], r not zero
+
+    Returns:
+        force [N]
+
+    >>> constant_rate_force(2.0, 0.001, 67.0, 5.0, 5.0)  # n = r: a spring, b x
+    0.134
+    """
+    faded = (1.0 - exp(-relaxation * time)) / relaxation
+    share = creep / relaxation
+    return stiffness * rate * (share * time + (1.0 - share) * faded)
+
+
+def fading(decay: float) -> tuple[float, float, float, float, float, float, float, float]:
+    """`exp(-z)` and the moments of a fading memory, `I_k = integral of exp(-z (1 - u)) u^k`, u from 0 to 1.
+
+    `z I_k = 1 - k I_(k-1)`, run upwards from z = 3 on, and downwards from a series for I_6 below: either
+    way the rounding of one moment does not grow in the next.
+
+    Args:
+        decay: z, not negative [1]
+
+    Returns:
+        exp(-z), I_0 .. I_6
+
+    >>> fading(0.0)[:4]
+    (1.0, 1.0, 0.5, 0.3333333333333333)
+    """
+    kept = exp(-decay)
+    if decay < 3.0:
+        term = 1.0 / 7.0
+        i6 = term
+        k = 8
+        while fabs(term) > 1e-18:
+            term = -term * decay / k
+            i6 = i6 + term
+            k = k + 1
+        i5 = (1.0 - decay * i6) / 6.0
+        i4 = (1.0 - decay * i5) / 5.0
+        i3 = (1.0 - decay * i4) / 4.0
+        i2 = (1.0 - decay * i3) / 3.0
+        i1 = (1.0 - decay * i2) / 2.0
+        return kept, 1.0 - decay * i1, i1, i2, i3, i4, i5, i6
+    i0 = (1.0 - kept) / decay
+    i1 = (1.0 - i0) / decay
+    i2 = (1.0 - 2.0 * i1) / decay
+    i3 = (1.0 - 3.0 * i2) / decay
+    i4 = (1.0 - 4.0 * i3) / decay
+    i5 = (1.0 - 5.0 * i4) / decay
+    return kept, i0, i1, i2, i3, i4, i5, (1.0 - 6.0 * i5) / decay
+
+
+def thread_drive(
+    stiffness: float,
+    creep: float,
+    start: float,
+    end: float,
+    a0: float,
+    a1: float,
+    a2: float,
+    a3: float,
+) -> tuple[float, float, float, float, float, float]:
+    """Right side of the law over a step, `b (x' + n x)`, as a polynomial of the share u of the way.
+
+    Both ends of the extension are met exactly, so that rounding does not add up over many steps.
+
+    Args:
+        stiffness: b [N/m]
+        creep: n times the duration of the step [1]
+        start, end: extension at both ends [m]
+        a0 .. a3: its second derivative by u, as from `joined` [m]
+
+    Returns:
+        coefficients of 1, u .. u^5 [N]
+
+    >>> thread_drive(1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0)
+    (7.0, 2.0, 0.0, 0.0, 0.0, 0.0)
+    """
+    rate = end - start - (a0 / 2.0 + a1 / 6.0 + a2 / 12.0 + a3 / 20.0)
+    return (
+        stiffness * (rate + creep * start),
+        stiffness * (a0 + creep * rate),
+        stiffness * (a1 + creep * a0) / 2.0,
+        stiffness * (a2 / 3.0 + creep * a1 / 6.0),
+        stiffness * (a3 / 4.0 + creep * a2 / 12.0),
+        stiffness * creep * a3 / 20.0,
+    )
+
+
+def thread_force(
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    share: float,
+) -> tuple[float, float]:
+    """Force of the thread at a share u of the way, and its integral by u up to there.
+
+    Exact solution of `dF/du + z F = p0 + p1 u + .. + p5 u^5`:
+
+        F = F0 exp(-z u) + sum of p_k u^(k+1) I_k(z u)
+        integral = F0 u I_0(z u) + sum of p_k u^(k+2) I_(k+1)(z u) / (k + 1)
+
+    Args:
+        force: F0 at the start of the step [N]
+        decay: z, the relaxation rate times the duration of the step [1]
+        p0 .. p5: the drive, from `thread_drive` [N]
+        share: u [1]
+
+    Returns:
+        force [N], integral [N]
+
+    >>> thread_force(1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    (3.0, 2.0)
+    """
+    u = share
+    kept, i0, i1, i2, i3, i4, i5, i6 = fading(decay * u)
+    gain = p0 * i0 + u * (p1 * i1 + u * (p2 * i2 + u * (p3 * i3 + u * (p4 * i4 + u * p5 * i5))))
+    area = p2 * i3 / 3.0 + u * (p3 * i4 / 4.0 + u * (p4 * i5 / 5.0 + u * p5 * i6 / 6.0))
+    area = p0 * i1 + u * (p1 * i2 / 2.0 + u * area)
+    return force * kept + u * gain, u * (force * i0 + u * area)
+
+
+def thread_growth(
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    share: float,
+) -> float:
+    """Derivative of the force by u where it is `force`; see `thread_force`.
+
+    >>> thread_growth(3.0, 2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    4.0
+    """
+    u = share
+    return p0 + u * (p1 + u * (p2 + u * (p3 + u * (p4 + u * p5)))) - decay * force
+
+
+def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
+    """Whether the force can turn but once on the way: the drive's own derivative keeps its sign.
+
+    Between two turns of the force, `exp(z u) dF/du` turns too, and its derivative is `exp(z u)` times that
+    of the drive. Sufficient, not necessary: the first coefficient outweighs all others.
+
+    >>> turns_once(1.0, 0.2, 0.0, 0.0, 0.0), turns_once(1.0, -1.0, 0.0, 0.0, 0.0)
+    (True, False)
+    """
+    return fabs(p1) >= 2.0 * fabs(p2) + 3.0 * fabs(p3) + 4.0 * fabs(p4) + 5.0 * fabs(p5)
+
+
+def thread_locate(
+    turn: bool,
+    level: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    low: float,
+    high: float,
+) -> float:
+    """Share of the way at which the force turns, or at which it passes a level.
+
+    Regula falsi after Illinois, every third step a halving, on the exact solution.
+
+    Args:
+        turn: True for the turn, False for the level
+        level: of the force [N]
+        force .. p5: as for `thread_force`
+        low, high: bracket of u; what is sought changes its sign between them
+
+    Returns:
+        share [1]
+
+    >>> round(thread_locate(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
+    0.5
+    """
+    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, low)
+    at_low = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, low) if turn else value - level
+    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, high)
+    at_high = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, high) if turn else value - level
+    last = 0
+    for count in range(100):
+        if high - low <= 1e-15 or at_high == 0.0:
+            break
+        u = high - at_high * (high - low) / (at_high - at_low)
+        if u <= low or u >= high or count % 3 == 2:
+            u = 0.5 * (low + high)
+        value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, u)
+        here = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, u) if turn else value - level
+        if (here > 0.0) == (at_high > 0.0):
+            high = u
+            at_high = here
+            if last == 1:
+                at_low = 0.5 * at_low
+            last = 1
+        else:
+            low = u
+            at_low = here
+            if last == -1:
+                at_high = 0.5 * at_high
+            last = -1
+    return high

@@ -1,0 +1,254 @@
+"""ReedBeatUp: the published machine, exact motion, and what it refuses."""
+
+from functools import cache
+from math import degrees, hypot, pi, radians
+
+import pytest
+from reference import MP, RPM, Jet, acos, atan2, cos, sin, sqrt
+
+from loomfmu.components.reed_beat_up import ReedBeatUp
+from loomfmu.physics.reed import crank_place, crank_rocker_without_quick_return, reed_dyad
+
+SPEED = float(30 * RPM)  # of the published motion
+ANGLES = [2 * pi * k / 720 for k in range(720)]
+# the crank before the swing instead of behind it: the front dead centre is where the coupler folds back
+FOLDED = {"crank_x": 0.082762, "crank_y": 0.559301, "assembly": 1}
+MACHINES = {
+    "published": {},
+    "backwards": {"crank_direction": -1, "beat_up_angle": 0.7},
+    "folded": FOLDED,
+    "bent arm": {"arm_angle": 0.2, "reed_height": 0.60},
+}
+every_machine = pytest.mark.parametrize("given", MACHINES.values(), ids=MACHINES)
+
+
+def placed(theta: float, given: dict | None = None, **more: float) -> ReedBeatUp:
+    """A reed at a shaft angle."""
+    reed = ReedBeatUp(speed=SPEED, start_angle=theta, **(given or {}), **more)
+    assert reed.initialize(0.0) == 0
+    return reed
+
+
+class Reference:
+    """The six-bar in 50 digits from its closed form, its derivatives from Taylor series."""
+
+    def __init__(self, given: dict) -> None:
+        self.of = ReedBeatUp(**given)
+        self.phase = MP.mpf(0)
+        # the front dead centre is where the reed turns back, not where crank and coupler lie in line
+        turns = [MP.findroot(lambda crank: self.reed(crank)[0].first, start) for start in self.near_ends()]
+        self.front, self.back = sorted(turns, key=lambda crank: -self.reed(crank)[0].value)
+
+    def near_ends(self) -> list[float]:
+        grid = [k * 2 * pi / 90 for k in range(90)]
+        values = [self.reed(crank)[0].value for crank in grid]
+        return [grid[values.index(max(values))], grid[values.index(min(values))]]
+
+    def reed(self, crank: float) -> tuple[Jet, Jet, Jet]:
+        """Reed coordinate, angle of the rocker and slope of the rod at a crank angle, by that angle."""
+        of = self.of
+        turned = Jet(crank, 1)
+        x = MP.mpf(of.crank_length) * cos(turned) + of.crank_x
+        y = MP.mpf(of.crank_length) * sin(turned) + of.crank_y
+        square = x * x + y * y
+        coupler, rocker = MP.mpf(of.coupler_length), MP.mpf(of.rocker_length)
+        apex = acos((square + (rocker**2 - coupler**2)) / (2 * rocker * sqrt(square)))
+        chi = atan2(y, x) + of.assembly * apex
+        arm = MP.mpf(of.arm_length)
+        drop = Jet(of.reed_height) - arm * sin(chi + of.arm_angle)
+        reach = sqrt(Jet(MP.mpf(of.rod_length) ** 2) - drop * drop)
+        return arm * cos(chi + of.arm_angle) + reach, chi, atan2(drop, reach)
+
+    def crank(self, theta: float) -> float:
+        return self.front + self.of.crank_direction * (MP.mpf(theta) - self.of.beat_up_angle)
+
+
+@cache
+def reference(name: str) -> Reference:
+    return Reference(MACHINES[name])
+
+
+every_name = pytest.mark.parametrize("name", MACHINES)
+
+
+# The published machine
+
+
+def test_defaults_are_the_synthesis_of_the_published_design():
+    swing, rocker, slope, frame_angle = radians(13.610), 0.550, 0.1154, radians(15)
+    crank, coupler, _frame, smallest = crank_rocker_without_quick_return(rocker, swing, frame_angle)
+    x, y = crank_place(rocker, swing, slope, frame_angle)
+    arm, rod, height = reed_dyad(0.490, 0.330, swing, slope, radians(-1.235))
+    reed = placed(0.0)
+    # the crank is the published one, which is 2 um shorter; the others are rounded to 1 and 10 um
+    assert reed.crank_length == pytest.approx(crank, abs=2.5e-6)
+    assert (reed.coupler_length, reed.crank_x, reed.crank_y) == pytest.approx((coupler, x, y), abs=1e-6)
+    assert (reed.arm_length, reed.rod_length, reed.reed_height) == pytest.approx((arm, rod, height), abs=5e-6)
+    assert degrees(reed.smallest_transmission_angle) == pytest.approx(degrees(smallest), abs=2e-3)
+
+
+def test_published_limits_and_stroke():
+    reed = placed(0.0)
+    # the design's limits are 490 and 330 mm; the published machine, with rounded lengths, has 490.3, 330.2
+    # and 160.1 mm, 0.06 % more
+    assert reed.front_limit == pytest.approx(0.490, abs=1e-5)
+    assert reed.back_limit == pytest.approx(0.330, abs=1e-5)
+    assert reed.front_limit == pytest.approx(0.4903, rel=7e-4)
+    assert reed.back_limit == pytest.approx(0.3302, rel=7e-4)
+    assert reed.stroke == pytest.approx(0.1601, rel=7e-4)
+
+
+def test_published_acceleration_at_the_front_dead_centre():
+    acceleration = placed(0.0).acceleration
+    assert acceleration == pytest.approx(-1.1573, abs=5e-5)
+    assert acceleration == pytest.approx(-1.1597, rel=2.1e-3)  # published; its lengths are lost
+
+
+def test_published_pressure_angle_at_the_front_dead_centre():
+    # the lengths are rounded to 10 um, over a rod of 0.49 m: 0.001 deg
+    assert degrees(placed(0.0).pressure_angle) == pytest.approx(-1.235, abs=2e-3)
+
+
+def test_acceleration_changes_little_near_the_back_dead_centre():
+    # what the paper says of its motion: within 30 deg of either dead centre
+    front = [placed(angle).acceleration for angle in (-radians(30), 0.0, radians(30))]
+    back = [placed(pi + angle).acceleration for angle in (-radians(30), 0.0, radians(30))]
+    assert max(back) - min(back) < 0.3 * (max(front) - min(front))
+
+
+def test_smaller_frame_angle_beats_up_harder():
+    # what the paper reads from its figure 5, for the same swing
+    found = []
+    for frame_angle in (10, 15, 20, 30):
+        crank, coupler, _frame, _smallest = crank_rocker_without_quick_return(
+            0.550, radians(13.610), radians(frame_angle)
+        )
+        x, y = crank_place(0.550, radians(13.610), 0.1154, radians(frame_angle))
+        lengths = {"crank_length": crank, "coupler_length": coupler, "crank_x": x, "crank_y": y}
+        found.append(-placed(0.0, lengths).acceleration)
+    assert found == sorted(found, reverse=True)
+
+
+def test_takes_the_same_time_to_and_fro():
+    # no quick return: half a turn on it is at the back limit; the lengths are rounded to 1 um
+    reed = placed(pi)
+    assert reed.position == pytest.approx(reed.back_limit, abs=1e-9)
+
+
+# Exact motion
+
+
+@every_name
+def test_motion_at_720_angles(name):
+    of = reference(name)
+    rows = []
+    for theta in ANGLES:
+        reed = placed(theta, MACHINES[name])
+        position, _chi, slope = of.reed(of.crank(theta))
+        exact = (position.value, of.of.crank_direction * position.first, position.second, slope.value)
+        by_theta = reed.velocity / SPEED
+        rows.append((exact, (reed.position, by_theta, reed.acceleration / SPEED**2, reed.pressure_angle)))
+    for column in range(4):
+        largest = max(abs(exact[column]) for exact, _found in rows)
+        worst = max(abs(found[column] - exact[column]) for exact, found in rows)
+        assert worst <= 1e-12 * largest  # rounding; at most seen 3e-14
+
+
+@every_name
+def test_limits_are_where_the_reed_turns(name):
+    of = reference(name)
+    reed = placed(0.0, MACHINES[name])
+    front, back = (of.reed(crank)[0].value for crank in (of.front, of.back))
+    assert abs(reed.front_limit - front) < 1e-15  # rounding of lengths up to 1 m
+    assert abs(reed.back_limit - back) < 1e-15
+    assert reed.stroke == reed.front_limit - reed.back_limit
+
+
+@every_machine
+def test_beats_up_at_the_beat_up_angle(given):
+    reed = placed(given.get("beat_up_angle", 0.0), given)
+    assert reed.position == pytest.approx(reed.front_limit, abs=1e-15)
+    assert reed.velocity == pytest.approx(0.0, abs=1e-15)
+    assert reed.acceleration < 0.0
+
+
+@every_machine
+def test_transmission_angle_is_that_of_the_triangle(given):
+    found = []
+    for theta in ANGLES:
+        reed = placed(theta, given)
+        crank = Reference.crank(reference_of(given), theta)
+        pin = hypot(
+            reed.crank_x + reed.crank_length * float(MP.cos(crank)),
+            reed.crank_y + reed.crank_length * float(MP.sin(crank)),
+        )
+        square = reed.coupler_length**2 + reed.rocker_length**2 - pin**2
+        exact = MP.acos(abs(square) / (2 * MP.mpf(reed.coupler_length) * reed.rocker_length))
+        assert abs(reed.transmission_angle - exact) < 1e-13
+        found.append(reed.transmission_angle)
+    # 720 angles miss the smallest by half a step at most
+    assert reed.smallest_transmission_angle <= min(found) + 1e-15
+    assert reed.smallest_transmission_angle == pytest.approx(min(found), abs=1e-4)
+
+
+def reference_of(given):
+    return reference(next(name for name, machine in MACHINES.items() if machine is given))
+
+
+@every_name
+def test_shaft_torque_is_the_power_of_the_moving_masses(name):
+    of = reference(name)
+    masses = {"reed_mass": 40.0, "rocker_inertia": 2.5}
+    for theta in ANGLES[::24]:
+        reed = ReedBeatUp(
+            follow_shaft=True, inputs_at_step_end=True, shaft_angle=theta, shaft_velocity=4.0,
+            shaft_acceleration=-30.0, **MACHINES[name], **masses,
+        )  # fmt: skip
+        assert reed.initialize(0.0) == 0
+        position, chi, _slope = of.reed(of.crank(theta))
+        turning = of.of.crank_direction
+        power = 0
+        for mass, jet in ((40, position), (MP.mpf("2.5"), chi)):
+            power += mass * turning * jet.first * 4 * (jet.second * 16 + turning * jet.first * -30)
+        assert abs(reed.shaft_torque - power / 4) < 1e-12  # rounding of torques up to 10 N m
+
+
+def test_turning_the_crank_the_other_way_mirrors_the_motion():
+    for theta in ANGLES[::30]:
+        one, other = placed(theta), placed(-theta, {"crank_direction": -1})
+        assert other.position == pytest.approx(one.position, abs=1e-15)
+        assert other.velocity == pytest.approx(-one.velocity, abs=1e-15)
+
+
+# What it refuses
+
+
+@pytest.mark.parametrize(
+    ("given", "problem"),
+    [
+        ({"crank_length": 0.15}, 1),  # longer than the coupler
+        ({"coupler_length": 0.05}, 1),
+        ({"rocker_length": 1.0}, 1),
+        # the frame is shorter than the crank, which would take the rocker round with it
+        ({"crank_length": 0.6, "coupler_length": 0.7, "rocker_length": 0.7}, 1),
+        ({"crank_x": 0.0, "crank_y": 0.0}, 1),
+        ({"rod_length": 0.01}, 2),
+        ({"reed_height": 0.1}, 2),
+        ({"reed_height": 1.2}, 2),
+        ({"arm_angle": -pi / 2, "reed_height": 0.13}, 3),  # stretched
+        ({"arm_angle": pi / 2, "reed_height": -0.02}, 3),  # folded
+        ({"assembly": 0}, 4),
+        ({"crank_direction": 0}, 4),
+    ],
+)
+def test_refused_linkages(given, problem):
+    reed = ReedBeatUp(**given)
+    assert reed.check() == problem
+    assert reed.initialize(0.0) == problem
+
+
+def test_masses_and_lengths_beyond_their_limits_are_refused():
+    with pytest.raises(ValueError, match=r"ReedBeatUp.reed_mass = -1 kg is outside \[0, 10000\] kg"):
+        ReedBeatUp(reed_mass=-1.0)
+    with pytest.raises(ValueError, match=r"ReedBeatUp.crank_length = 20000 mm is outside"):
+        ReedBeatUp(crank_length=20.0)

@@ -1,0 +1,245 @@
+"""Reed: the two linkages, their limits and margins, and their design."""
+
+from math import atan2, cos, degrees, fabs, hypot, pi, radians, sin
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from reference import MP, Jet
+from reference import atan2 as jet_atan2
+from reference import cos as jet_cos
+from reference import sin as jet_sin
+from reference import sqrt as jet_sqrt
+
+from loomfmu.physics.linkage import four_bar, wrapped
+from loomfmu.physics.reed import (
+    crank_place,
+    crank_rocker_without_quick_return,
+    dead_centre,
+    frame_angle_for,
+    in_line_margin,
+    reed_dyad,
+    reed_motion,
+    rod_margin,
+    smallest_transmission_angle,
+    transmission_angle,
+)
+
+SWING = radians(13.610)
+ROCKER = 0.550
+SLOPE = 0.1154
+
+angle = st.floats(-7.0, 7.0)
+length = st.floats(0.05, 1.0)
+place = st.floats(-1.0, 1.0)
+way = st.sampled_from([-1, 1])
+swing = st.floats(0.05, 1.5)
+
+
+@st.composite
+def crank_rockers(draw):
+    """Crank, coupler, rocker, place of the pivot: the crank turns over, at least 0.02 m clear."""
+    crank = draw(st.floats(0.01, 0.3))
+    # any two of the others are together longer than the third and the crank
+    one, two, three = (draw(st.floats(0.01, 0.3)) for _ in range(3))
+    coupler, rocker, frame = crank + one + two, crank + two + three, crank + three + one
+    towards = draw(angle)
+    return crank, coupler, rocker, frame * cos(towards), frame * sin(towards)
+
+
+# Published numbers of Yuan, Chen, Jiang and Zhou
+
+
+def test_published_crank_length():
+    crank, _coupler, _frame, _smallest = crank_rocker_without_quick_return(ROCKER, SWING, radians(15))
+    # printed 65.168 mm; the swing is printed to 0.001 deg, half of that is 2.4 um
+    assert crank == pytest.approx(65.168e-3, abs=2.5e-6)
+
+
+@pytest.mark.parametrize(("frame_angle", "smallest"), [(8.906, 40.0), (29.354, 76.0)])
+def test_published_smallest_transmission_angles(frame_angle, smallest):
+    *_lengths, found = crank_rocker_without_quick_return(ROCKER, SWING, radians(frame_angle))
+    # the source's pairs take a swing of 13.622 deg (next test): 0.0009 of sin(psi/2), or 0.06 deg at 40 deg
+    assert degrees(found) == pytest.approx(smallest, abs=0.07)
+
+
+@pytest.mark.parametrize(("frame_angle", "smallest"), [(8.906, 40.0), (29.354, 76.0)])
+def test_erratum_the_printed_frame_angles_belong_to_another_swing(frame_angle, smallest):
+    # printed to 0.001 deg
+    assert degrees(frame_angle_for(radians(13.622), radians(smallest))) == pytest.approx(
+        frame_angle, abs=1e-3
+    )
+    assert fabs(degrees(frame_angle_for(SWING, radians(smallest))) - frame_angle) > 5e-3
+
+
+def test_published_limit_of_the_transmission_angle():
+    # at b = 90 deg it would be 90 deg - psi / 2
+    *_lengths, found = crank_rocker_without_quick_return(ROCKER, SWING, pi / 2)
+    assert degrees(found) == pytest.approx(83.195, abs=5e-4)  # printed to 0.001 deg
+
+
+@pytest.mark.parametrize("frame_angle", range(9, 31))
+def test_published_kinds_of_pitman(frame_angle):
+    # coupler over crank: short up to 19 deg (below 3), medium from 20 to 30 deg (3 to 6)
+    crank, coupler, _frame, _smallest = crank_rocker_without_quick_return(ROCKER, SWING, radians(frame_angle))
+    assert (coupler / crank < 3) == (frame_angle <= 19)
+    assert coupler / crank < 6
+
+
+@pytest.mark.parametrize("frame_angle", [9.0, 15.0, 29.0])
+def test_published_line_of_crank_centres(frame_angle):
+    x, y = crank_place(ROCKER, SWING, SLOPE, radians(frame_angle))
+    # printed y = 0.1154 x + 549.75 mm
+    assert 1e3 * (y - SLOPE * x) == pytest.approx(549.75, abs=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "expected"), [(1.235, (676.5, 487.5, 687.0)), (-1.235, (679.8, 487.5, 669.3))]
+)
+def test_dyad_for_the_published_limits(pressure, expected):
+    arm, rod, height = reed_dyad(0.490, 0.330, SWING, SLOPE, radians(pressure))
+    assert [round(1e3 * value, 1) for value in (arm, rod, height)] == list(expected)
+
+
+# Design
+
+
+@given(swing, st.floats(0.05, 0.95), length)
+def test_design_takes_the_same_time_to_and_fro(psi, share, rocker):
+    frame_angle = psi / 2 + share * (pi / 2 - psi / 2)
+    crank, coupler, frame, smallest = crank_rocker_without_quick_return(rocker, psi, frame_angle)
+    x, y = crank_place(rocker, psi, SLOPE, frame_angle)
+    assert hypot(x, y) == pytest.approx(frame, rel=1e-14)  # rounding
+    # the frame is as long as near a right angle: what rounding does to the dead centres grows with it
+    far = 1e-14 * (1 + frame / crank) ** 2
+    ends = [dead_centre(crank, coupler, rocker, -x, -y, -1, extended) for extended in (True, False)]
+    assert abs(wrapped(ends[1] - ends[0])) == pytest.approx(pi, abs=far)
+    arms = [four_bar(end, 1.0, 0.0, crank, coupler, rocker, -x, -y, -1)[0] for end in ends]
+    assert wrapped(arms[1] - arms[0]) == pytest.approx(psi, abs=far)
+    assert smallest_transmission_angle(crank, coupler, rocker, frame) == pytest.approx(
+        smallest, abs=far * 1e2
+    )
+
+
+@given(swing, st.floats(0.05, 0.95))
+def test_frame_angle_gives_the_transmission_angle_back(psi, share):
+    smallest = share * (pi - psi) / 2
+    *_lengths, found = crank_rocker_without_quick_return(1.0, psi, frame_angle_for(psi, smallest))
+    assert found == pytest.approx(smallest, abs=1e-13)  # an arc cosine of at most cos(0.04): rounding x 25
+
+
+@given(st.floats(0.3, 0.8), st.floats(0.2, 0.9), swing, st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
+def test_dyad_reaches_both_limits(front, share, psi, slope, pressure):
+    back = share * front
+    arm, rod, height = reed_dyad(front, back, psi, slope, pressure)
+    assume(arm > 0.0)
+    middle = atan2(1.0, -slope)
+    there, _first, _second, found = reed_motion(middle - psi / 2, 1.0, 0.0, arm, rod, height)
+    assert there == pytest.approx(front, abs=1e-12)
+    assert found == pytest.approx(pressure, abs=1e-11)
+    assume(rod_margin(middle, psi / 2, arm, rod, height) > 1e-3)
+    there, *_rest = reed_motion(middle + psi / 2, 1.0, 0.0, arm, rod, height)
+    # rounding of lengths of some metres, over the root of the margin
+    assert there == pytest.approx(back, abs=1e-12)
+
+
+@given(st.floats(0.1, 0.8), st.floats(0.0, 0.5), swing, st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
+def test_no_dyad_for_limits_the_wrong_way_round(back, less, psi, slope, pressure):
+    assert reed_dyad(back - less, back, psi, slope, pressure) == (0.0, 0.0, 0.0)
+
+
+def test_no_dyad_where_the_reed_would_pass_its_arm():
+    # the arm leans to the reed all the time, and the back limit is right over the pivot
+    assert reed_dyad(0.8, 0.01, 0.05, -3.0, 0.0) == (0.0, 0.0, 0.0)
+
+
+# Kinematics
+
+
+@given(crank_rockers(), way, st.booleans())
+def test_dead_centre_is_an_end_of_the_swing(linkage, assembly, extended):
+    crank, coupler, rocker, x, y = linkage
+    at = dead_centre(crank, coupler, rocker, x, y, assembly, extended)
+    chi, first, _second = four_bar(at, 1.0, 0.0, crank, coupler, rocker, x, y, assembly)
+    assert abs(first) < 1e-12  # rounding, magnified by a dead point 0.01 m off
+    pin = hypot(x + rocker * cos(chi), y + rocker * sin(chi))
+    assert pin == pytest.approx(coupler + (crank if extended else -crank), abs=1e-13)
+
+
+def test_dead_centre_beyond_closing_is_no_domain_error():
+    assert dead_centre(0.1, 0.2, 0.1, 1.0, 0.0, 1, True) == 0.0
+    assert dead_centre(0.1, 0.2, 2.0, 1.0, 0.0, 1, True) == pytest.approx(-pi)
+
+
+@given(length, length, st.floats(0.0, 1.0))
+def test_transmission_angle_closes_the_triangle(coupler, rocker, share):
+    low, high = fabs(coupler - rocker), coupler + rocker
+    distance = low + share * (high - low)
+    found = transmission_angle(distance, coupler, rocker)
+    assert 0.0 <= found <= pi / 2
+    square = coupler**2 + rocker**2 - distance**2
+    # the cosine to rounding of squares up to 4, over a product of at least 0.005
+    assert 2 * coupler * rocker * cos(found) == pytest.approx(abs(square), abs=1e-14)
+
+
+@given(crank_rockers())
+def test_smallest_transmission_angle_agrees_with_a_search(linkage):
+    crank, coupler, rocker, x, y = linkage
+    towards = atan2(y, x)  # the grid holds both places where crank and frame lie in line
+    distances = [
+        hypot(crank * cos(towards + k * pi / 360) - x, crank * sin(towards + k * pi / 360) - y)
+        for k in range(720)
+    ]
+    searched = min(transmission_angle(distance, coupler, rocker) for distance in distances)
+    found = smallest_transmission_angle(crank, coupler, rocker, hypot(x, y))
+    assert found == pytest.approx(searched, abs=1e-13)  # rounding, 0.01 m off the dead point
+
+
+@given(angle, st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), length, length, place)
+def test_reed_motion_is_exact(chi, first, second, arm, rod, height):
+    assume(rod - abs(height - arm * sin(chi)) > 0.02)
+    exact = Jet(chi, first, second)
+    across, drop = arm * jet_cos(exact), Jet(height) - arm * jet_sin(exact)
+    reach = jet_sqrt(Jet(MP.mpf(rod) ** 2) - drop * drop)
+    position = across + reach
+    slope = jet_atan2(drop, reach)
+    found = reed_motion(chi, first, second, arm, rod, height)
+    # rounding, magnified by the nearness to the rod's dead point: up to 1 / (0.02 * 2) on each derivative
+    assert abs(found[0] - position.value) < 1e-14
+    assert abs(found[1] - position.first) < 1e-13 * (1 + abs(position.first))
+    assert abs(found[2] - position.second) < 1e-12 * (1 + abs(position.second))
+    assert abs(found[3] - slope.value) < 1e-13
+
+
+@given(angle, st.floats(0.01, 1.5), length, length, place)
+def test_rod_margin_agrees_with_a_search(middle, half, arm, rod, height):
+    count = 400
+    drops = [abs(height - arm * sin(middle + half * k / count)) for k in range(-count, count + 1)]
+    found = rod_margin(middle, half, arm, rod, height)
+    # the search can only overlook what is worse, by at most half a step's bend
+    assert found <= rod - max(drops) + 1e-12
+    assert found >= rod - max(drops) - 0.5 * arm * (half / count) ** 2 - 1e-12
+
+
+@given(angle, st.floats(0.01, 1.5), length, length, place)
+def test_arm_and_rod_in_line_agree_with_a_search(middle, half, arm, rod, height):
+    assume(rod_margin(middle, half, arm, rod, height) > 0.01)
+    assume(abs(arm - rod) > 1e-4)  # a reed that hardly moves, see the next test
+    count = 400
+    slopes = [
+        reed_motion(middle + half * k / count, 1.0, 0.0, arm, rod, height)[1]
+        for k in range(-count, count + 1)
+    ]
+    found = in_line_margin(middle, half, arm, rod, height)
+    assume(abs(found) > 2 * half / count)  # what lies between the ends of the grid and the swing
+    assert (min(slopes) < 0.0 < max(slopes)) == (found < 0.0)
+
+
+def test_a_line_out_of_reach_has_no_angle_in_line():
+    assert in_line_margin(1.0, 0.1, 0.1, 0.2, 0.5) == pi - 0.1
+
+
+def test_equal_arm_and_rod_on_the_pivots_height():
+    # while the arm points away from the reed, the reed stands over the pivot
+    assert in_line_margin(pi, 0.1, 0.3, 0.3, 0.0) < 0.0
+    assert in_line_margin(1.0, 0.1, 0.3, 0.3, 0.0) == pytest.approx(0.9)

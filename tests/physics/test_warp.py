@@ -1,0 +1,319 @@
+"""Warp thread: geometry, the viscoelastic law in 50 and more digits, and what (3.28) and (3.29) say."""
+
+from itertools import pairwise
+from math import cos, exp, expm1, pi, sin
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from reference import MP
+
+from loomfmu.physics.motion import joined
+from loomfmu.physics.warp import (
+    constant_rate_force,
+    eye_pull,
+    fading,
+    thread_drive,
+    thread_extension,
+    thread_force,
+    thread_growth,
+    thread_locate,
+    turns_once,
+)
+
+FINE = MP.clone()  # closed forms that cancel: a polynomial over powers of a small decay
+FINE.dps = 250
+
+unit = st.floats(-1.0, 1.0)
+drives = st.tuples(unit, unit, unit, unit, unit, unit)
+decays = st.one_of(st.just(0.0), st.floats(1e-12, 1e-3), st.floats(1e-3, 30.0), st.floats(30.0, 1e6))
+lengths = st.floats(0.05, 2.0)
+
+# Geometry
+
+
+@given(st.floats(-0.3, 0.3), st.floats(-3.0, 3.0), st.floats(-100.0, 100.0), lengths, lengths)
+def test_extension_and_its_rates(height, velocity, acceleration, front, back):
+    def exact(t):
+        y = MP.mpf(height) + velocity * t + MP.mpf(acceleration) * t * t / 2
+        return MP.hypot(front, y) - front + MP.hypot(back, y) - back
+
+    x, rate, second = MP.taylor(exact, 0, 2)
+    found = thread_extension(height, velocity, acceleration, front, back)
+    # a few roundings of the terms; the extension itself is right to its last digits, however small
+    # (1e-40: what fifty digits leave of a difference of lengths)
+    assert abs(found[0] - x) <= 1e-15 * abs(x) + 1e-40
+    assert abs(found[1] - rate) <= 1e-15 * 2.0 * abs(velocity) + 1e-40
+    bend = velocity**2 * (1 / front + 1 / back) + 2 * abs(acceleration)
+    assert abs(found[2] - 2 * second) <= 2e-15 * bend + 1e-40
+
+
+@pytest.mark.parametrize("height", [1e-12, 1e-8, 1e-4, 0.05])
+def test_extension_of_a_nearly_closed_shed(height):
+    exact = MP.hypot(0.25, height) - MP.mpf(0.25) + MP.hypot(0.5, height) - MP.mpf(0.5)
+    assert abs(thread_extension(height, 0.0, 0.0, 0.25, 0.5)[0] - exact) < 5e-16 * exact
+
+
+@given(st.floats(-0.3, 0.3), lengths, lengths)
+def test_pull_is_the_slope_of_the_extension(height, front, back):
+    slope = MP.diff(lambda y: MP.hypot(front, y) + MP.hypot(back, y), height)
+    assert abs(eye_pull(height, front, back) - slope) < 1e-15  # a few roundings of two sines
+    # what the eye does on its way is what the thread takes up: the same slope serves load and rate
+    assert thread_extension(height, 1.0, 0.0, front, back)[1] == eye_pull(height, front, back)
+
+
+# The law over a step
+
+
+@pytest.mark.parametrize("decay", [0.0, 1e-9, 1e-3, 0.5, 2.0, 2.999, 3.0, 3.001, 5.0, 20.0, 1e3, 1e6])
+def test_moments_of_the_fading_memory(decay):
+    kept, *moments = fading(decay)
+    assert kept == exp(-decay)
+    for k, moment in enumerate(moments):
+        exact = MP.hyp1f1(1, k + 2, -MP.mpf(decay)) / (k + 1)
+        assert abs(moment - exact) < 4e-15 * exact, k  # the rounding of seven recursions
+
+
+def polynomial_solution(force, decay, drive, share):
+    """Force and its integral: a polynomial that satisfies the law, and a transient that fades."""
+    u, z = FINE.mpf(share), FINE.mpf(decay)
+    p = [FINE.mpf(each) for each in drive]
+    if decay == 0.0:
+        gains = [each * u ** (k + 1) / (k + 1) for k, each in enumerate(p)]
+        areas = [each * u ** (k + 2) / ((k + 1) * (k + 2)) for k, each in enumerate(p)]
+        return force + sum(gains), force * u + sum(areas)
+    q = [FINE.mpf(0)] * 7
+    for k in reversed(range(6)):
+        q[k] = (p[k] - (k + 1) * q[k + 1]) / z
+    transient = force - q[0]
+    settled = sum(each * u**k for k, each in enumerate(q))
+    area = sum(each * u ** (k + 1) / (k + 1) for k, each in enumerate(q))
+    return settled + transient * FINE.exp(-z * u), area + transient * (1 - FINE.exp(-z * u)) / z
+
+
+@given(unit, decays, drives, st.floats(0.0, 1.0))
+def test_force_and_its_integral_are_exact(force, decay, drive, share):
+    exact, exact_area = polynomial_solution(force, decay, drive, share)
+    found, area = thread_force(force, decay, *drive, share)
+    # (1e-100: what 250 digits leave of powers of a decay of 1e-12)
+    # nothing cancels but the terms of the drive themselves; beyond that the rounding of a dozen terms, and
+    # of exp(-z u), whose argument is rounded to 1e-16 of itself
+    weight = fading(decay * share)[1] * share * sum(map(abs, drive))
+    kept = abs(force) * exp(-decay * share) * (1.0 + decay * share)
+    assert abs(found - exact) <= 4e-15 * (kept + weight) + 1e-100
+    assert abs(area - exact_area) <= 4e-15 * share * (abs(force) * fading(decay * share)[1] + weight) + 1e-100
+
+
+@given(unit, st.floats(1e-6, 50.0), drives, st.floats(0.0, 1.0))
+def test_growth_is_the_derivative(force, decay, drive, share):
+    value, _area = polynomial_solution(force, decay, drive, share)
+    slope = FINE.diff(lambda u: polynomial_solution(force, decay, drive, u)[0], share)
+    found = thread_growth(float(value), decay, *drive, share)
+    assert abs(found - slope) <= 2e-15 * (sum(map(abs, drive)) + decay * abs(value))  # the terms, rounded
+
+
+@given(
+    st.floats(0.0, 0.01), st.floats(0.0, 0.01), st.tuples(unit, unit, unit, unit), st.floats(0.0, 10.0), unit
+)
+def test_drive_is_the_right_side_of_the_law(start, end, seconds, creep, share):
+    u = MP.mpf(abs(share))
+    a = [MP.mpf(each) * 1e-3 for each in seconds]
+    rate = MP.mpf(end) - start - (a[0] / 2 + a[1] / 6 + a[2] / 12 + a[3] / 20)
+
+    def x(s):
+        return start + s * (rate + s * (a[0] / 2 + s * (a[1] / 6 + s * (a[2] / 12 + s * a[3] / 20))))
+
+    drive = thread_drive(67.0, creep, start, end, *(float(each) for each in a))
+    found = sum(p * u**k for k, p in enumerate(drive))
+    exact = 67 * (MP.diff(x, u) + MP.mpf(creep) * x(u))
+    # terms of up to 67 (0.01 + 0.002) (1 + 10), rounded
+    assert abs(found - exact) < 1e-14
+
+
+def run(extension, rate, second, step, steps, stiffness, creep, relaxation, force=0.0):
+    """Force after steps on the quintics that join samples of a given extension."""
+    for n in range(steps):
+        at, then = n * step, (n + 1) * step
+        a = joined(
+            extension(at), step * rate(at), step * step * second(at),
+            extension(then), step * rate(then), step * step * second(then),
+        )  # fmt: skip
+        drive = thread_drive(stiffness, creep * step, extension(at), extension(then), *a)
+        force, _area = thread_force(force, relaxation * step, *drive, 1.0)
+    return force
+
+
+# Exact solutions
+
+
+@pytest.mark.parametrize("relaxation", [0.0, 1e-6, 0.1, 10.0, 1e3, 1e6])
+@pytest.mark.parametrize("creep", [0.0, 5.0, 10.0])
+@pytest.mark.parametrize(("step", "steps"), [(1e-9, 50), (1e-3, 50), (0.25, 4), (1.0, 1), (5.0, 3)])
+def test_constant_rate(relaxation, creep, step, steps):
+    b, v = 67.0, 0.02
+    t = step * steps
+    force = run(lambda t: v * t, lambda t: v, lambda t: 0.0, step, steps, b, creep, relaxation)
+    time, r, n = MP.mpf(t), MP.mpf(relaxation), MP.mpf(creep)
+    if relaxation == 0.0:
+        exact = b * MP.mpf(v) * (time + n * time**2 / 2)  # nothing is forgotten
+    else:
+        exact = b * MP.mpf(v) * (n * time / r + (1 - n / r) * -MP.expm1(-r * time) / r)
+    # samples v t are rounded: that is a few roundings of b v t in all, however many steps; and each step
+    # rounds the force
+    assert abs(force - exact) < 5e-16 * b * v * t * (1.0 + creep * t) + 1e-16 * (steps + 10) * exact
+    if relaxation >= 0.1 and t >= 1.0:
+        assert constant_rate_force(t, v, b, creep, relaxation) == pytest.approx(float(exact), rel=1e-14)
+
+
+@pytest.mark.parametrize("steps", [1, 7, 1000])
+def test_relaxation_after_a_stop(steps):
+    # held at an extension x the thread keeps the share n/r of its elastic tension
+    b, n, r, x, t = 67.0, 5.0, 10.0, 0.007, 0.4
+    force = run(lambda _t: x, lambda _t: 0.0, lambda _t: 0.0, t / steps, steps, b, n, r, b * x)
+    exact = b * x * (n / r + (1 - n / r) * MP.exp(-MP.mpf(r) * t))
+    assert abs(force - exact) < 1e-16 * steps  # a rounding of 0.5 N in each step
+
+
+@pytest.mark.parametrize(
+    ("n", "r"), [(5.0, 10.0), (0.0, 10.0), (5.0, 0.0), (0.0, 0.0), (5.0, 5.0), (5.0, 1e5)]
+)
+def test_sinusoidal_drive(n, r):
+    b, size, w, t = 67.0, 0.003, 2 * pi * 5.0, 0.35
+
+    def exact(time):
+        # the image of x = X sin wt is b X (i w + n) / (i w + r); the rest fades from F(0) = 0
+        image = b * size * MP.mpc(n, w) / MP.mpc(r, w)
+        return MP.im(image * MP.expj(w * time)) - MP.im(image) * MP.exp(-MP.mpf(r) * time)
+
+    errors = []
+    for steps in (8, 16, 32, 1024):
+        force = run(
+            lambda at: size * sin(w * at), lambda at: size * w * cos(w * at),
+            lambda at: -size * w * w * sin(w * at), t / steps, steps, b, n, r,
+        )  # fmt: skip
+        errors.append(float(abs(force - exact(MP.mpf(t)))))
+    # quintics: an extension of 3 mm within X (w h)^6 / 46080, a rate within X w (w h)^5 / 3000
+    for steps, error in zip((8, 16, 32, 1024), errors, strict=True):
+        h = t / steps
+        bound = b * size * ((w * h) ** 6 / 46080 + (w * h) ** 5 * w / max(w, r) / 3000)
+        assert error < bound + 1e-14, steps
+
+
+@given(unit, st.floats(0.0, 100.0), drives, st.floats(0.01, 0.99))
+def test_splitting_a_step_changes_nothing(force, decay, drive, share):
+    whole, area = thread_force(force, decay, *drive, 1.0)
+    first, first_area = thread_force(force, decay, *drive, share)
+    # the drive from there on, as a polynomial of the share of what is left
+    rest = 1.0 - share
+    p = [MP.mpf(each) for each in drive]
+    later = [
+        float(rest ** (k + 1) * sum(MP.binomial(j, k) * p[j] * MP.mpf(share) ** (j - k) for j in range(k, 6)))
+        for k in range(6)
+    ]
+    second, second_area = thread_force(first, decay * rest, *later, 1.0)
+    # 32 is the largest sum of the binomials by which terms of both signs grow
+    assert second == pytest.approx(whole, abs=32 * 4e-15 * (abs(force) + sum(map(abs, drive))))
+    assert first_area + rest * second_area == pytest.approx(
+        area, abs=32 * 4e-15 * (abs(force) + sum(map(abs, drive)))
+    )
+
+
+def test_equal_rates_make_a_spring():
+    # n = r: F' + r F = b (x' + r x) is solved by F = b x, whatever the motion
+    b, r = 67.0, 10.0
+    force = run(
+        lambda t: 0.007 * sin(9 * t), lambda t: 0.063 * cos(9 * t), lambda t: -0.567 * sin(9 * t),
+        0.01, 37, b, r, r,
+    )  # fmt: skip
+    assert force == pytest.approx(b * 0.007 * sin(9 * 0.37), abs=1e-15)  # rounding of 0.5 N
+
+
+def test_forgetting_at_once_leaves_a_dashpot():
+    # r to infinity: F = b x' / r + b n x / r; the rest is smaller by another r
+    b, n, r, v, t = 67.0, 5.0, 1e6, 0.02, 1.0
+    force = run(lambda t: v * t, lambda t: v, lambda t: 0.0, 0.1, 10, b, n, r)
+    assert force == pytest.approx(b * v * (1.0 + n * t) / r, rel=2.0 * n / r)
+
+
+# What the source prints
+
+
+def published(t, b, n, r):
+    """Extension by (3.29), x = F (r/(b n) + (1 - r/n) (1 - exp(-n t)) / (b n t)), for a force F = t."""
+    return t * (r / (b * n) + (1 - r / n) / (b * n * t) * (1 - MP.exp(-n * t)))
+
+
+@pytest.mark.parametrize(("n", "r"), [(5.0, 10.0), (2.0, 0.5), (0.3, 7.0)])
+@pytest.mark.parametrize("t", [0.01, 0.3, 2.0])
+def test_published_solution_belongs_to_the_corrected_law(n, r, t):
+    b, n, r, t = (MP.mpf(each) for each in (67.0, n, r, t))
+    x = published(t, b, n, r)
+    rate = MP.diff(lambda s: published(s, b, n, r), t)
+    # the force of (3.29) is F = t, rising at a constant rate: F' = 1
+    assert abs((1 + r * t) - b * (rate + n * x)) < 1e-25  # numerical derivative of 50 digits
+    # erratum: (3.28) as printed, F + r F' = b n x + b x', is not satisfied
+    assert abs((t + r) - (b * n * x + b * rate)) > 0.05 * (t + r)
+
+
+def test_published_solution_is_that_of_a_constant_rate_of_force():
+    # not of a constant rate of extension, for which the law gives another formula
+    b, n, r, t = 67.0, 0.5, 10.0, 0.3
+    compliance = float(published(MP.mpf(t), b, n, r) / t)
+    assert constant_rate_force(t, 1.0, b, n, r) / t != pytest.approx(1.0 / compliance, rel=0.1)
+    # both begin with the stiffness b and end with b n/r
+    for time, stiffness in ((1e-6, b), (1e6, b * n / r)):
+        assert constant_rate_force(time, 1.0, b, n, r) / time == pytest.approx(stiffness, rel=1e-4)
+        assert time / float(published(MP.mpf(time), b, n, r)) == pytest.approx(stiffness, rel=1e-4)
+
+
+def test_steps_follow_the_published_solution():
+    b, n, r = 67.0, 5.0, 10.0
+    small, share = r / (b * n), (1 - r / n) / (b * n)
+    force = run(
+        lambda t: small * t - share * expm1(-n * t), lambda t: small + share * n * exp(-n * t),
+        lambda t: -share * n * n * exp(-n * t), 0.01, 50, b, n, r,
+    )  # fmt: skip
+    # (n h)^5 / 3000 of the transient's rate
+    assert force == pytest.approx(0.5, rel=1e-9)
+
+
+@given(st.floats(0.1, 50.0), st.floats(0.1, 50.0))
+def test_faster_loading_makes_the_thread_stiffer(n, r):
+    # the source's conclusion from (3.29), for a thread that relaxes faster than it creeps
+    assume(r > 1.01 * n)
+    stiffness = [t / published(MP.mpf(t), 67.0, n, r) for t in (0.01, 0.1, 1.0)]
+    assert stiffness == sorted(stiffness, reverse=True)
+
+
+# Turns and levels
+
+
+@given(unit, st.floats(0.0, 20.0), drives)
+def test_force_turns_but_once_where_it_is_said_so(force, decay, drive):
+    assume(turns_once(*drive[1:]))
+    slopes = []
+    for k in range(101):
+        value, _area = thread_force(force, decay, *drive, k / 100)
+        slopes.append(thread_growth(value, decay, *drive, k / 100))
+    signs = [slope > 0.0 for slope in slopes if abs(slope) > 1e-13]
+    assert sum(one != other for one, other in pairwise(signs)) <= 1
+
+
+@pytest.mark.parametrize("decay", [0.0, 1.0, 50.0, 1e6])
+def test_located_level(decay):
+    drive = (1.0 + decay, 0.0, 0.0, 0.0, 0.0, 0.0)
+    # from 0 towards (1 + z) / z: passes a half of where it gets to
+    end, _area = thread_force(0.0, decay, *drive, 1.0)
+    found = thread_locate(False, 0.5 * end, 0.0, decay, *drive, 0.0, 1.0)
+    exact = 0.5 if decay == 0.0 else -MP.log(1 - MP.mpf(0.5) * end * decay / (1 + decay)) / decay
+    assert abs(found - exact) < 3e-15  # the bracket
+    assert thread_force(0.0, decay, *drive, found)[0] >= 0.5 * end
+
+
+@pytest.mark.parametrize("decay", [0.5, 5.0, 500.0])
+def test_located_turn(decay):
+    # dF/du + z F = u from F = 1: falls, then rises with the drive; turns where F = u / z
+    found = thread_locate(True, 0.0, 1.0, decay, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0)
+    z = MP.mpf(decay)
+    exact = MP.log(1 + z**2) / z  # F = u/z - 1/z^2 + (1 + 1/z^2) exp(-z u)
+    assert abs(found - exact) < 1e-12 * (1 + exact)  # the slope's rounding, z 1e-16, over its own slope
