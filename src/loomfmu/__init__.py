@@ -3,8 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .cosim.claims import Verdict, judge
+    from .cosim.claims import judge
     from .cosim.run import Result, run
+    from .cosim.verdict import Verdict
     from .errors import LoomfmuError
     from .traces import Trace
 
@@ -12,7 +13,7 @@ _HOMES = {
     "LoomfmuError": "errors",
     "Result": "cosim.run",
     "Trace": "traces",
-    "Verdict": "cosim.claims",
+    "Verdict": "cosim.verdict",
     "judge": "cosim.claims",
     "run": "cosim.run",
 }

@@ -54,7 +54,7 @@ class BeltMonitor(ShaftDriven):
         "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
     )
     travel: float = input_("m", 0.9667, "Travel of the rapier head", rate="velocity")
-    velocity: float = input_("m/s", 55.835, "Velocity of the rapier head", nominal=10.0, rate="acceleration")
+    velocity: float = input_("m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = input_("m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0)
     yarn_tension: float = input_(
         "N", 0.0, "Weft tension, which presses the belt", display="cN", minimum=-1e6, maximum=1e6
@@ -96,6 +96,8 @@ class BeltMonitor(ShaftDriven):
         "1", "The belt has buckled at some time so far", start=False, variability="discrete"
     )
 
+    acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
+    bend_rate: float = state("m/s", "Rate of the second derivative by shaft angle between the samples")
     sampled_clearance: float = state("m", "Clearance for which length_factor holds")
     sampled_time: float = state("s", "Time of the last sample of the inputs")
     sampled_travel: float = state("m", "Travel at the last sample")
@@ -118,6 +120,8 @@ class BeltMonitor(ShaftDriven):
         self.lowest_margin = 1e300
         self.lowest_speed_limit = NO_LIMIT
         self.buckled = False
+        self.acceleration_rate = 0.0
+        self.bend_rate = 0.0
         self.use_clearance()
         self.take_sample(time, 0.0)
         self.remember(time)
@@ -129,7 +133,11 @@ class BeltMonitor(ShaftDriven):
         self.use_clearance()
         at = time + step_size if self.inputs_at_step_end else time
         self.take_sample(time, step_size if self.inputs_at_step_end else 0.0)
-        self.judge(at - self.sampled_time)
+        duration = at - self.sampled_time
+        self.judge(duration)
+        if duration > 0.0:
+            self.acceleration_rate = (self.acceleration - self.sampled_acceleration) / duration
+            self.bend_rate = (self.joined_bend - self.sampled_bend) / duration
         self.remember(at)
         return self.show(0.0 if self.inputs_at_step_end else step_size)
 
@@ -262,9 +270,10 @@ class BeltMonitor(ShaftDriven):
     def show(self, lead: float) -> int:
         """Outputs at the end of the step, the inputs carried over `lead` if they hold at its start."""
         travel = carried(self.travel, self.velocity, self.acceleration, lead)
-        bend = self.joined_bend
+        travel = travel + self.acceleration_rate * lead * lead * lead / 6.0
+        bend = self.joined_bend + self.bend_rate * lead
         self.free_length = travel - self.idle_travel - self.head_length
-        self.inertia_force = self.head_mass * self.acceleration
+        self.inertia_force = self.head_mass * (self.acceleration + self.acceleration_rate * lead)
         self.axial_force = self.inertia_force + self.yarn_tension
         self.critical_force = critical_force(
             self.free_length if self.free_length > 1e-3 else 1e-3, self.length_factor, self.bending_stiffness

@@ -10,58 +10,18 @@ the verdict says that it speaks of the samples.
 
 import inspect
 import math
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
 from ..traces import Trace
 from . import curves
-
-TURN = 2.0 * math.pi
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What became of a claim; true where it holds. Values are in SI, `unit` the one to show them in."""
-
-    claim: str
-    signal: str
-    holds: bool
-    bound: float
-    worst: float
-    unit: str
-    time: float
-    angle: float
-    revolution: int
-    note: str = ""
-
-    def __bool__(self) -> bool:
-        return self.holds
-
-    def __str__(self) -> str:
-        word = "holds" if self.holds else "FAILS"
-        where = ""
-        if math.isfinite(self.time):
-            angle = f"{math.degrees(self.angle):.3f} deg"
-            where = f" at {self.time:.6g} s, {angle} of revolution {self.revolution}"
-        note = f" ({self.note})" if self.note else ""
-        return (
-            f"{word}: {self.claim}: {self.signal} = {units.show(self.worst, self.unit)}{where},"
-            f" bound {units.show(self.bound, self.unit)}{note}"
-        )
-
-    def as_dict(self) -> dict[str, Any]:
-        """The verdict for JSON: what is not finite becomes null."""
-        return {
-            key: None if isinstance(value, float) and not math.isfinite(value) else value
-            for key, value in asdict(self).items()
-        }
+from .loom_claims import locks_in_time, rapier_in_open_shed, reed_clear_of_rapier
+from .verdict import Verdict, verdict
 
 
 def judge(trace: Trace, *, kind: str, name: str = "", **arguments: Any) -> Verdict:
@@ -72,10 +32,17 @@ def judge(trace: Trace, *, kind: str, name: str = "", **arguments: Any) -> Verdi
     Raises:
         LoomfmuError: an unknown kind, argument, signal or unit, or one that is missing
     """
-    if kind not in KINDS:
-        raise LoomfmuError(f"there is no claim {kind!r}{suggestion(kind, KINDS)}")
-    function = KINDS[kind]
-    known = list(inspect.signature(function).parameters.values())[1:]
+    check(kind, arguments)
+    check_values(kind, arguments, trace.unit)
+    judged = KINDS[kind](trace, **arguments)
+    return replace(judged, claim=f"{name}: {judged.claim}") if name else judged
+
+
+def check(kind: Any, arguments: dict[str, Any]) -> None:
+    """Refuse an unknown claim, an argument that it does not have, and one that it lacks."""
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), KINDS)}")
+    known = list(inspect.signature(KINDS[kind]).parameters.values())[1:]
     names = [parameter.name for parameter in known]
     for given in arguments:
         if given not in names:
@@ -83,26 +50,72 @@ def judge(trace: Trace, *, kind: str, name: str = "", **arguments: Any) -> Verdi
     for parameter in known:
         if parameter.default is parameter.empty and parameter.name not in arguments:
             raise LoomfmuError(f"claim {kind!r} needs {parameter.name!r}")
-    verdict = function(trace, **arguments)
-    return replace(verdict, claim=f"{name}: {verdict.claim}") if name else verdict
 
 
-def signals_of(claim: dict[str, Any]) -> list[str]:
-    """The signals that a claim needs to have been recorded."""
+def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], str]) -> None:
+    """Refuse quantities that cannot be read or compared; `unit_of` tells the unit of a signal."""
+    for name, given in arguments.items():
+        where = f"claim {kind!r}: {name}"
+        several = name in ("window", "angles")
+        if given is None or name not in UNITS:
+            continue
+        if name == "window" and not (isinstance(given, list | tuple) and len(given) == 2):
+            raise LoomfmuError(f"{where} = {given!r} is not [from, to] in shaft angle")
+        if name == "angles" and not (isinstance(given, list | tuple) and given):
+            raise LoomfmuError(f"{where} = {given!r} is no list of shaft angles")
+        unit = UNITS[name] or (unit_of(arguments["signal"]) if "signal" in arguments else "1")
+        if kind == "peak_load":
+            unit = "N"
+        for quantity in given if several else [given]:
+            try:
+                value = units.parse(quantity, unit)
+            except units.UnitError as error:
+                raise LoomfmuError(f"{where}: {error}") from None
+            if not math.isfinite(value):
+                raise LoomfmuError(f"{where} = {quantity!r} is not finite")
+            if name == "tolerance" and not 0.0 < value < 0.5:
+                raise LoomfmuError(f"{where} = {value:g} is outside (0, 0.5), shares of the stroke")
+
+
+def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
+    """The signals that a claim needs to have been recorded, in a scene with these instances."""
     kind = claim.get("kind")
     if kind in ("above", "below"):
         return [str(claim.get("signal"))]
-    if kind == "lowest_margin":
-        return [f"{claim.get('belt', 'belt')}.{name}" for name in ("margin", "lowest_margin")]
-    if kind in ("dwell", "dwell_contains"):
-        return [f"{claim.get('heald')}.lift"]
-    if kind == "clear_shed":
-        return [f"{claim.get('heald')}.lift", f"{claim.get('heald')}.warp_height"]
-    if kind == "peak_load":
-        return [f"{claim.get('damper')}.{name}" for name in ("transmitted_force", "peak_load")]
-    if kind == "stop_contacts":
-        return [f"{claim.get('damper')}.stop_contacts"]
-    return []
+    owner, variables = NEEDS.get(str(kind), ("", ()))
+    named = [str(claim.get(owner, owner))] if owner else []
+    signals = [f"{instance}.{variable}" for instance in named for variable in variables]
+    if kind in ("rapier_in_open_shed", "reed_clear_of_rapier"):
+        signals.append(f"{claim.get('weft', 'weft')}.travel")
+    if kind == "rapier_in_open_shed":
+        healds = claim.get("healds") or [name for name in instances if name.startswith("heald_")]
+        signals += [f"{heald}.{variable}" for heald in healds for variable in ("lift", "warp_height")]
+    return signals
+
+
+# arguments that are quantities, and their units; a bound's is that of its signal
+UNITS = {
+    "bound": "",
+    "at_most": "1",
+    "at_least": "rad",
+    "window": "rad",
+    "angles": "rad",
+    "tolerance": "1",
+    "clearance": "m",
+    "head_height": "m",
+}
+
+# claim -> the argument that names an instance, or its usual name, and the outputs it is judged by
+NEEDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "lowest_margin": ("belt", ("margin", "lowest_margin")),
+    "dwell": ("heald", ("lift",)),
+    "dwell_contains": ("heald", ("lift",)),
+    "clear_shed": ("heald", ("lift", "warp_height")),
+    "peak_load": ("damper", ("transmitted_force", "peak_load")),
+    "stop_contacts": ("damper", ("stop_contacts",)),
+    "locks_in_time": ("lock", ("in_time", "torque_margin", "available_time")),
+    "reed_clear_of_rapier": ("reed", ("position",)),
+}
 
 
 # ---- the claims
@@ -123,7 +136,7 @@ def lowest_margin(trace: Trace, bound: float | str, belt: str = "belt") -> Verdi
     limit = units.parse(bound, "1")
     worst = float(trace[f"{belt}.lowest_margin"][-1])
     place = int(np.argmin(trace[f"{belt}.margin"]))
-    return _verdict(
+    return verdict(
         trace, "lowest margin", f"{belt}.lowest_margin", worst >= limit, limit, worst, "1",
         float(trace.time[place]),
     )  # fmt: skip
@@ -134,7 +147,7 @@ def peak_load(trace: Trace, damper: str, at_most: float | str) -> Verdict:
     limit = units.parse(at_most, "N")
     worst = float(trace[f"{damper}.peak_load"][-1])
     reached = int(np.argmax(trace[f"{damper}.peak_load"] >= worst))
-    return _verdict(
+    return verdict(
         trace, "peak load", f"{damper}.peak_load", worst <= limit, limit, worst, "N",
         float(trace.time[reached]),
     )  # fmt: skip
@@ -147,9 +160,7 @@ def stop_contacts(trace: Trace, damper: str, at_most: float | str) -> Verdict:
     worst = float(counted[-1])
     over = np.flatnonzero(counted > limit)
     time = float(trace.time[over[0]]) if len(over) else math.nan
-    return _verdict(
-        trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, "1", time
-    )
+    return verdict(trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, "1", time)
 
 
 def dwell(trace: Trace, heald: str, at_least: float | str, tolerance: float | str = 0.015) -> Verdict:
@@ -193,7 +204,7 @@ def dwell_contains(
     note = "" if worst >= 0.0 else "the run never reaches these angles"
     holds = 0.0 <= worst <= limit
     shown = ", ".join(units.show(units.parse(angle, "rad"), "deg") for angle in angles)
-    return _verdict(
+    return verdict(
         trace, f"dwell at {shown}", f"{heald}.lift", holds, limit, worst if worst >= 0 else math.nan, "%",
         time, note,
     )  # fmt: skip
@@ -201,7 +212,19 @@ def dwell_contains(
 
 KINDS: dict[str, Callable[..., Verdict]] = {
     function.__name__: function
-    for function in (above, below, lowest_margin, dwell, clear_shed, dwell_contains, peak_load, stop_contacts)
+    for function in (
+        above,
+        below,
+        lowest_margin,
+        dwell,
+        clear_shed,
+        dwell_contains,
+        peak_load,
+        stop_contacts,
+        rapier_in_open_shed,
+        reed_clear_of_rapier,
+        locks_in_time,
+    )
 }
 
 
@@ -216,8 +239,6 @@ def _bounded(
     word = "above" if sign > 0 else "below"
     claim = f"stays {word}"
     if window is not None:
-        if len(window) != 2:
-            raise LoomfmuError(f"window of {signal} is [from, to] in shaft angle, not {window!r}")
         edges = (units.parse(window[0], "rad"), units.parse(window[1], "rad"))
         claim += " in [" + ", ".join(units.show(edge, "deg") for edge in edges) + "]"
     worst, time, between = curves.lowest(trace, signal, sign, edges)
@@ -225,7 +246,7 @@ def _bounded(
     if math.isnan(time):
         note = "the run never is in that window"
     holds = sign * worst >= sign * limit
-    return _verdict(trace, claim, signal, holds, limit, worst, trace.display(signal), time, note)
+    return verdict(trace, claim, signal, holds, limit, worst, trace.display(signal), time, note)
 
 
 def _shortest(
@@ -234,7 +255,7 @@ def _shortest(
     """The shortest of some spans of time, by the angle that the shaft turns meanwhile."""
     limit = units.parse(at_least, "rad")
     if not spans:
-        return _verdict(
+        return verdict(
             trace,
             claim,
             signal,
@@ -248,18 +269,4 @@ def _shortest(
     angle = curves.Motion(trace, "shaft.angle")
     turned = [abs(angle.at(end) - angle.at(start)) for start, end in spans]
     place = int(np.argmin(turned))
-    return _verdict(
-        trace, claim, signal, turned[place] >= limit, limit, turned[place], "deg", spans[place][0]
-    )
-
-
-def _verdict(
-    trace: Trace, claim: str, signal: str, holds: bool, bound: float, worst: float, unit: str, time: float,
-    note: str = "",
-) -> Verdict:  # fmt: skip
-    """A verdict with the place on the shaft that belongs to its time."""
-    angle = float(np.interp(time, trace.time, trace.shaft_angle)) if math.isfinite(time) else math.nan
-    turns = math.floor(angle / TURN) if math.isfinite(angle) else 0
-    return Verdict(
-        claim, signal, bool(holds), bound, worst, unit, time, angle - TURN * turns, turns + 1, note
-    )
+    return verdict(trace, claim, signal, turned[place] >= limit, limit, turned[place], "deg", spans[place][0])

@@ -127,7 +127,7 @@ def load(path: Path) -> Fmu:
     except (OSError, zipfile.BadZipFile, KeyError) as error:
         raise LoomfmuError(f"{path}: not a readable FMU ({error})") from None
     except Exception as error:  # fmpy raises its own kinds for a description that is none
-        reason = str(error).splitlines()[0]
+        reason = (str(error) or type(error).__name__).splitlines()[0]
         raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({reason})") from None
     if description.fmiVersion != "2.0" or description.coSimulation is None:
         raise LoomfmuError(f"{path}: an FMI {description.fmiVersion} FMU; only FMI 2.0 co-simulation is run")

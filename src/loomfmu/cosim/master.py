@@ -43,6 +43,7 @@ class Master:
             max(1, sum(1 for kind, _ in self.slots.values() if kind != "Real")), dtype=np.int32
         )
         self.slaves: dict[str, Slave] = {}
+        self.unsettled = False
         self._time = ctypes.c_double(0.0)
         self._calls: list[tuple[Slave, str, Call]] = []
 
@@ -61,6 +62,9 @@ class Master:
                         vector = "Real" if kind == "Real" else "Integer"
                         slots[name, port.name] = (kind, taken[vector])
                         taken[vector] += 1
+        for drive in self.scene.drives:
+            slots[drive.instance, drive.variable] = ("Real", taken["Real"])
+            taken["Real"] += 1
         return slots
 
     # ---- life cycle
@@ -84,12 +88,15 @@ class Master:
         stop_time = self.scene.steps * self.scene.step_size
         for name in self.order:
             self.slaves[name].start(self.scene.instances[name].values, stop_time)
+        self._drive(0)
         for _ in range(INITIAL_PASSES if self.lagged else 1):
             before = self.reals.copy(), self.integers.copy()
             for name in self.order:
                 self._run_calls(self._inputs(name) + self._outputs(name))
             if np.array_equal(before[0], self.reals) and np.array_equal(before[1], self.integers):
                 break
+        else:
+            self.unsettled = bool(self.lagged)
         for name in self.order:
             self.slaves[name].finish_initialization()
         step_size = ctypes.c_double(self.scene.step_size)
@@ -108,6 +115,12 @@ class Master:
             if status > 1:
                 raise slave.failed(status, action, self._time.value)
 
+    def _drive(self, steps: int) -> None:
+        """Set the driven inputs to what they are after a number of steps."""
+        revolution = steps / self.scene.steps_per_revolution
+        for drive in self.scene.drives:
+            self.reals[self.slots[drive.instance, drive.variable][1]] = drive.at(revolution)
+
     def _address(self, kind: str, slot: int) -> int:
         vector: NDArray[Any] = self.reals if kind == "Real" else self.integers
         return int(vector.ctypes.data) + slot * SIZES[kind]
@@ -122,6 +135,10 @@ class Master:
             (*self.slots[wire.source], instance.fmu.ports[wire.sink[1]].reference)
             for wire in self.scene.wires
             if wire.sink[0] == name
+        ] + [
+            (*self.slots[name, drive.variable], instance.fmu.ports[drive.variable].reference)
+            for drive in self.scene.drives
+            if drive.instance == name
         ]
         runs: list[tuple[str, int, list[int]]] = []
         for kind, slot, reference in sorted(wired):
@@ -142,7 +159,9 @@ class Master:
             mine = [
                 (slot, self.scene.instances[name].fmu.ports[variable].reference)
                 for (instance, variable), (its_kind, slot) in self.slots.items()
-                if instance == name and its_kind == kind
+                if instance == name
+                and its_kind == kind
+                and self.scene.instances[name].fmu.ports[variable].causality == "output"
             ]
             if mine:
                 address = self._address(kind, mine[0][0])
@@ -171,6 +190,7 @@ class Master:
 
         calls = [(function, arguments) for _slave, _action, (function, arguments) in self._calls]
         step_size, time = self.scene.step_size, self._time
+        driven = bool(self.scene.drives)
         with _interrupt_flag() as interrupted:
             try:
                 for step in range(self.scene.steps):
@@ -179,6 +199,8 @@ class Master:
                         filled = 0
                         progress(step)
                     time.value = step * step_size
+                    if driven:
+                        self._drive(step + 1)
                     for function, arguments in calls:
                         if (status := function(*arguments)) > 1:
                             raise self._failure(arguments, status)
@@ -200,8 +222,9 @@ class Master:
 
     def _check_finite(self, times: NDArray[np.float64], reals: NDArray[np.float64]) -> None:
         """No NaN or infinity may pass for a result."""
-        if math.isfinite(float(reals.sum())):
-            return
+        with np.errstate(over="ignore", invalid="ignore"):
+            if math.isfinite(float(reals.sum())):
+                return
         bad = np.argwhere(~np.isfinite(reals))
         if len(bad):
             row, column = bad[0]
@@ -212,12 +235,17 @@ class Master:
 
     def warnings(self) -> list[str]:
         """What the FMUs warned of."""
-        return [
-            f"{slave.name}: {text}"
-            for slave in self.slaves.values()
-            for status, text in slave.messages
-            if status == 1
-        ] + [f"loop: {wire} carries the value of the step before" for wire in self.lagged]
+        return (
+            [
+                f"{slave.name}: {text}"
+                for slave in self.slaves.values()
+                for status, text in slave.messages
+                if status == 1
+            ]
+            + [f"loop: {wire} carries the value of the step before" for wire in self.lagged]
+            + [f"loop: the values at the start have not settled after {INITIAL_PASSES} exchanges"]
+            * self.unsettled
+        )
 
 
 @contextmanager

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from ..errors import LoomfmuError, suggestion
 from ..traces import ROWS, Channel, Trace, TraceWriter
 from . import scene as scenes
-from .claims import KINDS, Verdict, judge, signals_of
+from .claims import check, check_values, judge, signals_of
 from .fmus import Port
 from .master import Interrupted, Master
 from .scene import Scene
+from .verdict import Verdict
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
 
@@ -62,12 +63,18 @@ def run(
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
     """
+    place = "" if isinstance(scene, Scene) else f"{scene}: "
     if not isinstance(scene, Scene):
         scene = scenes.load(scene, set)
     elif set:
-        scene = scenes.parse(scene.text, scene.name, set)
+        scene = scenes.parse(scene.text, scene.name, set, scene.directory)
     path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
-    check_claims(scene)
+    if not path.name or path.is_dir():
+        raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
+    try:
+        check_claims(scene)
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{place}{error}") from None
     with Master(scene) as master:
         master.initialize()
         writer = _writer(scene, master, path)
@@ -103,20 +110,22 @@ def check_claims(scene: Scene) -> None:
     """Refuse a claim that cannot be judged before the run, not after it."""
     for claim in scene.claims:
         kind = claim.get("kind")
-        if kind not in KINDS:
-            raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), KINDS)}")
-        for signal in signals_of(claim):
+        arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
+        check(kind, arguments)
+        for signal in signals_of(claim, scene.instances):
             _output(scene, signal, f"claim {kind!r}")
+        check_values(str(kind), arguments, lambda signal: _output(scene, signal, "claim").unit)
 
 
 def _output(scene: Scene, signal: str, where: str) -> Port:
-    """The output that a signal names."""
+    """The output, or the input driven by the scene, that a signal names."""
     instance, _, variable = signal.partition(".")
     if instance not in scene.instances:
         hint = suggestion(instance, scene.instances)
         raise LoomfmuError(f"{where}: there is no instance {instance!r}{hint}")
     ports = scene.instances[instance].fmu.ports
     outputs = [port.name for port in ports.values() if port.causality == "output"]
+    outputs += [drive.variable for drive in scene.drives if drive.instance == instance]
     if variable not in outputs:
         raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
     return ports[variable]
@@ -124,12 +133,18 @@ def _output(scene: Scene, signal: str, where: str) -> Port:
 
 def _recorded(scene: Scene) -> list[str]:
     """What the scene records, what its claims need, and the rates of that."""
-    wanted = ["shaft.angle", *scene.record, *(s for claim in scene.claims for s in signals_of(claim))]
+    wanted = [
+        "shaft.angle",
+        *scene.record,
+        *(f"{drive.instance}.{drive.variable}" for drive in scene.drives),
+        *(s for claim in scene.claims for s in signals_of(claim, scene.instances)),
+    ]
     names: dict[str, None] = {}
     for signal in wanted:
         while signal and signal not in names:
             names[signal] = None
-            rate = _output(scene, signal, "record").rate
+            port = _output(scene, signal, "record")
+            rate = port.rate if port.causality == "output" else None
             signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
     return list(names)
 

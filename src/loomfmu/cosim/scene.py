@@ -4,6 +4,7 @@ import fnmatch
 import math
 import re
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,24 @@ from typing import Any
 from .. import machines
 from ..errors import LoomfmuError, suggestion
 from . import fmus, standard_loom
+from .drives import Drive, drive, split
 from .fmus import Fmu, Value
 from .graph import Wire
 
-KEYS = ("title", "description", "revolutions", "steps_per_revolution", "record", "loom", "wires", "claims")
+KEYS = (
+    "title",
+    "description",
+    "revolutions",
+    "steps_per_revolution",
+    "record",
+    "loom",
+    "wires",
+    "inputs",
+    "claims",
+)
 PARAMETER_SETS = ("machine", "head", "pattern", "component")
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 
 
 @dataclass
@@ -36,10 +49,12 @@ class Scene:
     description: str
     name: str
     text: str
+    directory: Path
     revolutions: float
     steps_per_revolution: int
     instances: dict[str, Instance]
     wires: list[Wire]
+    drives: list[Drive]
     record: list[str]
     claims: list[dict[str, Any]]
 
@@ -68,18 +83,26 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     except (OSError, UnicodeDecodeError) as error:
         raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     try:
-        return parse(text, path.stem, overrides)
+        return parse(text, path.stem, overrides, path.parent)
     except LoomfmuError as error:
         raise LoomfmuError(f"{path}: {error}") from None
 
 
-def parse(text: str, name: str = "scene", overrides: dict[str, Any] | None = None) -> Scene:
-    """A scene from its text; `overrides` are values such as {"shaft.speed": "685 rpm"}."""
+def parse(
+    text: str,
+    name: str = "scene",
+    overrides: dict[str, Any] | None = None,
+    directory: str | Path = ".",
+) -> Scene:
+    """A scene from its text; `overrides` are values such as {"shaft.speed": "685 rpm"}.
+
+    `directory` is where the files that the scene names are looked for.
+    """
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise LoomfmuError(f"not valid TOML: {error}") from None
-    given = _instance_tables(tables)
+    given = _instance_tables(tables, Path(directory))
     for key, value in (overrides or {}).items():
         _override(tables, given, key, value)
     instances = {instance: _instance(instance, table) for instance, table in given.items()}
@@ -91,12 +114,14 @@ def parse(text: str, name: str = "scene", overrides: dict[str, Any] | None = Non
         description=str(tables.get("description", "")).strip(),
         name=name,
         text=text,
+        directory=Path(directory),
         revolutions=_number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9),
         steps_per_revolution=int(
             _number(tables.get("steps_per_revolution", 1440), "steps_per_revolution", 1, 1e9, whole=True)
         ),
         instances=instances,
         wires=wires,
+        drives=_drives(instances, wires, tables.get("inputs", {})),
         record=_record(instances, tables.get("record", ["*"])),
         claims=_claims(tables.get("claims", [])),
     )
@@ -109,26 +134,30 @@ def parse(text: str, name: str = "scene", overrides: dict[str, Any] | None = Non
     return scene
 
 
-def _instance_tables(tables: dict[str, Any]) -> dict[str, dict[str, Any]]:
+def _instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """The table of each instance: the standard loom's, then what the scene says of each."""
     loom = tables.get("loom")
     if loom is not None and not isinstance(loom, dict):
         raise LoomfmuError(f"loom = {loom!r} is no table")
-    given = {"shaft": {}} if loom is None else standard_loom.loom(loom)
+    given = {"shaft": {}} if loom is None else standard_loom.loom(loom, directory)
     groups: list[str] = []
     for key, table in tables.items():
         if key in KEYS:
             continue
         if not isinstance(table, dict):
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
-        if _members(key, given):
+        siblings = [] if "component" in table else [name for name in tables if name != key]
+        if key not in given and _members(key, [*given, *siblings]):
             groups.append(key)
             continue
         known = standard_loom.COMPONENT_OF
         if key not in given and "component" not in table and standard_loom.stem(key) not in known:
-            raise LoomfmuError(f"[{key}] is unknown{suggestion(key, [*KEYS, *given, *known])}")
+            hint = suggestion(key, dict.fromkeys([*KEYS, *given, *known]))
+            raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
         if not NAME.fullmatch(key):
             raise LoomfmuError(f"instance name {key!r} is not letters, digits and _, a letter first")
+        if key in TAKEN:
+            raise LoomfmuError(f"instance name {key!r} is taken: a trace has its own {key}")
         given[key] = given.get(key, {}) | table
     for key in groups:  # a table for all members says less than a member's own
         for member in _members(key, given):
@@ -136,7 +165,7 @@ def _instance_tables(tables: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return given
 
 
-def _members(key: str, given: dict[str, dict[str, Any]]) -> list[str]:
+def _members(key: str, given: Iterable[str]) -> list[str]:
     """The numbered instances that a name without number stands for."""
     if key in given:
         return []
@@ -149,7 +178,7 @@ def _override(tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str
     if not dot:
         if key not in ("revolutions", "steps_per_revolution"):
             known = ["revolutions", "steps_per_revolution", *(f"{name}." for name in given)]
-            raise LoomfmuError(f"{key} cannot be set{suggestion(key, known)}")
+            raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
         tables[key] = value
         return
     members = [instance] if instance in given else _members(instance, given)
@@ -161,8 +190,13 @@ def _override(tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str
 
 def _instance(name: str, table: dict[str, Any]) -> Instance:
     """An instance with its values checked and in SI."""
+    for key in ("component", "machine", "head"):
+        if not isinstance(table.get(key, ""), str):
+            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
     component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
     fmu = fmus.of_component(str(component))
+    if name == "shaft" and fmu.name != "MainShaft":
+        raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene is a MainShaft")
     values: dict[str, Value] = dict(
         machines.parameters(fmu.name, machine=table.get("machine"), head=table.get("head"))
     )
@@ -178,7 +212,8 @@ def _instance(name: str, table: dict[str, Any]) -> Instance:
             raise LoomfmuError(f"{name}.{key} is unknown{suggestion(key, [*settable, *PARAMETER_SETS])}")
         port = fmu.ports[key]
         if port.causality not in ("parameter", "input"):
-            raise LoomfmuError(f"{name}.{key} is an {port.causality} of {fmu.name} and cannot be set")
+            kind = "an output" if port.causality == "output" else "a state"
+            raise LoomfmuError(f"{name}.{key} is {kind} of {fmu.name} and cannot be set")
         values[key] = port.value(given, f"{name}.{key}")
     if "inputs_at_step_end" in fmu.ports:
         values.setdefault("inputs_at_step_end", True)  # the master works in dependency order
@@ -196,7 +231,8 @@ def _wires(instances: dict[str, Instance], given: dict[str, dict[str, Any]], spe
                 sources[f"{name}.{sink}"] = source
     for sink, source in _dotted(spelt_out).items():
         if source is False:
-            sources.pop(sink, None)
+            if sources.pop(sink, None) is None:
+                raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
         else:
             sources[sink] = source
     return [_wire(instances, sink, source) for sink, source in sources.items()]
@@ -233,6 +269,19 @@ def _wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
     return Wire(source=ends[1], sink=ends[0])
 
 
+def _drives(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
+    """The inputs that the scene drives along tables; an input has one source."""
+    if not isinstance(table, dict):
+        raise LoomfmuError('inputs is no table of "instance.input" = [[revolution, value], ...]')
+    drives = []
+    for name, rows in _dotted(table).items():
+        instance, variable = split(name, instances)
+        if any(wire.sink == (instance, variable) for wire in wires):
+            raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
+        drives.append(drive(name, instances[instance].fmu.port(variable, f"inputs.{name}"), rows))
+    return drives
+
+
 def _follow(instance: Instance, wire: Wire) -> None:
     """A mechanism whose shaft angle is wired follows it."""
     if wire.sink[1] == "shaft_angle" and "follow_shaft" in instance.fmu.ports:
@@ -242,7 +291,7 @@ def _follow(instance: Instance, wire: Wire) -> None:
 def _number(given: Any, where: str, low: float, high: float, whole: bool = False) -> float:
     """A plain number within bounds."""
     try:
-        value = float(given)
+        value = float(given if not isinstance(given, bool) else "")
     except (TypeError, ValueError):
         raise LoomfmuError(f"{where} = {given!r} is not a number") from None
     if not low <= value <= high:

@@ -9,6 +9,7 @@ import atexit
 import ctypes
 from collections.abc import Callable, Sequence
 from typing import Any
+from urllib.parse import unquote
 
 from fmpy import calloc, free
 from fmpy.fmi1 import FMICallException
@@ -18,6 +19,9 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2False,
+    fmi2True,
 )
 
 from ..errors import LoomfmuError
@@ -47,11 +51,26 @@ class Slave:
                 guid=fmu.guid, unzipDirectory=str(fmu.directory), modelIdentifier=fmu.identifier,
                 instanceName=name,
             )  # fmt: skip
-            self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+            self._instantiate()
         except Exception as error:
             raise LoomfmuError(f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}") from None
         self._library = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._component = ctypes.c_void_p(self._slave.component)
+
+    def _instantiate(self) -> None:
+        """As fmpy's own method, but with a plain resource location.
+
+        pythonfmu's wrapper knows no escape but %20 and crashes where it finds no resources.
+        """
+        slave = self._slave
+        slave.callbacks = self._callbacks
+        resources = unquote((self.fmu.directory.absolute() / "resources").as_uri())
+        slave.component = slave.fmi2Instantiate(
+            self.name.encode(), fmi2CoSimulation, self.fmu.guid.encode(), resources.encode(),
+            ctypes.byref(self._callbacks), fmi2False, fmi2True,
+        )  # fmt: skip
+        if slave.component is None:
+            raise LoomfmuError("no reason given")
 
     def _log(
         self, _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
@@ -73,7 +92,7 @@ class Slave:
             failure = error
             self.fatal = self.fatal or error.status == FATAL
         if failure or any(status >= DISCARD for status, _text in self.messages[seen:]):
-            raise LoomfmuError(f"{self.name}.{self._reason(failure)}")
+            raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the experiment up and the values, and enter the initialization."""
@@ -92,8 +111,10 @@ class Slave:
         self._do(self._slave.enterInitializationMode)
 
     def finish_initialization(self) -> None:
-        """Leave the initialization; what the FMU complains of is raised."""
+        """Leave the initialization; what the FMU complains of, or complained of before, is raised."""
         self._do(self._slave.exitInitializationMode)
+        if any(status >= DISCARD for status, _text in self.messages):
+            raise LoomfmuError(f"{self.name}: {self._reason()}")
 
     # ---- prepared calls
 

@@ -1,8 +1,10 @@
 """The loom that a scene need not spell out: its instances, their components and their wiring."""
 
 import re
+from pathlib import Path
 from typing import Any
 
+from .. import weave as weaves
 from ..errors import LoomfmuError, suggestion
 
 COMPONENT_OF = {
@@ -40,7 +42,6 @@ WIRES = {
 
 LOOM_KEYS = ("machine", "head", "weave", "dampers")
 PICKS_IN_A_WORD = 16
-MOST_PICKS = 128
 
 
 def stem(instance: str) -> str:
@@ -48,17 +49,16 @@ def stem(instance: str) -> str:
     return re.sub(r"_\d+$", "", instance)
 
 
-def loom(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
+def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """Instances of a standard loom, each with the keys that a scene would give it.
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
-    (`"10/01"` or a list), `dampers` hangs each frame's carrier on springs.
+    (`"10/01"` or a list) or the name of a WIF file, `dampers` hangs each frame's carrier on springs.
     """
     for key in table:
         if key not in LOOM_KEYS:
             raise LoomfmuError(f"loom.{key} is unknown{suggestion(key, LOOM_KEYS)}")
-    weave = table.get("weave", [])
-    frames = weave.split("/") if isinstance(weave, str) else list(weave)
+    frames = weaves.parse(table["weave"], directory).pegs if "weave" in table else ()
     machine = {key: table[key] for key in ("machine",) if key in table}
     head = {key: table[key] for key in ("head",) if key in table}
     instances: dict[str, dict[str, Any]] = {"shaft": {}, "weft": machine | head, "belt": machine | head}
@@ -66,6 +66,8 @@ def loom(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
         instances["dobby"] = {}
     for number, pegs in enumerate(frames, start=1):
         instances[f"heald_{number}"] = {"pattern": pegs}
+    if not isinstance(table.get("dampers", False), bool):
+        raise LoomfmuError(f"loom.dampers = {table['dampers']!r} is neither true nor false")
     if table.get("dampers", False):
         for number, _pegs in enumerate(frames, start=1):
             instances[f"damper_{number}"] = {}
@@ -78,12 +80,9 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     >>> pattern("10", "heald_1.pattern")["pattern_1"]
     1
     """
-    if not isinstance(pegs, str) or not re.fullmatch("[01]+", pegs):
-        raise LoomfmuError(f'{where} = {pegs!r} is no string of pegs such as "1010"')
-    if len(pegs) > MOST_PICKS:
-        raise LoomfmuError(f"{where} has {len(pegs)} picks; the dobby holds {MOST_PICKS}")
+    pegs = weaves.check_pegs(pegs, where)
     values = {"pattern_length": len(pegs)}
-    for word in range(MOST_PICKS // PICKS_IN_A_WORD):
+    for word in range(weaves.MOST_PICKS // PICKS_IN_A_WORD):
         part = pegs[word * PICKS_IN_A_WORD : (word + 1) * PICKS_IN_A_WORD]
         values[f"pattern_{word + 1}"] = int(part[::-1] or "0", 2)
     return values

@@ -1,0 +1,63 @@
+"""Inputs that a scene drives along a table: wear that grows, a tension that changes."""
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import LoomfmuError, suggestion
+from .fmus import Port
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An input with its values over revolutions: straight lines between, held before and after."""
+
+    instance: str
+    variable: str
+    revolutions: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def at(self, revolution: float) -> float:
+        """Value at a number of revolutions since the start.
+
+        >>> Drive("belt", "guide_clearance", (0.0, 2.0), (1.0, 3.0)).at(0.5)
+        1.5
+        """
+        place = bisect_right(self.revolutions, revolution)
+        if place == 0:
+            return self.values[0]
+        if place == len(self.values):
+            return self.values[-1]
+        start, end = self.revolutions[place - 1 : place + 1]
+        low, high = self.values[place - 1 : place + 1]
+        return low + (high - low) * (revolution - start) / (end - start)
+
+
+def drive(name: str, port: Port, table: Any) -> Drive:
+    """A drive from its table in a scene, `[[revolution, value], ...]`, checked and in SI."""
+    where = f"inputs.{name}"
+    if port.causality != "input" or port.kind != "Real":
+        raise LoomfmuError(f"{where}: {port.name} is no real input")
+    if not isinstance(table, list) or not table:
+        raise LoomfmuError(f'{where} = {table!r} is no list such as [[0, "0.3 mm"], [10, "1 mm"]]')
+    revolutions: list[float] = []
+    values: list[float] = []
+    for row in table:
+        if not isinstance(row, list) or len(row) != 2 or isinstance(row[0], bool):
+            raise LoomfmuError(f"{where}: {row!r} is no pair [revolution, value]")
+        if not isinstance(row[0], int | float) or (revolutions and not row[0] > revolutions[-1]):
+            raise LoomfmuError(f"{where}: revolution {row[0]!r} is not a number above the one before")
+        revolutions.append(float(row[0]))
+        values.append(float(port.value(row[1], where)))
+    instance, _, variable = name.partition(".")
+    return Drive(instance, variable, tuple(revolutions), tuple(values))
+
+
+def split(name: str, instances: dict[str, Any]) -> tuple[str, str]:
+    """Instance and variable of a name. Raises LoomfmuError where there is no such instance."""
+    instance, _, variable = name.partition(".")
+    if instance not in instances:
+        raise LoomfmuError(
+            f"inputs.{name}: there is no instance {instance!r}{suggestion(instance, instances)}"
+        )
+    return instance, variable

@@ -1,0 +1,1 @@
+"""Design functions: the physics of the FMUs, solved for a design. Uses numpy and scipy."""

@@ -1,0 +1,178 @@
+"""Figures of a whole loom: safe speed, what a wanted speed asks for, productivity.
+
+The same physics as in the FMUs, solved for a design. All values SI.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from ..components.weft_insertion import WeftInsertion
+from ..errors import LoomfmuError
+from ..machines import parameters
+from ..physics import belt
+
+BENDING_STIFFNESS = 0.25  # N m2, the carbon belt of Zhu and Zhou
+RPM = 2.0 * math.pi / 60.0
+
+
+@dataclass(frozen=True)
+class SafeSpeed:
+    """Highest shaft speed at which the belt never buckles [rad/s], and what decides it.
+
+    `angle` of the shaft [rad], `critical_force` there [N], the `window` of shaft angles in which the
+    belt is outside its guide and pushed [rad], the longest `free_length` in it [m].
+    """
+
+    speed: float
+    angle: float
+    critical_force: float
+    window: tuple[float, float]
+    free_length: float
+
+
+def safe_speed(
+    machine: str,
+    head: str = "G6300 left",
+    *,
+    length_factor: float | None = None,
+    clearance: float = 0.3e-3,
+    tension: float = 0.0,
+    mass: float | None = None,
+    stiffness: float = BENDING_STIFFNESS,
+) -> SafeSpeed:
+    """Safe speed of a published machine, equations (9), (10) and (12) of Zhu and Zhou.
+
+    Args:
+        machine, head: names of published ones
+        length_factor: column length factor [1]; from the clearance if not given
+        clearance: of the belt in its guide [m]
+        tension: of the weft [N]
+        mass: of the head [kg]; that of the named head if not given
+        stiffness: bending stiffness of the belt [N m2]
+
+    Raises:
+        LoomfmuError: an unknown name, or a weft tension that buckles the belt by itself
+
+    >>> round(safe_speed("WL680-3600").speed / RPM, 1)
+    681.8
+    """
+    from scipy.optimize import minimize_scalar
+
+    guide, travel = _travel(machine)
+    if mass is None:
+        mass = float(parameters("BeltMonitor", head=head)["head_mass"])
+    factor = belt.length_factor(clearance) if length_factor is None else length_factor
+    start, end = window(machine)
+
+    def limit(angle: float) -> float:
+        position, _first, second = travel(angle)
+        return belt.speed_limit(position - guide, second, factor, stiffness, mass, tension)
+
+    # the limit is infinite at both edges and has one minimum between: bracket it on a grid first
+    angles = [start + (end - start) * (k + 0.5) / 64 for k in range(64)]
+    best = min(angles, key=limit)
+    step = (end - start) / 64
+    found = minimize_scalar(
+        limit, bounds=(best - step, best + step), method="bounded", options={"xatol": 1e-12}
+    )
+    if found.fun <= 0.0:
+        raise LoomfmuError(f"{machine}: a weft tension of {tension:.6g} N buckles the belt at any speed")
+    length = travel(found.x)[0] - guide
+    return SafeSpeed(
+        speed=float(found.fun),
+        angle=float(found.x),
+        critical_force=belt.critical_force(length, factor, stiffness),
+        window=(start, end),
+        free_length=travel(end)[0] - guide,
+    )
+
+
+def window(machine: str) -> tuple[float, float]:
+    """Shaft angles from where the belt leaves its guide to where its head stops being pushed [rad]."""
+    from scipy.optimize import brentq
+
+    guide, travel = _travel(machine)
+    start = brentq(lambda angle: travel(angle)[0] - guide, 0.0, math.pi, xtol=1e-14)
+    end = brentq(lambda angle: travel(angle)[2], 0.25 * math.pi, math.pi, xtol=1e-14)
+    return start, end
+
+
+def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, float]]]:
+    """Travel at which the belt leaves its guide, and travel with derivatives by shaft angle."""
+    where = parameters("BeltMonitor", machine=machine)
+    weft = WeftInsertion(**parameters("WeftInsertion", machine=machine))  # type: ignore[arg-type]
+    weft.speed = 1.0
+    weft.initialize(0.0)
+
+    def travel(angle: float) -> tuple[float, float, float]:
+        weft.step(angle, 0.0)
+        return weft.travel, weft.velocity, weft.acceleration
+
+    return float(where["head_length"]) + float(where["idle_travel"]), travel
+
+
+# ---- what a wanted speed asks for
+
+
+def clearance_for(speed: float, machine: str, head: str = "G6300 left", **others: Any) -> float:
+    """Largest guide clearance with which the belt is safe at a speed [m].
+
+    Raises LoomfmuError, with the speeds that can be had, where no clearance is small or large enough.
+    """
+    return _solve(
+        "guide clearance", "m", speed,
+        lambda value: safe_speed(machine, head, clearance=value, **others).speed, 0.0, 0.8e-3,
+    )  # fmt: skip
+
+
+def mass_for(speed: float, machine: str, **others: Any) -> float:
+    """Largest mass of the rapier head with which the belt is safe at a speed [kg]; see `clearance_for`."""
+    return _solve(
+        "head mass", "kg", speed, lambda value: safe_speed(machine, mass=value, **others).speed, 1e-3, 10.0
+    )
+
+
+def stiffness_for(speed: float, machine: str, head: str = "G6300 left", **others: Any) -> float:
+    """Smallest bending stiffness with which the belt is safe at a speed [N m2]; see `clearance_for`."""
+    return _solve(
+        "bending stiffness", "N.m2", speed,
+        lambda value: safe_speed(machine, head, stiffness=value, **others).speed, 1e-3, 100.0,
+    )  # fmt: skip
+
+
+def _solve(
+    what: str, unit: str, speed: float, reached: Callable[[float], float], low: float, high: float
+) -> float:
+    from scipy.optimize import brentq
+
+    ends = reached(low), reached(high)
+    if not min(ends) <= speed <= max(ends):
+        raise LoomfmuError(
+            f"no {what} gives {speed / RPM:.6g} rev/min: from {low:g} to {high:g} {unit} the safe speed goes"
+            f" from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"
+        )
+    return float(brentq(lambda value: reached(value) - speed, low, high, xtol=1e-12 * high, rtol=1e-12))
+
+
+# ---- productivity, Korolev section 1.1
+
+
+def weft_insertion_rate(width: float, speed: float) -> float:
+    """Length of weft inserted in a time, `width * speed` [m/s] for a width [m] and a shaft speed [rad/s].
+
+    >>> round(weft_insertion_rate(3.6, 345 * RPM) * 60)  # m/min
+    1242
+    """
+    return width * speed / (2.0 * math.pi)
+
+
+def productivity_coefficient(width: float, speed: float) -> float:
+    """Weft-insertion rate over the square root of the width, `WIR / sqrt(width)` [m^0.5/s]."""
+    return weft_insertion_rate(width, speed) / math.sqrt(width)
+
+
+def spare_part_cost(fixed: float, share: float, parts: float, exponent: float) -> float:
+    """Cost of spare parts, `C = x + p n^y`, in the currency of `fixed` and `share`."""
+    return float(fixed + share * parts**exponent)

@@ -1,0 +1,73 @@
+"""Design figures against the published tables and against themselves."""
+
+import math
+
+import pytest
+
+from loomfmu.design import loom
+from loomfmu.errors import LoomfmuError
+from loomfmu.machines import HEADS, MACHINES, table
+from loomfmu.physics import damper
+
+RPM = loom.RPM
+NOT_REPRODUCED = "WL450-4000"  # its published speeds contradict its own dimensions
+# published 120, computed 122.2: the row's other two entries give 120.9 and 122.2 for it by n ~ 1/mu
+OUT_OF_LINE = ("WL450-5400", "0.9")
+
+
+@pytest.mark.parametrize("row", table("safe_speed_by_length_factor"), ids=lambda row: row["machine"])
+@pytest.mark.parametrize("factor", ["0.8", "0.9", "1.0"])
+def test_published_safe_speeds_over_length_factor(row, factor):
+    computed = loom.safe_speed(row["machine"], length_factor=float(factor)).speed / RPM
+    difference = abs(computed / float(row[f"n_mu_{factor}"]) - 1)
+    if row["machine"] == NOT_REPRODUCED:
+        assert difference > 0.05
+    else:
+        # printed in whole rev/min, and rows that deviate by up to 1 % from n ~ 1/mu
+        assert difference < (0.0185 if (row["machine"], factor) == OUT_OF_LINE else 0.011)
+
+
+@pytest.mark.parametrize("machine", list(MACHINES))
+def test_speed_scales_with_length_factor_and_mass(machine):
+    """n ~ 1/mu and n ~ m^-1/2 follow from (9), whatever the linkage. Rounding of the minimum only: 1e-12."""
+    base = loom.safe_speed(machine, length_factor=0.8).speed
+    assert loom.safe_speed(machine, length_factor=1.0).speed == pytest.approx(0.8 * base, rel=1e-12)
+    heavy = loom.safe_speed(machine, length_factor=0.8, mass=4 * float(HEADS["G6300 left"]["mass_g"]) / 1e3)
+    assert heavy.speed == pytest.approx(base / 2, rel=1e-12)
+
+
+def test_inverse_problems_return_what_gives_the_speed():
+    speed = 650 * RPM
+    clearance = loom.clearance_for(speed, "WL680-3600")
+    mass = loom.mass_for(speed, "WL680-3600")
+    stiffness = loom.stiffness_for(speed, "WL680-3600")
+    # brentq stops at 1e-12 of the unknown; the speed depends on it with a slope of order 1
+    assert loom.safe_speed("WL680-3600", clearance=clearance).speed == pytest.approx(speed, rel=1e-9)
+    assert loom.safe_speed("WL680-3600", mass=mass).speed == pytest.approx(speed, rel=1e-9)
+    assert loom.safe_speed("WL680-3600", stiffness=stiffness).speed == pytest.approx(speed, rel=1e-9)
+
+
+def test_an_impossible_wish_is_answered_with_what_can_be_had():
+    with pytest.raises(LoomfmuError, match=r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+"):
+        loom.clearance_for(1000 * RPM, "WL680-3600")
+
+
+def test_a_tension_that_buckles_alone_is_refused():
+    with pytest.raises(LoomfmuError, match="weft tension of 5000 N buckles the belt at any speed"):
+        loom.safe_speed("WL680-3600", tension=5000.0)
+
+
+def test_unknown_machine_suggests_the_nearest():
+    with pytest.raises(LoomfmuError, match="did you mean 'WL680-3600'"):
+        loom.safe_speed("WL680-360")
+
+
+def test_damper_spring_of_the_source():
+    assert damper.design_stiffness(5040 * 0.76 / 4, 15.0, 40.0, 0.015) == pytest.approx(5960, rel=1e-12)
+
+
+def test_productivity():
+    rate = loom.weft_insertion_rate(3.6, 600 * RPM)
+    assert rate == pytest.approx(36.0, rel=1e-12)  # 3.6 m ten times a second
+    assert loom.productivity_coefficient(3.6, 600 * RPM) == pytest.approx(36.0 / math.sqrt(3.6), rel=1e-12)
+    assert loom.spare_part_cost(100.0, 2.0, 9.0, 0.5) == pytest.approx(106.0, rel=1e-12)
