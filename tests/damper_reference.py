@@ -33,6 +33,14 @@ def frame(time: float, speed: float, law: int = SLOPED_SINE) -> tuple[float, flo
     return STROKE * share, STROKE * rate, STROKE * second_rate
 
 
+Load = Callable[[float], float]
+
+
+def unloaded(_time: float) -> float:
+    """No warp on the carrier."""
+    return 0.0
+
+
 def knots(speed: float, turns: int) -> list[float]:
     """Times at which the third derivative of the rotor law jumps: pi/8 to either side of the slow point."""
     return [(2.0 * pi * turn + pi + side * pi / 8.0) / speed for turn in range(turns) for side in (-1, 1)]
@@ -102,7 +110,9 @@ class Carrier:
             return FREE, 0.0
         return (FREE, 0.0) if which == 0 else (PRESSING, side)
 
-    def integrate(self, speed: float, turns: int, times: np.ndarray, law: int = SLOPED_SINE) -> Trace:
+    def integrate(
+        self, speed: float, turns: int, times: np.ndarray, law: int = SLOPED_SINE, load: Load = unloaded
+    ) -> Trace:
         """Trace at sorted times from 0 to the end of the turns."""
         end = 2.0 * pi * turns / speed
         state, contact, side, contacts = np.array(self.start), FREE, 0.0, 0
@@ -115,7 +125,8 @@ class Carrier:
                     time: float, state: np.ndarray, contact: str = contact, side: float = side
                 ) -> tuple[float, float]:
                     z, v = state
-                    return v, -self.force(contact, side, z, v) / self.mass - frame(time, speed, law)[2]
+                    force = load(time) - self.force(contact, side, z, v)
+                    return v, force / self.mass - frame(time, speed, law)[2]
 
                 # a step of 0.2 ms keeps the interpolation between scipy's steps as exact as the steps
                 run = solve_ivp(
@@ -136,16 +147,18 @@ class Carrier:
 
 
 def simulated(
-    damper: HealdDamper, speed: float, turns: int, steps: int, law: int = SLOPED_SINE
+    damper: HealdDamper, speed: float, turns: int, steps: int, law: int = SLOPED_SINE, load: Load = unloaded
 ) -> tuple[Trace, HealdDamper]:
     """The component's trace, fed with the exact motion of the frame at the end of each step."""
     damper.inputs_at_step_end = True
     damper.lift, damper.velocity, damper.acceleration = frame(0.0, speed, law)
+    damper.warp_force = load(0.0)
     assert damper.initialize(0.0) == 0
     step = 2.0 * pi / speed / steps
     rows = [(damper.displacement, damper.rate, damper.transmitted_force)]
     for n in range(turns * steps):
         damper.lift, damper.velocity, damper.acceleration = frame((n + 1) * step, speed, law)
+        damper.warp_force = load((n + 1) * step)
         assert damper.step(n * step, step) == 0
         rows.append((damper.displacement, damper.rate, damper.transmitted_force))
     return Trace(*np.array(rows).T, damper.stop_contacts), damper
@@ -166,8 +179,9 @@ class Row:
 
 
 def convergence(
-    speed: float, turns: int = 1, steps: tuple[int, ...] = STEPS, law: int = SLOPED_SINE, **parameters: float
-) -> list[Row]:
+    speed: float, turns: int = 1, steps: tuple[int, ...] = STEPS, law: int = SLOPED_SINE,
+    load: Load = unloaded, **parameters: float,
+) -> list[Row]:  # fmt: skip
     """Errors against the integration for each number of steps, with the order seen from one to the next.
 
     The order is that of the displacement's error, by the number of steps.
@@ -175,10 +189,10 @@ def convergence(
     finest = max(steps)
     times = np.arange(turns * finest + 1) * (2.0 * pi / speed / finest)
     times[-1] = 2.0 * pi * turns / speed
-    exact = Carrier(HealdDamper(**parameters)).integrate(speed, turns, times, law)
+    exact = Carrier(HealdDamper(**parameters)).integrate(speed, turns, times, law, load)
     rows: list[Row] = []
     for count in steps:
-        trace, _ = simulated(HealdDamper(**parameters), speed, turns, count, law)
+        trace, _ = simulated(HealdDamper(**parameters), speed, turns, count, law, load)
         every = slice(None, None, finest // count)
         z = float(np.max(np.abs(trace.displacement - exact.displacement[every]))) / exact.peak
         v = float(np.max(np.abs(trace.rate - exact.rate[every]))) / float(np.max(np.abs(exact.rate)))

@@ -207,10 +207,10 @@ class Rotor:
 
     def moment(self, x: Any) -> Any:
         """What the acceleration adds to the angle by x."""
-        return MP.quad(lambda t: (x - t) * self.acceleration(t), self.pieces(x))
+        return MP.quad(lambda t: (x - t) * self.acceleration(t), self.pieces(x), method="gauss-legendre")
 
     def velocity(self, x: Any) -> Any:
-        return 1 - self.reduction + MP.quad(self.acceleration, self.pieces(x))
+        return 1 - self.reduction + MP.quad(self.acceleration, self.pieces(x), method="gauss-legendre")
 
     def angle(self, x: Any) -> Any:
         return (1 - self.reduction) * x + self.moment(x)
@@ -218,6 +218,13 @@ class Rotor:
     def dwell(self, tolerance: float) -> Any:
         """Angle during which a frame stays within that share of its stroke: twice where S = 4 asin(..)."""
         target = 4 * MP.asin(MP.sqrt(MP.mpf(tolerance)))
-        bracket = (MP.mpf(0), MP.pi + MP.mpf("1e-9"))
-        x = MP.findroot(lambda x: self.angle(x) - target, bracket, solver="ridder", tol=1e-60)
+        low, high = MP.mpf(0), MP.mpf("3.3")  # beyond pi, where the laws go on smoothly
+        x, step = MP.pi / 2, MP.mpf(1)
+        while abs(step) > 1e-20:  # Newton, kept in the bracket: the last step leaves the square of it
+            rest = self.angle(x) - target
+            low, high = (low, x) if rest > 0 else (x, high)
+            nearer = x - rest / self.velocity(x)
+            if not low < nearer < high:
+                nearer = (low + high) / 2
+            x, step = nearer, nearer - x
         return 2 * x

@@ -1,6 +1,6 @@
 """Linkage: closure, exact derivatives, and the checks that tell whether it closes over a whole turn."""
 
-from math import cos, hypot, pi, sin
+from math import acos, cos, hypot, pi, sin
 
 import pytest
 from hypothesis import assume, given
@@ -46,9 +46,9 @@ def test_the_reference_is_right(name):
             assert abs(numeric - value) < 1e-30
 
 
-@given(arc, cone, angle)
-def test_spherical_linkage_closes(rocker, crank_cone, theta):
-    assume(spherical_margin(rocker, crank_cone) >= 0.0)
+@given(st.floats(-1.0, 1.0), cone, angle)
+def test_spherical_linkage_closes(arc_share, crank_cone, theta):
+    rocker = acos(arc_share * cos(crank_cone))
     alpha, _first, _second = spherical_rocker(theta, rocker, crank_cone)
     residual = (
         cos(rocker) - cos(crank_cone) * cos(alpha) + sin(crank_cone) * sin(alpha) * cos(theta)
@@ -64,13 +64,17 @@ def test_spherical_margin_agrees_with_a_search(rocker, crank_cone):
     assert spherical_margin(rocker, crank_cone) == pytest.approx(closes, abs=1e-15)
 
 
-@given(angle, length, length, length, place, place, way)
-def test_four_bar_keeps_the_length_of_its_coupler(psi, crank, coupler, output, x, y, assembly):
-    assume(four_bar_margin(psi, psi, crank, coupler, output, x, y) > 1e-6)
+@given(angle, length, length, place, place, st.floats(0.001, 0.999), way)
+def test_four_bar_keeps_the_length_of_its_coupler(psi, crank, output, x, y, coupler_share, assembly):
+    distance = hypot(crank * cos(psi) - x, crank * sin(psi) - y)
+    assume(distance > 0.05)
+    # between the two lengths that put it in one line with the output bar
+    shortest = abs(distance - output)
+    coupler = shortest + coupler_share * (distance + output - shortest)
     chi, _first, _second = four_bar(psi, 1.0, 0.0, crank, coupler, output, x, y, assembly)
     rod = hypot(crank * cos(psi) - x - output * cos(chi), crank * sin(psi) - y - output * sin(chi))
-    # rounding of lengths up to 2.5 m in the cosine rule, over a coupler of at least 0.05 m
-    assert rod == pytest.approx(coupler, abs=1e-13)
+    # rounding of squared lengths up to 6 m2 in the cosine rule, over the shortest distance of 0.05 m
+    assert rod**2 == pytest.approx(coupler**2, abs=1e-13)
 
 
 @given(angle, st.floats(0.0, 6.2), length, length, length, place, place)
@@ -88,22 +92,29 @@ def test_four_bar_margin_agrees_with_a_search(low, swing, crank, coupler, output
     assert found >= searched - 0.5 * crank * swing / count - 1e-12
 
 
-@given(angle, arc, cone, length, length, length, place, place, way, st.floats(-3.0, 3.0))
+@given(
+    angle, st.floats(-1.0, 1.0), st.floats(0.05, 1.4), st.floats(-3.0, 3.0), length, length, place, place,
+    st.floats(0.0, 1.0), way,
+)  # fmt: skip
 def test_derivatives_of_any_linkage_are_exact(
-    theta, rocker, crank_cone, crank, coupler, output, x, y, assembly, offset
+    theta, arc_share, crank_cone, offset, crank, output, x, y, coupler_share, assembly
 ):
-    assume(spherical_margin(rocker, crank_cone) > 0.05)
+    # a spherical linkage 0.05 away from its dead point at least
+    rocker = acos(arc_share * (cos(crank_cone) - 0.05))
+    alpha, _first, _second = spherical_rocker(theta, rocker, crank_cone)
+    # a coupler that closes the triangle here, 0.02 away from its dead points at least
+    distance = hypot(crank * cos(alpha + offset) - x, crank * sin(alpha + offset) - y)
+    assume(distance > 0.05)
+    shortest, longest = abs(distance - output) + 0.02, distance + output - 0.02
+    coupler = shortest + coupler_share * (longest - shortest)
     weft = {
         "rocker_angle": rocker, "crank_cone": crank_cone, "crank_phase": 0.0, "rocker_offset": offset,
         "planar_linkage": True, "crank_length": crank, "coupler_length": coupler, "output_length": output,
         "pivot_x": x, "pivot_y": y, "assembly": assembly,
     }  # fmt: skip
-    alpha, _first, _second = spherical_rocker(theta, rocker, crank_cone)
-    assume(four_bar_margin(alpha + offset, alpha + offset, crank, coupler, output, x, y) > 0.02)
     exact = sector_angle(weft, Jet(theta, 1))
     found = sector(weft, theta)
-    # rounding of 1e-16, magnified by the nearness to a dead point that is left in: up to (1 / 0.02)^2
-    # on each derivative
+    # rounding of 1e-16, magnified by the nearness to the dead points: up to (1 / 0.02)^2 on each derivative
     assert abs(found[0] - exact.value) < 1e-13
     assert abs(found[1] - exact.first) < 1e-12 * (1 + abs(exact.first))
     assert abs(found[2] - exact.second) < 1e-11 * (1 + abs(exact.first) ** 2 + abs(exact.second))

@@ -198,7 +198,7 @@ class HealdDamper(Component):
                 load_rate / mass - (a1 + u * (2.0 * a2 + u * 3.0 * a3)) / duration,
                 -(a2 + 3.0 * a3 * u) / (duration * duration),
                 -a3 / (duration * duration * duration),
-                weight, piece,
+                weight, load_rate, piece,
             )  # fmt: skip
             if changed >= rest:
                 elapsed = duration
@@ -208,7 +208,7 @@ class HealdDamper(Component):
 
     def move_piece(
         self, stiffness: float, damping: float, preload: float,
-        u0: float, u1: float, u2: float, u3: float, load: float, piece: float,
+        u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float, piece: float,
     ) -> float:  # fmt: skip
         """Move over one piece, or up to the change of contact within it; the time that took."""
         z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, piece)
@@ -234,7 +234,7 @@ class HealdDamper(Component):
                 u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, taken,
             )  # fmt: skip
             z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, taken)
-        self.note_peaks(stiffness, damping, preload, u0, u1, u2, u3, load, taken, z, v)
+        self.note_peaks(stiffness, damping, preload, u0, u1, u2, u3, load, load_rate, taken, z, v)
         self.displacement = z
         self.rate = v
         if change > 0.0:
@@ -248,7 +248,8 @@ class HealdDamper(Component):
 
     def note_peaks(
         self, stiffness: float, damping: float, preload: float,
-        u0: float, u1: float, u2: float, u3: float, load: float, piece: float, z: float, v: float,
+        u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float,
+        piece: float, z: float, v: float,
     ) -> None:  # fmt: skip
         """Bring the largest transmitted force and carrier acceleration over a piece up to date."""
         mass = self.carrier_mass
@@ -258,17 +259,18 @@ class HealdDamper(Component):
         first_rate = stiffness * self.rate + damping * (u0 - first)
         last_rate = stiffness * v + damping * (end_drive - last)
         self.note_load(mass * (first - preload), load)
-        self.note_load(mass * (last - preload), load)
+        self.note_load(mass * (last - preload), load + load_rate * piece)
         if first_rate * last_rate < 0.0:
             bound = fabs(first - preload) + fabs(last - preload)
-            bound = bound + piece * (fabs(first_rate) + fabs(last_rate))
-            if mass * bound > self.peak_load:
+            reach = mass * (bound + piece * (fabs(first_rate) + fabs(last_rate)))
+            pull = fabs(load) + fabs(load_rate) * piece
+            if reach > self.peak_load or reach + pull > mass * self.peak_carrier:
                 turn = locate(
                     LOAD_RATE, self.contact, self.displacement, self.rate, stiffness, damping,
                     u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, piece,
                 )  # fmt: skip
                 z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, turn)
-                self.note_load(mass * (stiffness * z + damping * v - preload), load)
+                self.note_load(mass * (stiffness * z + damping * v - preload), load + load_rate * turn)
 
     def note_load(self, transmitted: float, load: float) -> None:
         """Keep the largest transmitted force and carrier acceleration."""

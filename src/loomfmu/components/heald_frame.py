@@ -36,6 +36,9 @@ class HealdFrame(Component):
     inputs_at_step_end: bool = parameter(
         "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
     )
+    follow_lift: bool = parameter(
+        "1", False, "Follow the dobby's lift_fraction, as for a spline cam, instead of the crank on the rotor"
+    )
     rotor_angle: float = input_(
         "rad", 3.141592653589793, "Rotor angle from the slow point of pick 0, not wrapped", display="deg",
         unbounded=True, nominal=6.0, rate="rotor_velocity",
@@ -45,6 +48,13 @@ class HealdFrame(Component):
         rate="rotor_acceleration",
     )  # fmt: skip
     rotor_acceleration: float = input_("rad/s2", 0.0, "Rotor acceleration", nominal=1000.0)
+    lift_fraction: float = input_(
+        "1", 0.5, "Lift of a frame that changes at every pick, used if follow_lift is true", rate="lift_rate"
+    )
+    lift_rate: float = input_(
+        "1/s", 10.471975511965976, "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration"
+    )
+    lift_acceleration: float = input_("1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0)
     lift: float = output(
         "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity"
     )
@@ -77,6 +87,17 @@ class HealdFrame(Component):
             word = self.pattern_2
         return peg(word, index % 16)
 
+    def followed(self, pick: int, step_size: float) -> tuple[float, float, float]:
+        """Share of a change that the dobby's lift makes, which rises in even turns and falls in odd ones."""
+        share = self.lift_fraction
+        rate = self.lift_rate
+        if not self.inputs_at_step_end:
+            share = carried(share, rate, self.lift_acceleration, step_size)
+            rate = rate + self.lift_acceleration * step_size
+        if pick % 2 == 0:
+            return share, rate, self.lift_acceleration
+        return 1.0 - share, -rate, -self.lift_acceleration
+
     def initialize(self, time: float) -> int:
         """Place the frame."""
         return self.step(time, 0.0)
@@ -92,6 +113,8 @@ class HealdFrame(Component):
         before = self.requested(pick)
         change = self.requested(pick + 1) - before
         share, rate, second = lift_fraction(angle - 2.0 * pi * pick, velocity, self.rotor_acceleration)
+        if self.follow_lift:
+            share, rate, second = self.followed(pick, step_size)
         self.lift = self.stroke * (before + change * share)
         self.velocity = self.stroke * change * rate
         self.acceleration = self.stroke * change * second

@@ -283,9 +283,10 @@ def _drives(instances: dict[str, Instance], wires: list[Wire], table: Any) -> li
 
 
 def _follow(instance: Instance, wire: Wire) -> None:
-    """A mechanism whose shaft angle is wired follows it."""
-    if wire.sink[1] == "shaft_angle" and "follow_shaft" in instance.fmu.ports:
-        instance.values.setdefault("follow_shaft", True)
+    """A mechanism whose shaft angle is wired follows it, and a frame the lift of its dobby."""
+    switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
+    if switch in instance.fmu.ports:
+        instance.values.setdefault(switch, True)
 
 
 def _number(given: Any, where: str, low: float, high: float, whole: bool = False) -> float:

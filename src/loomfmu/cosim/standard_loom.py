@@ -14,6 +14,11 @@ COMPONENT_OF = {
     "dobby": "DobbyDrive",
     "heald": "HealdFrame",
     "damper": "HealdDamper",
+    "warp": "WarpTension",
+    "reed": "ReedBeatUp",
+    "lock": "PatternLock",
+    "wrap": "BeltWrap",
+    "roller": "DetachingRoller",
 }
 
 _SHAFT = {
@@ -32,15 +37,29 @@ WIRES = {
         "rotor_angle": "dobby.rotor_angle",
         "rotor_velocity": "dobby.rotor_velocity",
         "rotor_acceleration": "dobby.rotor_acceleration",
+        "lift_fraction": "dobby.lift_fraction",
+        "lift_rate": "dobby.lift_rate",
+        "lift_acceleration": "dobby.lift_acceleration",
     },
     "HealdDamper": {
         "lift": "heald_#.lift",
         "velocity": "heald_#.velocity",
         "acceleration": "heald_#.acceleration",
+        "warp_force": "warp_#.frame_load",
     },
+    "WarpTension": {
+        "lift": "heald_#.lift",
+        "velocity": "heald_#.velocity",
+        "acceleration": "heald_#.acceleration",
+    },
+    "ReedBeatUp": _SHAFT,
+    "PatternLock": _SHAFT,
+    "DetachingRoller": _SHAFT,
 }
 
-LOOM_KEYS = ("machine", "head", "weave", "dampers")
+FRAME_FITTINGS = {"warps": "warp", "dampers": "damper"}  # one for each frame
+LOOM_FITTINGS = {"reed": "reed", "locks": "lock"}  # one for the loom
+LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
 PICKS_IN_A_WORD = 16
 
 
@@ -53,7 +72,8 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """Instances of a standard loom, each with the keys that a scene would give it.
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
-    (`"10/01"` or a list) or the name of a WIF file, `dampers` hangs each frame's carrier on springs.
+    (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
+    `warps` loads it with its threads, `reed` and `locks` add beat-up and pattern locks.
     """
     for key in table:
         if key not in LOOM_KEYS:
@@ -66,12 +86,20 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
         instances["dobby"] = {}
     for number, pegs in enumerate(frames, start=1):
         instances[f"heald_{number}"] = {"pattern": pegs}
-    if not isinstance(table.get("dampers", False), bool):
-        raise LoomfmuError(f"loom.dampers = {table['dampers']!r} is neither true nor false")
-    if table.get("dampers", False):
-        for number, _pegs in enumerate(frames, start=1):
-            instances[f"damper_{number}"] = {}
+    for key, name in FRAME_FITTINGS.items():
+        if _wanted(table, key):
+            instances |= {f"{name}_{number}": {} for number in range(1, len(frames) + 1)}
+    for key, name in LOOM_FITTINGS.items():
+        if _wanted(table, key):
+            instances[name] = {}
     return instances
+
+
+def _wanted(table: dict[str, Any], key: str) -> bool:
+    wanted = table.get(key, False)
+    if not isinstance(wanted, bool):
+        raise LoomfmuError(f"loom.{key} = {wanted!r} is neither true nor false")
+    return wanted
 
 
 def pattern(pegs: Any, where: str) -> dict[str, int]:

@@ -75,8 +75,10 @@ def length_factor(clearance: float) -> float:
     if clearance >= 0.80e-3:
         return 1.0
     index = 0
-    while index < 3 and clearance >= _knot(index + 1)[0]:
-        index = index + 1
+    for knot in range(1, 4):  # no call in a while's condition: Pyccel would evaluate it only once
+        begin, _factor = _knot(knot)
+        if clearance >= begin:
+            index = knot
     left, low = _knot(index)
     right, high = _knot(index + 1)
     width = right - left

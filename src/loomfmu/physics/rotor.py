@@ -176,3 +176,27 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
             break
         x = nearer
     return 2.0 * x
+
+
+def highest_rates(law: int, reduction: float) -> tuple[float, float, float]:
+    """Largest speed, acceleration and jerk of a law, from its pieces.
+
+    The speed is highest at `x = pi`, the acceleration where an end piece has its crest, and the jerk at
+    the slow point.
+
+    Args:
+        law, reduction: as for `rotor_law`
+
+    Returns:
+        largest S' [1], |S''| [1], |S'''| [1]
+
+    >>> [round(rate, 3) for rate in highest_rates(HARMONIC_ENDS, 0.7)]
+    [1.1, 1.6, 6.4]
+    """
+    _angle, speed, _second = _half_turn(law, pi, reduction)
+    if law == HARMONIC_ENDS:
+        return speed, 16.0 * reduction / 7.0, 64.0 * reduction / 7.0
+    if law == UNIFORM:
+        return speed, 0.0, 0.0
+    _angle, _first, crest = _half_turn(law, 0.125 * pi, reduction)
+    return speed, crest, 4.0 * crest

@@ -1,0 +1,239 @@
+"""Design of the cam that moves the heald frames: profile, path of the cutter, pressure angle, curvature.
+
+One turn of the cam is two picks. A law gives the lift as a share of the largest, over the cam's angle, with
+its derivatives. Source: Korolev, thesis on rotary dobbies (Moscow), section 4.2, Appendices 2 and 3.
+All lengths in metres, all angles in radians.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import degrees, pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import LoomfmuError
+from ..machines import table
+
+Floats = NDArray[np.float64]
+Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
+
+TURN = 2.0 * pi
+SHALLOW = 1e-6  # m: what a cutter may take off or leave at a corner of the profile
+
+
+def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None) -> Law:
+    """Law of the cubic spline with "cubic ends" through control points, by default those of Table 4.2.
+
+    It starts at the first point, which need not be its lowest. Derivatives jump where two picks join.
+
+    Args:
+        angles: of the main shaft, from 0 to 4 pi, increasing [rad]
+        heights: there, in any unit; the first and the last alike
+
+    Raises:
+        LoomfmuError: fewer than four points, or points that are not in order
+
+    >>> law = spline_law()
+    >>> [round(float(value), 3) for value in law(np.array([3.198]))[0]]  # close to its top
+    [1.0]
+    """
+    from scipy.interpolate import CubicSpline
+
+    if angles is None or heights is None:
+        rows = table("shed_control_points")
+        angles = np.radians([float(row["shaft_angle_deg"]) for row in rows])
+        heights = [float(row["warp_height_mm"]) for row in rows]
+    x, y = np.asarray(angles, dtype=float), np.asarray(heights, dtype=float)
+    if x.ndim != 1 or x.shape != y.shape or x.size < 4:
+        raise LoomfmuError(f"{x.size} angles and {y.size} heights: the spline asks for four or more of each")
+    if not np.all(np.diff(x) > 0.0) or abs(x[0]) > 1e-9 or abs(x[-1] - 2.0 * TURN) > 1e-9:
+        raise LoomfmuError("the angles of the control points must rise from 0 to 720 deg of the main shaft")
+    spline = CubicSpline(x, y, bc_type="not-a-knot")
+    tops = spline.derivative().roots(extrapolate=False)
+    span = float(np.max(spline(tops[np.isfinite(tops)]), initial=np.max(y)) - y[0])
+    if not span > 0.0 or abs(y[-1] - y[0]) > 1e-9 * span:
+        raise LoomfmuError(
+            f"the heights of the control points start at {y[0]:.7g} and end at {y[-1]:.7g}: both ends must be"
+            " alike, and the spline must rise"
+        )
+
+    def law(angle: Floats) -> tuple[Floats, Floats, Floats]:
+        x = 2.0 * angle  # of the main shaft
+        return (spline(x) - y[0]) / span, 2.0 * spline(x, 1) / span, 4.0 * spline(x, 2) / span
+
+    return law
+
+
+def sampled_law(lifts: ArrayLike) -> Law:
+    """Law through lifts at even angles over one turn of the cam, the end of the turn left out.
+
+    Between them lies the periodic spline of fifth degree. The lowest sample has the share 0, the highest 1.
+
+    Raises:
+        LoomfmuError: fewer than eight samples, or all alike
+
+    >>> law = sampled_law([1 - np.cos(TURN * k / 36) for k in range(36)])
+    >>> [round(float(value[0]), 6) for value in law(np.array([0.5 * pi]))]
+    [0.5, 0.5, 0.0]
+    """
+    from scipy.interpolate import make_interp_spline
+
+    y = np.asarray(lifts, dtype=float)
+    if y.ndim != 1 or y.size < 8 or not np.all(np.isfinite(y)) or np.ptp(y) == 0.0:
+        raise LoomfmuError(f"{y.size} samples of the lift: eight or more are asked for, not all alike")
+    shares = (y - y.min()) / np.ptp(y)
+    closed = np.append(shares, shares[0])
+    spline = make_interp_spline(np.linspace(0.0, TURN, closed.size), closed, k=5, bc_type="periodic")
+    return lambda angle: (spline(angle), spline(angle, 1), spline(angle, 2))
+
+
+def lift_law(lift: Callable[[float], float], samples: int = 720) -> Law:
+    """Law of any function that gives the lift at an angle of the cam, by samples of it.
+
+    >>> law = lift_law(lambda angle: 1 - np.cos(angle))
+    >>> round(float(law(np.array([pi]))[0][0]), 12)
+    1.0
+    """
+    return sampled_law([lift(TURN * k / samples) for k in range(samples)])
+
+
+@dataclass(frozen=True)
+class Cam:
+    """A cam at even angles of its turn, both ends included.
+
+    `profile` and `path` are points (x, y) of the working profile and of its equidistant, on which the
+    centres of roller and cutter run [m]. `curvature_radius` is that of the profile, negative where it is
+    hollow [m]; `pressure_angle` that of a roller on a radial guide, positive while it rises [rad].
+    """
+
+    law: Law
+    lowest_radius: float
+    highest_radius: float
+    roller_radius: float
+    law_on_roller: bool
+    angle: Floats
+    profile: Floats
+    path: Floats
+    curvature_radius: Floats
+    pressure_angle: Floats
+
+    def radius(self, angle: Floats) -> tuple[Floats, Floats, Floats]:
+        """Radius of the curve that carries the law, and its derivatives."""
+        share, slope, bend = self.law(angle)
+        span = self.highest_radius - self.lowest_radius
+        return self.lowest_radius + span * share, span * slope, span * bend
+
+    def radial_excess(self) -> Floats:
+        """How far a curve offset along the cam's radius, as in Appendix 2, lies outside the true offset [m].
+
+        The path if the law is the profile's, the profile if it is the roller's; at the points of that curve.
+        """
+        curve = self.profile if self.law_on_roller else self.path
+        added = -self.roller_radius if self.law_on_roller else self.roller_radius
+        radius, _slope, _bend = self.radius(np.arctan2(curve[:, 1], curve[:, 0]) % TURN)
+        return np.asarray(radius + added - np.hypot(curve[:, 0], curve[:, 1]))
+
+
+def design_cam(
+    law: Law | None = None,
+    *,
+    lowest_radius: float = 0.084,
+    highest_radius: float = 0.107,
+    roller_radius: float = 0.019,
+    law_on_roller: bool = False,
+    points: int = 1440,
+) -> Cam:
+    """Cam for a law, by default the published one; its equidistant is the true normal offset.
+
+    Args:
+        law: from `spline_law`, `sampled_law` or `lift_law`
+        lowest_radius, highest_radius: where the law has the shares 0 and 1 [m]
+        roller_radius: of roller and cutter [m]
+        law_on_roller: radii and law are those of the roller's centre, and the profile is offset inwards;
+            otherwise they are the profile's, as in Appendix 2
+        points: intervals in a turn
+
+    Raises:
+        LoomfmuError: impossible dimensions, or a roller that does not fit the curve (undercut)
+
+    >>> cam = design_cam()
+    >>> round(1000 * float(np.hypot(*cam.path.T).max()), 1)  # 107 and 19
+    126.0
+    """
+    if not 0.0 < lowest_radius < highest_radius:
+        raise LoomfmuError(
+            f"lowest_radius = {1e3 * lowest_radius:.7g} mm is outside [0, {1e3 * highest_radius:.7g}] mm, the"
+            " highest_radius"
+        )
+    if not roller_radius > 0.0 or points < 36:
+        raise LoomfmuError(
+            f"roller_radius = {1e3 * roller_radius:.7g} mm with {points} points: above 0 mm and 36 or more"
+            " are asked for"
+        )
+    law = law or spline_law()
+    angle = np.linspace(0.0, TURN, points + 1)
+    share, slope, bend = law(angle)
+    span = highest_radius - lowest_radius
+    r, r1, r2 = lowest_radius + span * share, span * slope, span * bend
+    speed = np.hypot(r, r1)
+    curvature = (r * r + 2.0 * r1 * r1 - r * r2) / speed**3
+    outwards = -1.0 if law_on_roller else 1.0
+    _refuse_undercut(angle, curvature, np.arctan2(r1, r), roller_radius, outwards)
+    radial = np.column_stack([np.cos(angle), np.sin(angle)])
+    across = np.column_stack([-np.sin(angle), np.cos(angle)])
+    normal = (r[:, None] * radial - r1[:, None] * across) / speed[:, None]
+    carrier = r[:, None] * radial
+    offset = carrier + outwards * roller_radius * normal
+    path = carrier if law_on_roller else offset
+    turned = normal[:, 0] * path[:, 1] - normal[:, 1] * path[:, 0]
+    with np.errstate(divide="ignore"):
+        carrier_curvature_radius = 1.0 / curvature
+    return Cam(
+        law=law, lowest_radius=lowest_radius, highest_radius=highest_radius, roller_radius=roller_radius,
+        law_on_roller=law_on_roller, angle=angle,
+        profile=offset if law_on_roller else carrier, path=path,
+        curvature_radius=carrier_curvature_radius - (roller_radius if law_on_roller else 0.0),
+        pressure_angle=np.arctan2(turned, np.sum(normal * path, axis=1)),
+    )  # fmt: skip
+
+
+def _refuse_undercut(
+    angle: Floats, curvature: Floats, tilt: Floats, roller_radius: float, outwards: float
+) -> None:
+    """Complain where the offset curve would turn back: the roller cuts into the profile, or does not fit.
+
+    Outwards a hollow may not be tighter than the roller, inwards a crest. The same holds for the corner
+    where the turn closes, unless it is too slight to matter.
+    """
+    kind = "hollow" if outwards > 0.0 else "crest"
+    tightest = int(np.argmin(outwards * curvature))
+    place, radius = float(angle[tightest]), 0.0
+    undercut = 1.0 + outwards * roller_radius * float(curvature[tightest]) <= 0.0
+    if undercut:
+        radius = abs(1.0 / float(curvature[tightest]))
+    else:
+        corner = outwards * float(tilt[0] - tilt[-1])  # above 0 where offset curves cross
+        undercut = corner > 0.0 and roller_radius * (1.0 / np.cos(0.5 * corner) - 1.0) > SHALLOW
+        place = 0.0
+    if undercut:
+        raise LoomfmuError(
+            f"the cam is undercut at cam angle {degrees(place):.4g} deg: the {kind} there has a radius of"
+            f" curvature of {1e3 * radius:.4g} mm, the roller one of {1e3 * roller_radius:.4g} mm; take a"
+            " smaller roller or larger radii of the cam"
+        )
+
+
+def published_path() -> Floats:
+    """Points of the cutter's path in the program of Appendix 3: its start and the ends of its arcs [m].
+
+    The program is not that of the published law: less the cutter's 19 mm its radii span 28.0 mm, from 81.7
+    to 109.7, where the law is drawn from 84 to 107.
+
+    >>> radii = np.hypot(*published_path().T) - 0.019
+    >>> [round(1000 * float(radius), 2) for radius in (radii.min(), radii.max(), np.ptp(radii))]
+    [81.66, 109.67, 28.01]
+    """
+    rows = table("cam_nc_arcs")
+    ends = [(float(row["x_mm"]), float(row["y_mm"])) for row in rows]
+    return 1e-3 * np.array([ends[-1], *ends])

@@ -1,0 +1,167 @@
+"""A cam for the workshop: as a table, as a drawing, as a program for a milling machine. All in mm."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import LoomfmuError
+from .cam import Cam, Floats
+
+STRAIGHT = 1e4  # mm: an arc of a larger radius is written as a line
+
+
+class Move(NamedTuple):
+    """A cut to (x, y) [mm]: `code` G1, G2 or G3, the centre of an arc at (i, j) from its start."""
+
+    code: str
+    x: float
+    y: float
+    i: float = 0.0
+    j: float = 0.0
+
+    def __str__(self) -> str:
+        end = f"{self.code} X{self.x:.4f} Y{self.y:.4f}"
+        return end if self.code == "G1" else f"{end} I{self.i:.4f} J{self.j:.4f}"
+
+
+def write_csv(cam: Cam, path: Path) -> None:
+    """Write the points of profile and cutter's path, with pressure angle and radius of curvature."""
+    names = (
+        "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
+        "curvature_radius_mm",
+    )  # fmt: skip
+    columns = np.column_stack(
+        [
+            np.degrees(cam.angle),
+            1e3 * cam.profile,
+            1e3 * cam.path,
+            np.degrees(cam.pressure_angle),
+            1e3 * cam.curvature_radius,
+        ]
+    )
+    rows = [",".join(f"{value:.6f}" for value in row) for row in columns]
+    path.write_text("\n".join([",".join(names), *rows, ""]), encoding="utf-8")
+
+
+def write_dxf(cam: Cam, path: Path) -> None:
+    """Write profile, cutter's path and lowest circle as a drawing, each on a layer of its own.
+
+    Raises:
+        LoomfmuError: ezdxf is not installed
+    """
+    try:
+        from ezdxf.filemanagement import new
+    except ImportError:
+        raise LoomfmuError("a DXF file asks for the package ezdxf: pip install ezdxf") from None
+    drawing = new("R2010", units=4)  # mm
+    space = drawing.modelspace()
+    for layer, curve in (("PROFILE", cam.profile), ("CUTTER", cam.path)):
+        drawing.layers.add(layer)
+        corners = [(float(x), float(y)) for x, y in 1e3 * _open(curve)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    drawing.layers.add("LOWEST")
+    space.add_circle((0.0, 0.0), 1e3 * cam.lowest_radius, dxfattribs={"layer": "LOWEST"})
+    drawing.saveas(path)
+
+
+def gcode(
+    cam: Cam,
+    *,
+    arcs: bool = True,
+    tolerance: float = 2e-6,
+    passes: int = 11,
+    cut: float = 1e-3,
+    feed: float = 150.0,
+    spindle: float = 4000.0,
+) -> str:
+    """Program that runs the cutter's centre clockwise round the cam, laid out as that of Appendix 3.
+
+    Args:
+        cam: what to mill, with a cutter of its roller's radius
+        arcs: G2 and G3 where they keep within the tolerance, otherwise G1 from point to point
+        tolerance: of an arc from the points that it replaces [m]
+        passes: rounds, the first at the surface
+        cut: depth from one round to the next [m]
+        feed: of the cutter [mm/min]
+        spindle: its speed [rev/min]
+
+    >>> from loomfmu.design.cam import design_cam
+    >>> gcode(design_cam()).splitlines()[1]
+    'G21 G90 G64 G17 G40 G49'
+    """
+    start, moves = cutter_moves(cam, arcs=arcs, tolerance=tolerance)
+    return "\n".join(
+        [
+            f"(cutter radius {1e3 * cam.roller_radius:.3f}, cam radii {1e3 * cam.lowest_radius:.3f} to"
+            f" {1e3 * cam.highest_radius:.3f})",
+            "G21 G90 G64 G17 G40 G49",
+            f"F{feed:g}",
+            "T1 M6",
+            "M3 M8",
+            f"S{spindle:g}",
+            f"G0 X{start[0]:.4f} Y{start[1]:.4f}",
+            "#1=0",
+            f"M98 P1 L{passes}",
+            "G0 Z5",
+            "M30",
+            "O1",
+            "G1 Z#1",
+            *(str(move) for move in moves),
+            f"#1=[#1-{1e3 * cut:g}]",
+            "M99",
+            "",
+        ]
+    )
+
+
+def cutter_moves(
+    cam: Cam, *, arcs: bool = True, tolerance: float = 2e-6
+) -> tuple[tuple[float, float], list[Move]]:
+    """Start and moves of the cutter's centre round the cam, clockwise and closed [mm], to 0.1 um."""
+    points = np.round(1e3 * _open(cam.path)[::-1], 4)
+    points = np.vstack([points, points[:1]])
+    moves: list[Move] = []
+    at, last = 0, len(points) - 1
+    while at < last:
+        end, move = _longest_arc(points, at, 1e3 * tolerance) if arcs else (at, None)
+        if move is None:
+            end = at + 1
+            move = Move("G1", float(points[end, 0]), float(points[end, 1]))
+        moves.append(move)
+        at = end
+    return (float(points[0, 0]), float(points[0, 1])), moves
+
+
+def _open(curve: Floats) -> Floats:
+    """A closed curve without its last point, if that is the first again."""
+    return curve[:-1] if np.hypot(*(curve[-1] - curve[0])) < 1e-7 else curve
+
+
+def _longest_arc(points: Floats, at: int, tolerance: float) -> tuple[int, Move | None]:
+    """The arc from a point that replaces the most of those that follow, up to a quarter of the curve."""
+    found: tuple[int, Move | None] = (at, None)
+    farthest = min(len(points) - 1, at + len(points) // 4)
+    for end in range(at + 2, farthest + 1, 2):
+        replaced = points[at : end + 1]
+        centre = _centre(replaced[0], replaced[(end - at) // 2], replaced[-1])
+        if centre is None:
+            break
+        radii = np.hypot(*(replaced - centre).T)
+        if radii[0] > STRAIGHT or np.ptp(radii) > tolerance:
+            break
+        chord, reach = replaced[-1] - replaced[0], centre - replaced[0]
+        code = "G3" if chord[0] * reach[1] - chord[1] * reach[0] > 0.0 else "G2"
+        x, y = replaced[-1]
+        found = end, Move(code, float(x), float(y), float(reach[0]), float(reach[1]))
+    return found
+
+
+def _centre(first: Floats, middle: Floats, last: Floats) -> Floats | None:
+    """Centre of the circle through three points; none for points on a line."""
+    a, b = middle - first, last - first
+    cross = 2.0 * (a[0] * b[1] - a[1] * b[0])
+    if cross == 0.0:
+        return None
+    aa, bb = a @ a, b @ b
+    return np.asarray(first + np.array([b[1] * aa - a[1] * bb, a[0] * bb - b[0] * aa]) / cross)

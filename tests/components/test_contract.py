@@ -1,0 +1,342 @@
+"""What every component keeps to. There is no list of exceptions: a new component joins by being declared."""
+
+import math
+import random
+import re
+
+import pytest
+from driving import advance, assign, drawn_inputs, flags, inputs, moved, span, values
+
+from loomfmu import units
+from loomfmu.components import COMPONENTS
+from loomfmu.variables import variables_of
+
+every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
+every_flag = pytest.mark.parametrize(
+    ("component", "given"),
+    [
+        pytest.param(component, given, id="-".join([name, *(flag for flag, on in given.items() if on)]))
+        for name, component in COMPONENTS.items()
+        for given in flags(component)
+    ],
+)
+
+
+def finite(component):
+    """Every number finite, every value of its declared type."""
+    for variable in variables_of(type(component)):
+        value = getattr(component, variable.name)
+        assert type(value) is variable.type, variable.name
+        assert math.isfinite(value), variable.name
+
+
+# Declaration
+
+
+@every_component
+def test_declaration(component):
+    variables = variables_of(component)
+    names = [variable.name for variable in variables]
+    assert len(set(names)) == len(names)
+    for variable in variables:
+        assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", variable.name)
+        assert variable.causality in ("parameter", "input", "output", "local")
+        assert variable.variability in ("fixed", "tunable", "continuous", "discrete")
+        assert variable.type in (float, int, bool)
+        assert variable.type is float or variable.variability != "continuous", variable.name
+        assert units.unit(variable.unit).factor == 1.0, "values are SI"
+        assert units.unit(variable.display).dimension == units.unit(variable.unit).dimension
+        assert math.isfinite(variable.start)
+        if variable.settable:
+            assert variable.complaint(variable.start) == ""
+        if variable.nominal is not None:
+            assert variable.nominal > 0.0
+
+
+@every_component
+def test_descriptions(component):
+    described = [variable.description for variable in variables_of(component)]
+    assert len(set(described)) == len(described)
+    for text in described:
+        assert text == text.strip() != ""
+        assert not text[0].islower()
+        assert "\n" not in text
+        assert not text.endswith(".")
+    assert component.__doc__.splitlines()[0].endswith(".")
+
+
+@every_component
+def test_variables_refer_to_variables(component):
+    known = {variable.name: variable for variable in variables_of(component)}
+    for variable in known.values():
+        if variable.rate is not None:
+            rate = known[variable.rate]
+            assert rate.causality == variable.causality
+            kg, m, s, rad = units.unit(variable.unit).dimension
+            assert units.unit(rate.unit).dimension == (kg, m, s - 1, rad)
+        for name in variable.depends or ():
+            assert known[name].causality == "input"
+
+
+@every_component
+def test_problems_speak_of_variables(component):
+    values_of_default = values(component())
+    for problem in component.problems:
+        text = problem.text.format_map(values_of_default)
+        assert "\n" not in text
+        assert not text.endswith(".")
+
+
+# Construction
+
+
+@every_component
+def test_only_declared_variables_can_be_set(component):
+    instance = component()
+    with pytest.raises(AttributeError):
+        instance.undeclared = 1.0
+    assert not hasattr(instance, "__dict__")
+    with pytest.raises(TypeError):
+        component(undeclared=1.0)
+
+
+@every_component
+def test_values_outside_their_limits_are_refused(component):
+    for variable in variables_of(component):
+        if not variable.settable:
+            continue
+        refused = [math.nan, math.inf, -math.inf]
+        if variable.minimum is not None:
+            assert component(**{variable.name: variable.type(variable.minimum)})
+            refused.append(variable.minimum - 1e-3 * max(abs(variable.minimum), 1.0))
+        if variable.maximum is not None:
+            assert component(**{variable.name: variable.type(variable.maximum)})
+            refused.append(variable.maximum + 1e-3 * max(abs(variable.maximum), 1.0))
+        factor = units.unit(variable.display).factor
+        low = -math.inf if variable.minimum is None else variable.minimum / factor
+        high = math.inf if variable.maximum is None else variable.maximum / factor
+        for value in refused:
+            with pytest.raises(ValueError, match=r".") as refusal:
+                component(**{variable.name: value})
+            message = str(refusal.value)
+            assert message.startswith(f"{component.__name__}.{variable.name} = {value / factor:.7g}")
+            assert f"is outside [{low:.7g}, {high:.7g}]" in message
+            assert "\n" not in message
+            assert variable.display == "1" or message.endswith(f" {variable.display}")
+
+
+@every_component
+def test_every_limit_is_a_value_that_runs_or_a_problem(component):
+    for variable in variables_of(component):
+        if not variable.settable:
+            continue
+        for limit in (variable.minimum, variable.maximum):
+            if limit is None:
+                continue
+            instance = component(**{variable.name: variable.type(limit)})
+            problem = instance.initialize(0.0)
+            assert 0 <= problem <= len(component.problems)
+            if problem != 0 and not component.problems[problem - 1].warning:
+                continue
+            for n in range(5):
+                problem = instance.step(n * 1e-3, 1e-3)
+                assert problem == 0 or component.problems[problem - 1].warning
+            finite(instance)
+
+
+# Running
+
+
+@every_flag
+def test_runs_alone(component, given):
+    instance = component(**given)
+    assert instance.check() == 0
+    assert instance.initialize(0.0) == 0
+    finite(instance)
+    for n in range(1000):
+        assert instance.step(n * 1e-3, 1e-3) == 0
+        finite(instance)
+
+
+@every_component
+def test_shows_something_alone(component):
+    # dropped into a tool and run, with nothing connected, it is not all zeros
+    instance = component()
+    instance.initialize(0.0)
+    for n in range(1000):
+        instance.step(n * 1e-3, 1e-3)
+    assert any(values(instance, "output").values())
+
+
+@every_component
+@pytest.mark.parametrize("step_size", [1e-9, 1e-3, 0.15, 0.7])
+def test_runs_with_any_step(component, step_size):
+    # 0.15 s is a whole revolution at the default speed
+    for given in flags(component):
+        instance = component(**given)
+        instance.initialize(0.0)
+        for n in range(5):
+            assert advance(instance, n * step_size, step_size) == 0
+            finite(instance)
+
+
+@every_flag
+def test_a_step_of_no_length_changes_nothing(component, given):
+    instance = component(**given)
+    instance.initialize(0.25)
+    before = values(instance, "output")
+    assert instance.step(0.25, 0.0) == 0
+    assert values(instance, "output") == before
+    assert advance(instance, 0.25, 1e-3) == 0
+    assert instance.step(0.251, 0.0) == 0
+    finite(instance)
+
+
+@every_flag
+@pytest.mark.parametrize("factor", [0.0, -1.0])
+def test_standing_and_turning_backwards(component, given, factor):
+    speeds = {
+        variable.name: factor * variable.start
+        for variable in variables_of(component)
+        if variable.settable and variable.unit == "rad/s"
+    }
+    instance = component(**given, **speeds)
+    assert instance.initialize(0.0) == 0
+    for n in range(200):
+        assign(instance, moved(component, n * 1e-3) | speeds)
+        assert instance.step(n * 1e-3, 1e-3) == 0
+        finite(instance)
+
+
+@every_flag
+def test_any_inputs_give_finite_outputs(component, given):
+    rng = random.Random(1)
+    instance = component(**given)
+    instance.initialize(0.0)
+    for n in range(100):
+        assign(instance, drawn_inputs(component, rng))
+        problem = instance.step(n * 1e-3, 1e-3)
+        assert problem == 0 or component.problems[problem - 1].warning
+        finite(instance)
+
+
+# State
+
+
+@every_flag
+def test_nothing_is_hidden(component, given):
+    # all fields copied into a fresh instance: it goes on with the same bits
+    rng = random.Random(2)
+    instance = component(**given)
+    instance.initialize(0.0)
+    for n in range(40):
+        assign(instance, drawn_inputs(component, rng))
+        instance.step(n * 1e-3, 1e-3)
+    copy = component()
+    assign(copy, values(instance))
+    for n in range(40, 80):
+        drawn = drawn_inputs(component, rng)
+        for each in (instance, copy):
+            assign(each, drawn)
+            each.step(n * 1e-3, 1e-3)
+        assert values(copy) == values(instance)
+
+
+@every_flag
+def test_starting_again_forgets_everything(component, given):
+    instance = component(**given)
+    runs = []
+    for _ in range(2):
+        rng = random.Random(3)
+        assign(instance, drawn_inputs(component, rng))
+        problems = [instance.initialize(0.0)]
+        outputs = [values(instance, "output")]
+        for n in range(60):
+            assign(instance, drawn_inputs(component, rng))
+            problems.append(instance.step(n * 1e-3, 1e-3))
+            outputs.append(values(instance, "output"))
+        runs.append((problems, outputs))
+    assert runs[0] == runs[1]
+
+
+@every_component
+def test_two_instances_do_not_meet(component):
+    alone, other = component(), component()
+    alone.initialize(0.0)
+    other.initialize(0.0)
+    before = values(other)
+    for n in range(10):
+        advance(alone, n * 1e-3, 1e-3)
+    assert values(other) == before
+
+
+# What the outputs follow from
+
+
+def same(one, other, tolerance):
+    for name, value in one.items():
+        scale = max(abs(value), abs(other[name]), 1.0)
+        assert other[name] == pytest.approx(value, abs=tolerance * scale), name
+
+
+@every_flag
+@pytest.mark.parametrize("pieces", [2, 3, 10])
+def test_splitting_a_step_changes_nothing(component, given, pieces):
+    # with inputs of constant acceleration, given for the end of each step, nothing is left to interpolate
+    if "inputs_at_step_end" in given:
+        given = given | {"inputs_at_step_end": True}
+    step_size = 2e-3
+    whole, split = component(**given), component(**given)
+    for instance in (whole, split):
+        instance.initialize(0.0)
+    for n in range(20):
+        advance(whole, n * step_size, step_size)
+        for k in range(pieces):
+            advance(split, n * step_size + k * step_size / pieces, step_size / pieces)
+        # times and inputs are rounded differently, to 1e-16; a second derivative from samples 0.2 ms apart
+        # magnifies that by up to 60 / (0.2 ms)^2, over the largest accelerations of 1e3: 1e-9
+        same(values(whole, "output"), values(split, "output"), 1e-8)
+
+
+@every_flag
+def test_rates_belong_to_their_outputs(component, given):
+    rated = [v for v in variables_of(component) if v.causality == "output" and v.rate is not None]
+    step_size = 1e-5
+    instance = component(**given)
+    instance.initialize(0.0)
+    advance(instance, 0.0, 0.02)  # away from the points of symmetry
+    rows = []
+    for n in range(2000, 2200):
+        advance(instance, n * step_size, step_size)
+        rows.append(values(instance, "output"))
+    for variable in rated:
+        largest = max(abs(row[variable.rate]) for row in rows)
+        for before, here, after in zip(rows, rows[1:], rows[2:], strict=False):
+            numeric = (after[variable.name] - before[variable.name]) / (2.0 * step_size)
+            # a difference over 20 us: exact to (5 us w)^2 for the fastest motions, w < 100 / s, and rounding
+            # of a travel of 1 m to 1e-16 / 20 us
+            assert numeric == pytest.approx(here[variable.rate], abs=1e-6 * largest + 1e-10), variable.name
+
+
+@every_flag
+def test_outputs_depend_on_what_they_say(component, given):
+    rng = random.Random(4)
+    outputs = [v for v in variables_of(component) if v.causality == "output" and v.depends is not None]
+    for _ in range(3):
+        start, then = drawn_inputs(component, rng), drawn_inputs(component, rng)
+        for disturbed in inputs(component):
+            elsewhere = {disturbed.name: rng.uniform(*span(disturbed))}
+            for steps in (0, 1):  # at the start, and after a step
+                found = []
+                for other in ({}, elsewhere):
+                    instance = component(**given)
+                    assign(instance, start | (other if steps == 0 else {}))
+                    instance.initialize(0.0)
+                    if steps:
+                        assign(instance, then | other)
+                        instance.step(0.0, 1e-3)
+                    found.append(values(instance))
+                for output in outputs:
+                    if disturbed.name not in output.depends:
+                        one, other = (values_found[output.name] for values_found in found)
+                        assert one == other, (output.name, disturbed.name)
