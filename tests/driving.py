@@ -1,5 +1,6 @@
 """What drives any component in a test, from its declaration alone."""
 
+import functools
 import itertools
 import random
 from collections.abc import Iterator
@@ -7,14 +8,16 @@ from typing import Any
 
 from loomfmu.variables import Component, Variable, variables_of
 
+declared = functools.cache(variables_of)  # a declaration does not change, and tests ask for it all the time
+
 
 def inputs(component: type[Component]) -> list[Variable]:
-    return [variable for variable in variables_of(component) if variable.causality == "input"]
+    return [variable for variable in declared(component) if variable.causality == "input"]
 
 
 def flags(component: type[Component]) -> Iterator[dict[str, bool]]:
     """Every combination of the component's yes-or-no parameters."""
-    names = [v.name for v in variables_of(component) if v.settable and v.type is bool]
+    names = [v.name for v in declared(component) if v.settable and v.type is bool]
     for values in itertools.product((False, True), repeat=len(names)):
         yield dict(zip(names, values, strict=True))
 
@@ -23,7 +26,7 @@ def values(component: Component, causality: str | None = None) -> dict[str, Any]
     """Values of all variables, or of those of one causality."""
     return {
         variable.name: getattr(component, variable.name)
-        for variable in variables_of(type(component))
+        for variable in declared(type(component))
         if causality in (None, variable.causality)
     }
 
@@ -51,7 +54,7 @@ def drawn_inputs(component: type[Component], rng: random.Random) -> dict[str, fl
 def drawn_parameters(component: type[Component], rng: random.Random) -> dict[str, Any]:
     """Yes-or-no, whole-numbered and chosen parameters at random; the others stay at their defaults."""
     drawn: dict[str, Any] = {}
-    for variable in variables_of(component):
+    for variable in declared(component):
         if variable.causality == "parameter" and variable.type is bool:
             drawn[variable.name] = rng.random() < 0.5
         if variable.causality == "parameter" and variable.type is int:

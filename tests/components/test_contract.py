@@ -5,11 +5,10 @@ import random
 import re
 
 import pytest
-from driving import advance, assign, drawn_inputs, flags, inputs, moved, span, values
+from driving import advance, assign, declared, drawn_inputs, flags, inputs, moved, span, values
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
-from loomfmu.variables import variables_of
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 every_flag = pytest.mark.parametrize(
@@ -24,7 +23,7 @@ every_flag = pytest.mark.parametrize(
 
 def finite(component):
     """Every number finite, every value of its declared type."""
-    for variable in variables_of(type(component)):
+    for variable in declared(type(component)):
         value = getattr(component, variable.name)
         assert type(value) is variable.type, variable.name
         assert math.isfinite(value), variable.name
@@ -35,7 +34,7 @@ def finite(component):
 
 @every_component
 def test_declaration(component):
-    variables = variables_of(component)
+    variables = declared(component)
     names = [variable.name for variable in variables]
     assert len(set(names)) == len(names)
     for variable in variables:
@@ -55,7 +54,7 @@ def test_declaration(component):
 
 @every_component
 def test_descriptions(component):
-    described = [variable.description for variable in variables_of(component)]
+    described = [variable.description for variable in declared(component)]
     assert len(set(described)) == len(described)
     for text in described:
         assert text == text.strip() != ""
@@ -67,7 +66,7 @@ def test_descriptions(component):
 
 @every_component
 def test_variables_refer_to_variables(component):
-    known = {variable.name: variable for variable in variables_of(component)}
+    known = {variable.name: variable for variable in declared(component)}
     for variable in known.values():
         if variable.rate is not None:
             rate = known[variable.rate]
@@ -102,7 +101,7 @@ def test_only_declared_variables_can_be_set(component):
 
 @every_component
 def test_values_outside_their_limits_are_refused(component):
-    for variable in variables_of(component):
+    for variable in declared(component):
         if not variable.settable:
             continue
         refused = [math.nan, math.inf, -math.inf]
@@ -127,7 +126,7 @@ def test_values_outside_their_limits_are_refused(component):
 
 @every_component
 def test_every_limit_is_a_value_that_runs_or_a_problem(component):
-    for variable in variables_of(component):
+    for variable in declared(component):
         if not variable.settable:
             continue
         for limit in (variable.minimum, variable.maximum):
@@ -197,7 +196,7 @@ def test_a_step_of_no_length_changes_nothing(component, given):
 def test_standing_and_turning_backwards(component, given, factor):
     speeds = {
         variable.name: factor * variable.start
-        for variable in variables_of(component)
+        for variable in declared(component)
         if variable.settable and variable.unit == "rad/s"
     }
     instance = component(**given, **speeds)
@@ -300,7 +299,7 @@ def test_splitting_a_step_changes_nothing(component, given, pieces):
 
 @every_flag
 def test_rates_belong_to_their_outputs(component, given):
-    rated = [v for v in variables_of(component) if v.causality == "output" and v.rate is not None]
+    rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
     step_size = 1e-5
     instance = component(**given)
     instance.initialize(0.0)
@@ -321,7 +320,7 @@ def test_rates_belong_to_their_outputs(component, given):
 @every_flag
 def test_outputs_depend_on_what_they_say(component, given):
     rng = random.Random(4)
-    outputs = [v for v in variables_of(component) if v.causality == "output" and v.depends is not None]
+    outputs = [v for v in declared(component) if v.causality == "output" and v.depends is not None]
     for _ in range(3):
         start, then = drawn_inputs(component, rng), drawn_inputs(component, rng)
         for disturbed in inputs(component):

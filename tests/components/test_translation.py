@@ -12,11 +12,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from driving import assign, drawn_inputs, drawn_parameters, values
+from driving import assign, declared, drawn_inputs, drawn_parameters, values
 
 from loomfmu.components import COMPONENTS
 from loomfmu.fmi.source import flatten
-from loomfmu.variables import variables_of
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 STEPS = 300
@@ -123,12 +122,12 @@ def test_flattened_component_gives_the_same_bits(component, seed):
     exec(compile(flatten(component), component.__name__, "exec"), space)
 
     def compare(one, other):
-        for variable in variables_of(component):
+        for variable in declared(component):
             # the same operations in the same order: no tolerance
             assert getattr(other, variable.name) == getattr(one, variable.name), variable.name
 
     fresh = space[component.__name__]()
-    assert {variable.name: variable.start for variable in variables_of(component)} == vars(fresh)
+    assert {variable.name: variable.start for variable in declared(component)} == vars(fresh)
     in_step(component, fresh, seed, compare)
 
 
@@ -136,14 +135,14 @@ def test_flattened_component_gives_the_same_bits(component, seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_translated_component_agrees(translated, component, seed):
     def compare(one, other):
-        for variable in variables_of(component):
+        for variable in declared(component):
             value, found = getattr(one, variable.name), read(other, variable)
             assert type(found) is variable.type, variable.name
             # the same operations; a C compiler may round a fused one differently: promised is 1e-12
             assert found == pytest.approx(value, rel=1e-12, abs=1e-300), variable.name
 
     fresh = getattr(translated[component.__name__], component.__name__)()
-    for variable in variables_of(component):
+    for variable in declared(component):
         assert read(fresh, variable) == variable.start
     in_step(component, fresh, seed, compare)
 

@@ -1,0 +1,580 @@
+"""The command: what it prints, what it returns, and one line for every mistake."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import pytest
+from live_fmus import NAMES, fmu_cache
+
+from loomfmu import LoomfmuError, Trace
+from loomfmu.cli import main
+from loomfmu.cosim import fmus
+
+__all__ = ["fmu_cache"]
+
+HEAD = 'title = "Small"\nrevolutions = 1\nsteps_per_revolution = 90\n'
+LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01"\n'
+CLAIM = '[[claims]]\nkind = "lowest_margin"\nbound = {bound}\n'
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def scene(text: str) -> str:
+    Path("scene.toml").write_text(text)
+    return "scene.toml"
+
+
+# ---- run
+
+
+@pytest.mark.parametrize(("bound", "status", "word"), [(0.1, 0, "holds"), (0.9, 1, "FAILS")])
+def test_run_prints_the_verdicts_and_returns_whether_all_hold(
+    capsys: pytest.CaptureFixture[str], bound: float, status: int, word: str
+) -> None:
+    text = HEAD + 'description = "To be read after the run."\n' + LOOM + CLAIM.format(bound=bound)
+    assert main(["run", scene(text)]) == status
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    lines = printed.out.splitlines()
+    assert lines[0] == "Small: 1 revolutions at 400 rev/min, 90 steps each"
+    (row,) = (line for line in lines if "lowest margin" in line)
+    assert row.split()[0] == word
+    assert "belt.lowest_margin" in row and "0.6558" in row and f" {bound} " in row and " deg " in row
+    assert "To be read after the run." in lines
+    assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
+    with Trace("results/scene.h5") as trace:
+        assert trace.rows == 91
+        assert [verdict["holds"] for verdict in trace.verdicts] == [status == 0]
+
+
+def test_run_without_claims_holds(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD), "--output", "deep/down/there.h5"]) == 0
+    assert "no claims" in capsys.readouterr().out
+    assert os.listdir("deep/down") == ["there.h5"]
+
+
+def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [
+        "--set",
+        "shaft.speed=685rpm",
+        "--set",
+        "belt.guide_clearance = 0.5 mm",
+        "--set",
+        "heald.stroke=50mm",
+    ]
+    assert main(["run", scene(HEAD + LOOM), *arguments, "--set", "revolutions=0.5"]) == 0
+    assert "0.5 revolutions at 685 rev/min" in capsys.readouterr().out
+    with Trace("results/scene.h5") as trace:
+        assert trace["belt.length_factor"][-1] == 0.9
+        assert trace.parameter("heald_2.stroke") == 0.05
+        assert trace.rows == 46
+
+
+def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (
+        HEAD
+        + LOOM
+        + '[belt]\nguide_clearance = "1.2 mm"\n[wires]\nbelt.yarn_tension = "belt.inertia_force"\n'
+    )
+    assert main(["run", scene(text)]) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        "warning: belt: guide_clearance = 1.2 mm: from 1 mm the belt is to be replaced or the loom slowed",
+        "warning: loop: belt.inertia_force -> belt.yarn_tension carries the value of the step before",
+    ]
+
+
+def test_a_finished_run_replaces_an_older_one() -> None:
+    Path("results").mkdir()
+    Path("results/scene.h5").write_text("an older run")
+    assert main(["run", scene(HEAD)]) == 0
+    with Trace("results/scene.h5") as trace:
+        assert trace.status == "complete"
+
+
+def test_a_failed_run_leaves_an_older_one() -> None:
+    Path("results").mkdir()
+    Path("results/scene.h5").write_text("an older run")
+    assert main(["run", scene(HEAD + LOOM + '[weft]\ncrank_cone = "80 deg"\n')]) == 2
+    assert Path("results/scene.h5").read_text() == "an older run"
+    assert os.listdir("results") == ["scene.h5"]
+
+
+def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
+    # pythonfmu's wrapper decodes no escape but that of a space and crashes where it finds no resources
+    for name in ("with space", "Jürgen", "50% #1 +ä"):
+        environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / name)}
+        command = [sys.executable, "-m", "loomfmu.cli", "run", scene(HEAD)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+# ---- build, list, show
+
+
+def test_build_writes_the_named_fmus(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build", "MainShaft", "BeltMonitor", "--output", "made"]) == 0
+    assert capsys.readouterr().out.split() == ["made/MainShaft.fmu", "made/BeltMonitor.fmu"]
+    assert sorted(os.listdir("made")) == ["BeltMonitor.fmu", "MainShaft.fmu"]
+    assert fmus.load(Path("made/MainShaft.fmu")).sha256 == fmus.of_component("MainShaft").sha256
+
+
+def test_build_writes_all_by_default(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build"]) == 0
+    assert sorted(os.listdir("build/fmus")) == sorted(f"{name}.fmu" for name in NAMES)
+    assert len(capsys.readouterr().out.split()) == len(NAMES)
+
+
+def test_list_names_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    printed = capsys.readouterr().out
+    for name in NAMES:
+        assert f"\n{name}: " in "\n" + printed
+    assert "outputs: travel, velocity, acceleration, stroke, shaft_torque" in printed
+    assert "law: uniform, harmonic_ends, sloped_line, sloped_sine" in printed
+    assert "WL680-3600" in printed and "G6300 left" in printed
+
+
+@pytest.mark.parametrize(("bound", "status"), [(0.1, 0), (0.9, 1)])
+def test_show_summarises_and_tells_again_whether_all_claims_held(
+    capsys: pytest.CaptureFixture[str], bound: float, status: int
+) -> None:
+    main(["run", scene(HEAD + LOOM + CLAIM.format(bound=bound))])
+    capsys.readouterr()
+    assert main(["show", "results/scene.h5"]) == status
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("Small (loomfmu ") and lines[0].endswith(", complete)")
+    assert lines[1] == "91 samples over 0.15 s, 1 revolutions"
+    row = next(line.split() for line in lines if line.startswith("shaft.angle"))
+    assert row == ["shaft.angle", "0", "360", "360", "deg"]
+    row = next(line.split() for line in lines if line.startswith("weft.stroke"))
+    assert row[1:] == ["2.09529", "2.09529", "2.09529", "m"]
+    assert any("lowest margin" in line for line in lines)
+
+
+def test_show_of_an_unfinished_run_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", scene(HEAD)])
+    with h5py.File("results/scene.h5", "r+") as file:
+        file.attrs["status"] = "interrupted"
+    capsys.readouterr()
+    assert main(["show", "results/scene.h5"]) == 1
+    assert ", interrupted)" in capsys.readouterr().out
+
+
+def test_a_reader_that_goes_away_is_no_failure() -> None:
+    main(["run", scene(HEAD + LOOM)])
+    command = [sys.executable, "-m", "loomfmu.cli", "show", "results/scene.h5"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        running.stdout.close()
+        assert running.stderr.read() == b""
+        assert running.wait() == 141  # as the shell says of a broken pipe
+
+
+@pytest.mark.parametrize("arguments", [[], ["spin"], ["run"], ["run", "a", "b"], ["build", "--outpt", "x"]])
+def test_a_command_that_is_none_returns_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as raised:
+        main(arguments)
+    assert raised.value.code == 2
+    assert "usage: loomfmu" in capsys.readouterr().err
+
+
+def test_the_command_is_installed() -> None:
+    done = subprocess.run([Path(sys.executable).with_name("loomfmu"), "list"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+# ---- mistakes: one line that names what, where and what would be right
+
+CASES: dict[str, tuple[str, str]] = {
+    # the scene's own keys
+    "unknown key": (HEAD + "revolution = 3\n", "revolution is unknown; did you mean 'revolutions'?"),
+    "unknown table": (
+        HEAD + "[belts_x]\na = 1\n",
+        "[belts_x] is unknown and has no component = \"...\" of its own; did you mean 'belt'?",
+    ),
+    "no instance name": (
+        HEAD + '["my shaft"]\ncomponent = "MainShaft"\n',
+        "instance name 'my shaft' is not letters, digits and _, a letter first",
+    ),
+    "taken name": (
+        HEAD + '[time]\ncomponent = "MainShaft"\n',
+        "instance name 'time' is taken: a trace has its own time",
+    ),
+    "unknown component": (
+        HEAD + '[mine]\ncomponent = "BeltMonito"\n',
+        "there is no component 'BeltMonito'; did you mean 'BeltMonitor'?",
+    ),
+    "component no name": (HEAD + "[mine]\ncomponent = 5\n", "mine.component = 5 is not a name in quotes"),
+    "no shaft": (
+        HEAD + '[shaft]\ncomponent = "HealdFrame"\n',
+        "shaft.component = 'HealdFrame': the shaft of a scene is a MainShaft",
+    ),
+    "bad TOML": ("a = = 5", "not valid TOML: Invalid value (at line 1, column 5)"),
+    "zero steps": (
+        HEAD.replace("90", "0"),
+        "steps_per_revolution = 0 is outside [1, 1e+09]",
+    ),
+    "half a step": (HEAD.replace("90", "90.5"), "steps_per_revolution = 90.5 is not a whole number"),
+    "no number of steps": (HEAD.replace("90", "'many'"), "steps_per_revolution = 'many' is not a number"),
+    "no way back": (
+        HEAD.replace("revolutions = 1", "revolutions = -1"),
+        "revolutions = -1 is outside [1e-09, 1e+09]",
+    ),
+    "no whole step": (
+        HEAD.replace("revolutions = 1", "revolutions = 1e-6"),
+        "revolutions = 1e-06 at 90 steps each is not one step",
+    ),
+    "NaN revolutions": (
+        HEAD.replace("revolutions = 1", "revolutions = nan"),
+        "revolutions = nan is outside [1e-09, 1e+09]",
+    ),
+    "zero speed": (
+        HEAD + "[shaft]\nspeed = 0\n",
+        "shaft.speed = 0 rev/min: the shaft's speed sets the step, it may not be 0",
+    ),
+    "record no list": (
+        "record = 'belt.margin'\n" + HEAD + LOOM,
+        'record = \'belt.margin\' is no list such as ["belt.*", "weft.travel"]',
+    ),
+    "record unknown": (
+        "record = ['belt.margn']\n" + HEAD + LOOM,
+        "record: no output is called 'belt.margn'; did you mean 'belt.margin'?",
+    ),
+    # the loom
+    "loom key": (HEAD + "[loom]\nmachin = 'x'\n", "loom.machin is unknown; did you mean 'machine'?"),
+    "unknown machine": (
+        HEAD + LOOM.replace("3600", "36"),
+        "there is no machine 'WL680-36'; did you mean 'WL680-3600'?",
+    ),
+    "machine no name": (HEAD + "[loom]\nmachine = 5\n", "weft.machine = 5 is not a name in quotes"),
+    "unknown head": (
+        HEAD + LOOM.replace(" left", ""),
+        "there is no head 'G6300'; did you mean 'G6300 left'?",
+    ),
+    "dampers": (
+        HEAD + LOOM + 'dampers = "no"\n',
+        "loom.dampers = 'no' is neither true nor false",
+    ),
+    "pattern": (
+        HEAD + LOOM + '[heald_1]\npattern = "12"\n',
+        "heald_1.pattern = '12' is no string of pegs such as \"1010\"",
+    ),
+    "pattern too long": (
+        HEAD + LOOM + f'[heald_1]\npattern = "{"10" * 65}"\n',
+        "heald_1.pattern has 130 picks; the dobby holds 128",
+    ),
+    "pattern elsewhere": (
+        HEAD + LOOM + '[belt]\npattern = "10"\n',
+        "belt.pattern: only a HealdFrame has a pattern",
+    ),
+    # values
+    "unknown variable": (
+        HEAD + LOOM + "[belt]\nguide_clearence = 1\n",
+        "belt.guide_clearence is unknown; did you mean 'guide_clearance'?",
+    ),
+    "setting an output": (
+        HEAD + LOOM + "[belt]\nmargin = 1\n",
+        "belt.margin is an output of BeltMonitor and cannot be set",
+    ),
+    "setting a state": (
+        HEAD + LOOM + "[belt]\nsampled_travel = 1\n",
+        "belt.sampled_travel is a state of BeltMonitor and cannot be set",
+    ),
+    "unknown unit": (
+        HEAD + '[shaft]\nspeed = "600 rpmm"\n',
+        "shaft.speed: unknown unit 'rpmm'; did you mean 'rpm'?",
+    ),
+    "unit of another dimension": (
+        HEAD + '[shaft]\nspeed = "600 mm"\n',
+        "shaft.speed: '600 mm' is in mm, which is no unit of rad/s",
+    ),
+    "out of range": (
+        HEAD + LOOM + '[belt]\nguide_clearance = "90 mm"\n',
+        "belt.guide_clearance = 90 mm is outside [0, 50] mm",
+    ),
+    "NaN": (
+        HEAD + LOOM + "[belt]\nguide_clearance = nan\n",
+        "belt.guide_clearance = nan mm is outside [0, 50] mm",
+    ),
+    "infinite": (
+        HEAD + LOOM + "[belt]\nyarn_tension = inf\n",
+        "belt.yarn_tension = inf cN is outside [-1e+08, 1e+08] cN",
+    ),
+    "negative stiffness": (
+        HEAD + LOOM + "[belt]\nbending_stiffness = -0.25\n",
+        "belt.bending_stiffness = -0.25 N.m2 is outside [1e-09, 1000000] N.m2",
+    ),
+    "no quantity": (
+        HEAD + LOOM + "[belt]\nguide_clearance = [1]\n",
+        'belt.guide_clearance: [1] is not a quantity such as "685 rpm"',
+    ),
+    "unknown law": (
+        HEAD + LOOM + '[dobby]\nlaw = "sloped-sin"\n',
+        "dobby.law = 'sloped-sin' is unknown; did you mean 'sloped_sine'?",
+    ),
+    "no yes or no": (
+        HEAD + LOOM + "[belt]\nprescribe_length_factor = 1\n",
+        "belt.prescribe_length_factor = 1 is neither true nor false",
+    ),
+    "no whole number": (
+        HEAD + "[shaft]\nripple_order = 1.5\n",
+        "shaft.ripple_order = 1.5 is not a whole number",
+    ),
+    # wires
+    "wire to nowhere": (
+        HEAD + LOOM + '[wires]\n"belt.yarn" = "weft.travel"\n',
+        "wire weft.travel -> belt.yarn: belt has no input 'yarn'; did you mean 'yarn_tension'?",
+    ),
+    "wire from nowhere": (
+        HEAD + LOOM + '[wires]\n"belt.yarn_tension" = "weft.travl"\n',
+        "wire weft.travl -> belt.yarn_tension: weft has no output 'travl'; did you mean 'travel'?",
+    ),
+    "wire from nobody": (
+        HEAD + LOOM + '[wires]\n"belt.yarn_tension" = "wft.travel"\n',
+        "wire wft.travel -> belt.yarn_tension: there is no instance 'wft'; did you mean 'weft'?",
+    ),
+    "wire between units": (
+        HEAD + LOOM + '[wires]\n"belt.yarn_tension" = "weft.travel"\n',
+        "wire weft.travel -> belt.yarn_tension: weft.travel is in m, belt.yarn_tension in N",
+    ),
+    "cutting no wire": (
+        HEAD + LOOM + '[wires]\n"belt.travl" = false\n',
+        "wires: 'belt.travl' is not wired; did you mean 'belt.travel'?",
+    ),
+    "wires no table": (
+        "wires = 5\n" + HEAD,
+        'wires is no table of "instance.input" = "instance.output"',
+    ),
+    # claims
+    "claims no tables": ("claims = 5\n" + HEAD, "claims are written as [[claims]] tables"),
+    "claim kind": (
+        HEAD + '[[claims]]\nkind = "abov"\n',
+        "claim kind = 'abov' is unknown; did you mean 'above'?",
+    ),
+    "claim argument": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbond = 1\n',
+        "claim 'above' has no 'bond'; did you mean 'bound'?",
+    ),
+    "claim lacks": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\n',
+        "claim 'above' needs 'bound'",
+    ),
+    "claim lacks a signal": (
+        HEAD + '[[claims]]\nkind = "above"\nbound = 1\n',
+        "claim 'above' needs 'signal'",
+    ),
+    "claim signal": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margn"\nbound = 1\n',
+        "claim 'above': belt has no output 'margn'; did you mean 'margin'?",
+    ),
+    "claim instance": (
+        HEAD + LOOM + '[[claims]]\nkind = "dwell"\nheald = "heald_7"\nat_least = 1\n',
+        "claim 'dwell': there is no instance 'heald_7'; did you mean 'heald_2'?",
+    ),
+    "claim unit": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = "1 mm"\n',
+        "claim 'above': bound: '1 mm' is in mm, which is no unit of 1",
+    ),
+    "claim NaN": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = nan\n',
+        "claim 'above': bound = nan is not finite",
+    ),
+    "claim window": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = 1\nwindow = "10..20"\n',
+        "claim 'above': window = '10..20' is not [from, to] in shaft angle",
+    ),
+    "claim window unit": (
+        HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "weft.travel"\nbound = 1\nwindow = ["1 mm", 2]\n',
+        "claim 'above': window: '1 mm' is in mm, which is no unit of rad",
+    ),
+    "claim tolerance": (
+        HEAD + LOOM + '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = 1\ntolerance = 0.9\n',
+        "claim 'dwell': tolerance = 0.9 is outside (0, 0.5), shares of the stroke",
+    ),
+}
+
+
+def one_line(capsys: pytest.CaptureFixture[str]) -> str:
+    printed = capsys.readouterr()
+    assert printed.err.count("\n") == 1 and printed.err.endswith("\n"), printed.err
+    assert "Traceback" not in printed.err
+    assert printed.out == ""
+    assert printed.err.startswith("loomfmu: ")
+    return printed.err.removeprefix("loomfmu: ").strip()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_mistake_in_a_scene_is_told_in_one_line(capsys: pytest.CaptureFixture[str], case: str) -> None:
+    text, said = CASES[case]
+    assert main(["run", scene(text)]) == 2
+    assert one_line(capsys) == f"scene.toml: {said}"
+    assert not Path("results").exists()  # nothing was run, nothing written
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("belt.guide_clearance", "--set belt.guide_clearance: not of the form INSTANCE.VARIABLE=VALUE"),
+        ("bel.travel=1", "scene.toml: bel.travel: the scene has no instance 'bel'; did you mean 'belt'?"),
+        ("belt.travl=1", "scene.toml: belt.travl is unknown; did you mean 'travel'?"),
+        ("belt.margin=1", "scene.toml: belt.margin is an output of BeltMonitor and cannot be set"),
+        ("revolution=2", "scene.toml: 'revolution' cannot be set; did you mean 'revolutions'?"),
+        ("shaft.speed=", "scene.toml: shaft.speed: '' is not a quantity such as \"685 rpm\""),
+        ("shaft.speed=nan", "scene.toml: shaft.speed: 'nan' is not a quantity such as \"685 rpm\""),
+        (
+            "shaft.speed=1e999",
+            "scene.toml: shaft.speed = inf rev/min is outside [-9549.297, 9549.297] rev/min",
+        ),
+        ("shaft.speed=685rpmm", "scene.toml: shaft.speed: unknown unit 'rpmm'; did you mean 'rpm'?"),
+        ("heald.strok=1", "scene.toml: heald_1.strok is unknown; did you mean 'stroke'?"),
+        (
+            "heald.inputs_at_step_end=maybe",
+            "scene.toml: heald_1.inputs_at_step_end = 'maybe' is neither true nor false",
+        ),
+    ],
+)
+def test_a_mistake_in_set_is_told_in_one_line(
+    capsys: pytest.CaptureFixture[str], given: str, said: str
+) -> None:
+    assert main(["run", scene(HEAD + LOOM), "--set", given]) == 2
+    assert one_line(capsys) == said
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '[weft]\ncrank_cone = "80 deg"\n',
+            "weft: the spherical linkage does not close over a whole turn: |cos(rocker_angle = 60 deg)|"
+            " reaches or exceeds |cos(crank_cone = 80 deg)|",
+        ),
+        (
+            '[weft]\ncoupler_length = "20 mm"\n',
+            "weft: the planar four-bar does not close over the rocker's swing: crank_length = 150 mm,"
+            " coupler_length = 20 mm, output_length = 121 mm, pivot at (243 mm, 258 mm)",
+        ),
+        ("[weft]\nassembly = 0\n", "weft: assembly = 0 is outside {-1, 1}"),
+        (
+            '[damper_1]\nstart_displacement = "20 mm"\n',
+            "damper_1: start_displacement = 20 mm is beyond the stops at free_travel = 15 mm",
+        ),
+    ],
+)
+def test_values_that_do_not_go_together_are_told_in_one_line(
+    capsys: pytest.CaptureFixture[str], text: str, said: str
+) -> None:
+    assert main(["run", scene(HEAD + LOOM + text)]) == 2
+    assert one_line(capsys).startswith(said)
+    assert not Path("results").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "missing.toml"], "missing.toml: cannot be read (No such file or directory)"),
+        (["run", "."], ".: cannot be read (Is a directory)"),
+        (
+            ["run", "scene.toml", "--output", "scene.toml/x.h5"],
+            "scene.toml/x.h5: cannot be written (File exists)",
+        ),
+        (["run", "scene.toml", "--output", "."], ".: cannot be written (it is a directory)"),
+        (["run", "scene.toml", "--output", ""], ".: cannot be written (it is a directory)"),
+        (
+            ["run", "scene.toml", "--output", "/proc/none/x.h5"],
+            "/proc/none/x.h5: cannot be written (No such file or directory)",
+        ),
+        (["build", "MainShft"], "there is no FMU 'MainShft'; did you mean 'MainShaft'?"),
+        (["build", "MainShaft", "--output", "scene.toml"], "scene.toml: File exists"),
+        (["show", "missing.h5"], "missing.h5: there is no such file"),
+        (
+            ["show", "scene.toml"],
+            "scene.toml: it is no readable trace"
+            " (Unable to synchronously open file (file signature not found))",
+        ),
+        (
+            ["show", "other.h5"],
+            "other.h5: it is no trace of a run: it lacks /time, /shaft_angle or a title",
+        ),
+    ],
+)
+def test_a_mistake_in_a_file_name_is_told_in_one_line(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+) -> None:
+    scene(HEAD)
+    with h5py.File("other.h5", "w") as other:
+        other["time"] = [0.0]
+    assert main(arguments) == 2
+    assert one_line(capsys) == said
+
+
+def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", scene(HEAD + LOOM)])
+    whole = Path("results/scene.h5").read_bytes()
+    Path("cut.h5").write_bytes(whole[: len(whole) // 2])
+    capsys.readouterr()
+    assert main(["show", "cut.h5"]) == 2
+    assert one_line(capsys).startswith(
+        "cut.h5: it is no readable trace (Unable to synchronously open file (trunc"
+    )
+
+
+def test_a_trace_that_is_damaged_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", scene(HEAD + LOOM)])
+    content = bytearray(Path("results/scene.h5").read_bytes())
+    for place in range(2000, len(content), 997):
+        content[place] ^= 0xFF
+    Path("damaged.h5").write_bytes(content)
+    capsys.readouterr()
+    assert main(["show", "damaged.h5"]) == 2
+    assert "Traceback" not in (said := capsys.readouterr().err)
+    assert said.startswith("loomfmu: damaged.h5: ") and said.count("\n") == 1
+
+
+# ---- FMU files
+
+
+def test_files_that_are_no_fmus_are_told_in_one_line(tmp_path: Path) -> None:
+    whole = fmus.of_component("MainShaft").path.read_bytes()
+    path = tmp_path / "wrong.fmu"
+    for content in (b"", b"no zip", whole[: len(whole) // 2], whole[:-30]):
+        path.write_bytes(content)
+        with pytest.raises(LoomfmuError) as raised:
+            fmus.load(path)
+        assert str(raised.value) == f"{path}: not a readable FMU (File is not a zip file)"
+    with pytest.raises(LoomfmuError, match=r"none\.fmu: there is no such FMU$"):
+        fmus.load(tmp_path / "none.fmu")
+    with pytest.raises(LoomfmuError, match=r": not a readable FMU \(\[Errno 21\] Is a directory"):
+        fmus.load(tmp_path)
+    unpacked = fmus.cache_directory() / "unpacked"
+    assert all(len(entry.name) == 64 for entry in unpacked.iterdir())  # nothing half unpacked is left
+
+
+def test_a_zip_that_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
+    import zipfile
+
+    def packed(**files: str) -> Path:
+        path = tmp_path / f"{len(os.listdir(tmp_path))}.fmu"
+        with zipfile.ZipFile(path, "w") as zipped:
+            for name, text in files.items():
+                zipped.writestr(f"{name}.xml", text)
+        return path
+
+    start = '<fmiModelDescription fmiVersion="{}" modelName="M" guid="g"{}>'
+    model_exchange = start.format("2.0", "") + '<ModelExchange modelIdentifier="M"/>'
+    cases = {
+        packed(): "not a readable FMU",
+        packed(other="<a/>"): "not a readable FMU",
+        packed(modelDescription="<a"): "its modelDescription.xml cannot be read",
+        packed(modelDescription="<a/>"): "its modelDescription.xml cannot be read",
+        packed(modelDescription=model_exchange + "<ModelVariables/></fmiModelDescription>"): "only FMI 2.0",
+    }
+    for path, said in cases.items():
+        with pytest.raises(LoomfmuError) as raised:
+            fmus.load(path)
+        assert str(raised.value).startswith(f"{path}: ")
+        assert said in str(raised.value) and "\n" not in str(raised.value)

@@ -1,0 +1,475 @@
+"""Traces: what is in the file, who can read it, and what is left of a run that was cut off."""
+
+import hashlib
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from importlib import metadata
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import sdf
+import xarray
+from live_fmus import fmu_cache, in_a_process
+
+import loomfmu
+from loomfmu import LoomfmuError, Trace, units
+from loomfmu.cosim import fmus
+from loomfmu.traces import ROWS, Channel, TraceWriter
+from loomfmu.variables import variables_of
+
+__all__ = ["fmu_cache"]
+
+SCENE = """
+title = "Two frames"
+revolutions = 1.5
+steps_per_revolution = 1440
+[loom]
+machine = "WL680-3600"
+weave = "10/01"
+dampers = true
+[heald]
+stroke = "60 mm"
+[[claims]]
+name = "holds"
+kind = "lowest_margin"
+bound = 0.1
+[[claims]]
+kind = "stop_contacts"
+damper = "damper_1"
+at_most = 100
+"""
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> loomfmu.Result:
+    directory = tmp_path_factory.mktemp("traces")
+    path = directory / "two_frames.toml"
+    path.write_text(SCENE)
+    return loomfmu.run(path, output=directory / "two_frames.h5")
+
+
+@pytest.fixture
+def file(result: loomfmu.Result):
+    with h5py.File(result.path, "r") as opened:
+        yield opened
+
+
+# ---- what is in the file
+
+
+def test_the_root_says_what_was_run(file: h5py.File, result: loomfmu.Result) -> None:
+    said = dict(file.attrs)
+    assert said["Conventions"] == "CF-1.11"
+    assert said["title"] == "Two frames"
+    assert said["scene"] == SCENE
+    assert said["status"] == "complete"
+    assert said["software"] == f"loomfmu {metadata.version('loomfmu')}"
+    assert said["steps_per_revolution"] == "1440"
+    assert json.loads(said["claims"]) == [verdict.as_dict() for verdict in result.claims]
+    kinds = {instance.fmu.name for instance in result.scene.instances.values()}
+    assert len(kinds) == 6
+    for kind in kinds:
+        fmu = fmus.of_component(kind)
+        assert said[f"fmu_{kind}_version"] == metadata.version("loomfmu")
+        assert said[f"fmu_{kind}_sha256"] == hashlib.sha256(fmu.path.read_bytes()).hexdigest()
+
+
+def test_the_layout_is_flat_and_along_one_time(file: h5py.File, result: loomfmu.Result) -> None:
+    assert set(file) == {"time", "shaft_angle", *result.scene.instances}
+    assert file["time"].is_scale
+    assert file["time"].attrs["UNIT"] == file["time"].attrs["units"] == "s"
+    assert file["shaft_angle"].attrs["UNIT"] == "rad"
+    assert np.all(np.diff(file["time"][:]) > 0)
+    assert file["shaft_angle"].dims[0][0] == file["time"]
+    for name in result.scene.instances:
+        assert file[f"{name}/time"] == file["time"]  # one object, not a copy
+        for variable, dataset in file[name].items():
+            assert dataset.shape == (2161,)
+            if variable != "time":
+                assert dataset.dims[0][0] == file["time"]
+
+
+def test_every_dataset_is_chunked_compressed_and_described(file: h5py.File, result: loomfmu.Result) -> None:
+    for name, instance in result.scene.instances.items():
+        declared = {v.name: v for v in variables_of(fmus.COMPONENTS[instance.fmu.name])}
+        outputs = {v.name for v in declared.values() if v.causality == "output"}
+        assert set(file[name]) == outputs | {"time"}
+        for output in outputs:
+            dataset, variable = file[name][output], declared[output]
+            assert dataset.chunks == (ROWS,)
+            assert (dataset.compression, dataset.shuffle) == ("gzip", True)
+            assert dataset.dtype == ("<f8" if variable.type is float else "<i4")
+            assert dataset.attrs["UNIT"] == variable.unit
+            assert dataset.attrs["units"] == units.udunits(variable.unit)
+            assert dataset.attrs["long_name"] == output.replace("_", " ")
+            assert dataset.attrs["COMMENT"] == variable.description
+            assert dataset.attrs.get("DISPLAY_UNIT", variable.unit) == variable.display
+            assert dataset.attrs.get("rate") == variable.rate
+            if variable.type is bool:
+                np.testing.assert_array_equal(dataset.attrs["flag_values"], [0, 1])
+                assert dataset.attrs["flag_meanings"] == "no yes"
+                assert set(dataset[:]) <= {0, 1}
+            else:
+                assert "flag_values" not in dataset.attrs
+
+
+def test_some_units_spelt_out(file: h5py.File) -> None:
+    assert file["belt/critical_force"].attrs["units"] == "N"
+    assert file["weft/acceleration"].attrs["units"] == "m s-2"
+    assert file["weft/shaft_torque"].attrs["units"] == "N m"
+    assert file["belt/lowest_speed_limit"].attrs["UNIT"] == "rad/s"
+    assert file["belt/lowest_speed_limit"].attrs["DISPLAY_UNIT"] == "rev/min"
+
+
+def test_parameters_stand_as_they_were_set(file: h5py.File, result: loomfmu.Result) -> None:
+    assert file["heald_1"].attrs["stroke"] == 0.06
+    assert file["belt"].attrs["head_length"] == 0.55
+    assert file["weft"].attrs["follow_shaft"]
+    for name, instance in result.scene.instances.items():
+        declared = variables_of(fmus.COMPONENTS[instance.fmu.name])
+        parameters = {v.name: v.start for v in declared if v.causality == "parameter"}
+        expected = parameters | {k: v for k, v in instance.values.items() if k in parameters}
+        assert dict(file[name].attrs) == expected
+
+
+def test_choices_are_flags_with_their_own_numbers(tmp_path: Path) -> None:
+    channels = [Channel("dobby", "law", "1", "1", "Law", 0, False, None, ("uniform", "sloped_sine"), 1)]
+    written(tmp_path / "law.h5", channels, np.zeros((3, 1)), np.array([[1], [2], [1]], dtype="i4"))
+    with h5py.File(tmp_path / "law.h5") as file:
+        np.testing.assert_array_equal(file["dobby/law"].attrs["flag_values"], [1, 2])
+        assert file["dobby/law"].attrs["flag_meanings"] == "uniform sloped_sine"
+
+
+# ---- who can read it
+
+
+def test_our_own_reader(result: loomfmu.Result, file: h5py.File) -> None:
+    with Trace(result.path) as trace:
+        assert (trace.rows, trace.status) == (2161, "complete")
+        assert trace.verdicts == [verdict.as_dict() for verdict in result.claims]
+        assert trace.attributes["title"] == "Two frames"
+        np.testing.assert_array_equal(trace.time, file["time"][:])
+        np.testing.assert_array_equal(trace["belt.margin"], file["belt/margin"][:])
+        assert "belt.margin" in trace and "belt.margn" not in trace and "belt" not in trace
+        assert {"belt.margin", "heald_2.moving", "shaft.angle"} <= set(trace)
+        assert (trace.unit("belt.free_length"), trace.display("belt.free_length")) == ("m", "mm")
+        assert trace.description("weft.travel").startswith("Travel of the rapier head")
+        assert (trace.rate("weft.travel"), trace.rate("weft.acceleration")) == ("weft.velocity", None)
+        assert trace.parameter("heald_1.stroke") == 0.06
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda t: t["belt.margn"], "no signal 'belt.margn' is recorded; did you mean 'belt.margin'?"),
+        (lambda t: t["belt"], "no signal 'belt' is recorded; did you mean 'belt."),
+        (lambda t: t.unit("weft.travl"), "no signal 'weft.travl' is recorded; did you mean 'weft.travel'?"),
+        (lambda t: t.parameter("heald_1.strok"), "no parameter 'heald_1.strok' is recorded"),
+        (lambda t: t.parameter("heald_9.stroke"), "no parameter 'heald_9.stroke' is recorded"),
+    ],
+)
+def test_our_own_reader_names_what_it_does_not_find(result: loomfmu.Result, ask, said: str) -> None:
+    with Trace(result.path) as trace, pytest.raises(LoomfmuError) as raised:
+        ask(trace)
+    assert str(raised.value).startswith(f"two_frames.h5: {said}")
+
+
+def test_xarray_reads_a_group(result: loomfmu.Result, file: h5py.File) -> None:
+    with xarray.open_dataset(result.path, engine="h5netcdf", group="belt") as belt:
+        assert belt["margin"].dims == ("time",)
+        np.testing.assert_array_equal(belt["time"], file["time"][:])
+        np.testing.assert_array_equal(belt["margin"], file["belt/margin"][:])
+        assert belt["free_length"].attrs["units"] == "m"
+        assert belt["free_length"].attrs["long_name"] == "free length"
+        middle = belt["margin"].sel(time=slice(0.05, 0.1))
+        assert 470 < middle.size < 490  # 50 ms of steps of 104 us
+
+
+def test_xarray_reads_the_tree(result: loomfmu.Result, file: h5py.File) -> None:
+    with xarray.open_datatree(result.path, engine="h5netcdf") as tree:
+        assert set(tree.children) == set(result.scene.instances)
+        np.testing.assert_array_equal(tree["heald_2/lift"], file["heald_2/lift"][:])
+        np.testing.assert_array_equal(tree["shaft_angle"], file["shaft_angle"][:])
+        assert tree.attrs["title"] == "Two frames"
+
+
+def test_sdf_reads_it(result: loomfmu.Result, file: h5py.File) -> None:
+    root = sdf.load(str(result.path))
+    belt = next(group for group in root.groups if group.name == "belt")
+    margin = belt["free_length"]
+    np.testing.assert_array_equal(margin.data, file["belt/free_length"][:])
+    assert (margin.unit, margin.display_unit, margin.is_scale) == ("m", "mm", False)
+    assert margin.comment.startswith("Length of the belt outside")
+    assert margin.scales[0].unit == "s"
+    np.testing.assert_array_equal(margin.scales[0].data, file["time"][:])
+
+
+# ---- writing
+
+
+def written(path: Path, channels: list[Channel], reals: np.ndarray, integers: np.ndarray) -> None:
+    times = np.arange(len(reals)) * 1e-3
+    writer = TraceWriter(path, {"title": "t", "software": "s"}, channels, {})
+    writer.append(times, times, reals, integers)
+    writer.seal("complete")
+    writer.complete([])
+
+
+def test_five_thousand_variables_along_one_time(tmp_path: Path) -> None:
+    # a dimension scale lists its users in one attribute: above 4,000 an old file format has no room for it
+    channels = [Channel("loom", f"signal_{n}", "m", "m", "One of many", n) for n in range(5000)]
+    reals = np.arange(5000) + np.array([[0.0], [0.5], [1.0]])
+    written(tmp_path / "many.h5", channels, reals, np.zeros((3, 1), dtype="i4"))
+    with Trace(tmp_path / "many.h5") as trace:
+        assert trace.rows == 3
+        np.testing.assert_array_equal(trace["loom.signal_4999"], [4999.0, 4999.5, 5000.0])
+    with h5py.File(tmp_path / "many.h5") as file:
+        assert file["loom/signal_4999"].dims[0][0] == file["time"]
+
+
+def test_a_long_scene_and_many_verdicts_fit(tmp_path: Path) -> None:
+    # attributes of more than 64 kB need dense storage
+    text, verdicts = "# a long scene\n" * 20_000, [{"claim": "c" * 1000, "holds": True}] * 300
+    writer = TraceWriter(tmp_path / "long.h5", {"title": "t", "scene": text}, [], {})
+    writer.append(np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1), dtype="i4"))
+    writer.seal("complete")
+    writer.complete(verdicts)
+    with Trace(tmp_path / "long.h5") as trace:
+        assert trace.attributes["scene"] == text
+        assert trace.verdicts == verdicts
+
+
+def test_the_final_name_is_given_last(tmp_path: Path) -> None:
+    path = tmp_path / "sub" / "run.h5"
+    writer = TraceWriter(path, {"title": "t"}, [], {})
+    assert writer.partial == path.with_name("run.h5.partial")
+    writer.append(np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1), dtype="i4"))
+    writer.seal("complete")
+    assert not path.exists()
+    assert writer.complete([]) == path
+    assert [entry.name for entry in path.parent.iterdir()] == ["run.h5"]
+
+
+def test_what_is_abandoned_keeps_what_was_written(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    path.write_text("an older run")
+    channels = [Channel("a", "x", "m", "m", "X", 0)]
+    writer = TraceWriter(path, {"title": "t"}, channels, {})
+    block = np.arange(ROWS) * 1.0
+    for _ in range(3):
+        writer.append(block, block, block[:, None], np.zeros((ROWS, 1), dtype="i4"))
+    with Trace(writer.abandon("failed")) as trace:
+        assert (trace.rows, trace.status, trace.verdicts) == (3 * ROWS, "failed", [])
+        np.testing.assert_array_equal(trace["a.x"], np.tile(block, 3))
+    assert path.read_text() == "an older run"
+
+
+def test_a_finished_file_has_no_reserved_space_left(result: loomfmu.Result) -> None:
+    with h5py.File(result.path) as file:
+        # what all chunks and headers take, plus HDF5's own gaps: far less than a reserved block (0.6 MB)
+        stored = sum(file[name].id.get_storage_size() for name in names(file))
+        assert result.path.stat().st_size < stored + 4096 * (len(names(file)) + 1)
+
+
+def names(file: h5py.File) -> list[str]:
+    found: list[str] = []
+    file.visititems(lambda name, item: found.append(name) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+# ---- runs that are cut off
+
+LONG = 'revolutions = 100000\n[loom]\nmachine = "WL680-3600"\n'
+RUN = [sys.executable, "-m", "loomfmu.cli", "run", "long.toml", "--output", "out/long.h5"]
+
+
+def start(directory: Path) -> subprocess.Popen:
+    """A run that would take an hour, some blocks of it written."""
+    (directory / "long.toml").write_text(LONG)
+    (directory / "out").mkdir()
+    (directory / "out" / "long.h5").write_text("an older run")
+    running = subprocess.Popen(RUN, cwd=directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while rows(directory) < 3 * ROWS:
+        assert running.poll() is None, running.stderr.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    return running
+
+
+def rows(directory: Path) -> int:
+    """Samples that can be read while the run goes on."""
+    try:
+        with Trace(directory / "out" / "long.h5.partial") as trace:
+            assert trace.status == "running"
+            return trace.rows
+    except LoomfmuError:
+        return 0  # not yet there, or its header is being written
+
+
+def check_kept(directory: Path, kept: Trace) -> None:
+    """Every sample is what a shorter run gives, and the final name still bears the older run."""
+    text = LONG.replace("100000", "1.0")
+    (directory / "short.toml").write_text(text)
+    short = loomfmu.run(directory / "short.toml", output=directory / "short.h5").trace
+    assert set(kept) == set(short)
+    for signal_ in short:
+        assert len(kept[signal_]) == kept.rows
+        np.testing.assert_array_equal(kept[signal_][: short.rows], short[signal_])
+    step = kept.time[1]
+    np.testing.assert_array_equal(kept.time, np.arange(kept.rows) * step)
+    assert (directory / "out" / "long.h5").read_text() == "an older run"
+
+
+def test_after_a_kill_every_whole_block_can_be_read(tmp_path: Path) -> None:
+    running = start(tmp_path)
+    seen = rows(tmp_path)
+    running.kill()
+    assert running.wait(30) == -signal.SIGKILL
+    running.communicate()
+    assert sorted(os.listdir(tmp_path / "out")) == ["long.h5", "long.h5.partial"]
+    with Trace(tmp_path / "out" / "long.h5.partial") as kept:
+        assert kept.rows >= seen
+        assert kept.rows % ROWS == 0
+        assert kept.status == "running"
+        assert kept.verdicts == []
+        check_kept(tmp_path, kept)
+
+
+def test_after_ctrl_c_every_sample_can_be_read(tmp_path: Path) -> None:
+    running = start(tmp_path)
+    running.send_signal(signal.SIGINT)
+    output, errors = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert output == ""
+    assert sorted(os.listdir(tmp_path / "out")) == ["long.h5", "long.h5.partial"]
+    with h5py.File(tmp_path / "out" / "long.h5.partial", "r"):
+        pass  # an ordinary file, closed: it needs no leave to be read while it is written
+    with Trace(tmp_path / "out" / "long.h5.partial") as kept:
+        assert errors == f"loomfmu: interrupted; {kept.rows} samples are in out/long.h5.partial\n"
+        assert kept.status == "interrupted"
+        assert kept.rows >= 3 * ROWS
+        check_kept(tmp_path, kept)
+
+
+def test_a_new_run_replaces_what_a_killed_one_left(tmp_path: Path) -> None:
+    running = start(tmp_path)
+    running.kill()
+    running.communicate()
+    (tmp_path / "long.toml").write_text(LONG.replace("100000", "0.1"))
+    assert subprocess.run(RUN, cwd=tmp_path, capture_output=True).returncode == 0
+    assert os.listdir(tmp_path / "out") == ["long.h5"]
+    with Trace(tmp_path / "out" / "long.h5") as trace:
+        assert trace.rows == 145
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="space cannot be reserved here")
+@pytest.mark.parametrize(("limit", "left"), [(1000, False), (500_000, True), (2_000_000, True)])
+def test_a_file_that_may_not_grow_is_told_in_one_line(tmp_path: Path, limit: int, left: bool) -> None:
+    (tmp_path / "long.toml").write_text(LONG)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "long.h5").write_text("an older run")
+    done = subprocess.run(
+        RUN,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )
+    where = "; see out/long.h5.partial" if left else ""
+    assert done.stderr == f"loomfmu: out/long.h5: cannot be written (File too large){where}\n"
+    assert (done.returncode, done.stdout) == (2, "")
+    check_left(tmp_path, left)
+
+
+def check_left(directory: Path, left: bool) -> None:
+    assert (directory / "out" / "long.h5").read_text() == "an older run"
+    assert (directory / "out" / "long.h5.partial").exists() is left
+    if left:
+        with Trace(directory / "out" / "long.h5.partial") as kept:
+            assert kept.status == "failed"
+            assert kept.rows % ROWS == 0
+            for signal_ in kept:
+                assert np.all(np.isfinite(kept[signal_]))
+
+
+def test_a_full_disk_is_told_in_one_line(tmp_path: Path) -> None:
+    disk = tmp_path / "out"
+    disk.mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=3m", "tmpfs", str(disk)], capture_output=True
+    )
+    if mounted.returncode:
+        pytest.skip("no leave to mount a small disk")
+    try:
+        (disk / "long.h5").write_text("an older run")
+        (tmp_path / "long.toml").write_text(LONG)
+        done = subprocess.run(RUN, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+        assert done.stderr == (
+            "loomfmu: out/long.h5: cannot be written (No space left on device); see out/long.h5.partial\n"
+        )
+        assert (done.returncode, done.stdout) == (2, "")
+        check_left(tmp_path, left=True)
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+# ---- files that are no traces
+
+
+def test_a_file_that_is_cut_short_is_refused_at_once(result: loomfmu.Result, tmp_path: Path) -> None:
+    whole = result.path.read_bytes()
+    cut = tmp_path / "cut.h5"
+    for length in (0, 7, 8, 30, 100, 5000, len(whole) // 2, len(whole) - 1):
+        cut.write_bytes(whole[:length])
+        begun = time.monotonic()
+        with pytest.raises(LoomfmuError, match="it is no readable trace"):
+            Trace(cut)
+        # reading it as one that is being written takes HDF5 minutes of repetition
+        assert time.monotonic() - begun < 5
+    marked = bytearray(whole[:5000])
+    marked[11] |= 5  # as a killed writer marks it
+    cut.write_bytes(marked)
+    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+        Trace(cut)
+
+
+def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(LoomfmuError, match=r"missing\.h5: there is no such file$"):
+        Trace(tmp_path / "missing.h5")
+    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+        Trace(tmp_path)
+    (tmp_path / "text.h5").write_text("not HDF5")
+    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+        Trace(tmp_path / "text.h5")
+    with h5py.File(tmp_path / "other.h5", "w") as other:
+        other["time"] = [0.0, 1.0]
+    with pytest.raises(
+        LoomfmuError, match="it is no trace of a run: it lacks /time, /shaft_angle or a title"
+    ):
+        Trace(tmp_path / "other.h5")
+
+
+def test_a_damaged_block_is_named(result: loomfmu.Result, tmp_path: Path) -> None:
+    damaged = bytearray(result.path.read_bytes())
+    with h5py.File(result.path) as file:
+        chunk = file["belt/margin"].id.get_chunk_info(1)
+    for place in range(chunk.byte_offset, chunk.byte_offset + chunk.size):
+        damaged[place] ^= 0xFF
+    path = tmp_path / "damaged.h5"
+    path.write_bytes(damaged)
+    with Trace(path) as trace, pytest.raises(LoomfmuError, match="/belt/margin cannot be read"):
+        _ = trace["belt.margin"]
+
+
+def test_reading_needs_nothing_but_numpy_and_h5py() -> None:
+    script = "import sys, loomfmu.traces; print(sorted({'fmpy', 'scipy', 'pythonfmu'} & set(sys.modules)))"
+    assert in_a_process(script) == "[]\n"

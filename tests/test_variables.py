@@ -1,0 +1,139 @@
+"""Declarations: what is derived from them, and what a component is refused for."""
+
+import math
+from dataclasses import dataclass, field
+
+import pytest
+
+from loomfmu.variables import Component, Problem, input_, output, parameter, state, variables_of
+
+
+@dataclass(slots=True)
+class Pump(Component):
+    """A pump that only tests know."""
+
+    speed: float = parameter(
+        "rad/s", 10.0, "Speed", display="rev/min", minimum=0.0, maximum=100.0, nominal=50.0
+    )
+    kind: int = parameter("1", 2, "Kind", choices=("gear", "vane", "screw"))
+    open: bool = parameter("1", True, "Whether it is open")
+    load: float = input_("N", 5.0, "Load", display="cN", maximum=1e3)
+    angle: float = input_("rad", 0.0, "Angle", unbounded=True, rate="turning")
+    turning: float = input_("rad/s", 0.0, "Turning")
+    flow: float = output("m/s", "Flow", nominal=2.0, depends=("load",))
+    strokes: int = output("1", "Strokes", start=0, variability="discrete")
+    level: float = state("m", "Level", start=1.5)
+    passes: int = state("1", "Passes", start=0)
+    primed: bool = state("1", "Whether it is primed", start=False)
+
+
+@dataclass(slots=True)
+class BigPump(Pump):
+    """A pump with one variable more."""
+
+    width: float = parameter("m", 0.5, "Width", minimum=0.0)
+
+
+BY_NAME = {variable.name: variable for variable in variables_of(Pump)}
+
+
+def test_order_is_that_of_the_declaration():
+    names = [variable.name for variable in variables_of(Pump)]
+    assert names == [
+        "speed", "kind", "open", "load", "angle", "turning", "flow", "strokes", "level", "passes", "primed",
+    ]  # fmt: skip
+    # inherited variables come first, so that a base's references hold
+    assert [variable.name for variable in variables_of(BigPump)] == [*names, "width"]
+
+
+@pytest.mark.parametrize(
+    ("name", "causality", "variability", "kind"),
+    [
+        ("speed", "parameter", "fixed", float), ("kind", "parameter", "fixed", int),
+        ("open", "parameter", "fixed", bool), ("load", "input", "continuous", float),
+        ("flow", "output", "continuous", float), ("strokes", "output", "discrete", int),
+        ("level", "local", "continuous", float), ("passes", "local", "discrete", int),
+        ("primed", "local", "discrete", bool),
+    ],
+)  # fmt: skip
+def test_declared_roles(name, causality, variability, kind):
+    variable = BY_NAME[name]
+    assert (variable.causality, variable.variability, variable.type) == (causality, variability, kind)
+    assert variable.settable is (causality in ("parameter", "input"))
+
+
+def test_attributes_come_through():
+    assert BY_NAME["speed"].display == "rev/min"
+    assert BY_NAME["turning"].display == "rad/s", "the unit itself where none is given"
+    assert BY_NAME["speed"].nominal == 50.0
+    assert BY_NAME["angle"].unbounded
+    assert BY_NAME["angle"].rate == "turning"
+    assert BY_NAME["flow"].depends == ("load",)
+    assert BY_NAME["strokes"].depends is None
+    assert (BY_NAME["flow"].start, BY_NAME["level"].start) == (0.0, 1.5)
+
+
+def test_choices_bound_their_number():
+    kind = BY_NAME["kind"]
+    assert kind.choices == ("gear", "vane", "screw")
+    assert (kind.minimum, kind.maximum) == (1, 3)
+    assert Pump(kind=3).kind == 3
+    with pytest.raises(ValueError, match=r"Pump\.kind = 4 is outside \[1, 3\]"):
+        Pump(kind=4)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"speed": 120.0}, "Pump.speed = 1145.916 rev/min is outside [0, 954.9297] rev/min"),
+        ({"speed": -1e-9}, "Pump.speed = -9.549297e-09 rev/min is outside [0, 954.9297] rev/min"),
+        ({"speed": math.nan}, "Pump.speed = nan rev/min is outside [0, 954.9297] rev/min"),
+        ({"load": 1001.0}, "Pump.load = 100100 cN is outside [-inf, 100000] cN"),
+        ({"load": -math.inf}, "Pump.load = -inf cN is outside [-inf, 100000] cN"),
+        ({"angle": math.inf}, "Pump.angle = inf rad is outside [-inf, inf] rad"),
+        ({"kind": 0}, "Pump.kind = 0 is outside [1, 3]"),
+    ],
+)
+def test_refusals_name_variable_value_and_limits(given, message):
+    with pytest.raises(ValueError) as refusal:
+        Pump(**given)
+    assert str(refusal.value) == message
+
+
+def test_limits_themselves_are_allowed():
+    assert Pump(speed=0.0, load=1e3).speed == 0.0
+    assert Pump(speed=100.0).speed == 100.0
+
+
+def test_outputs_and_states_are_not_limited():
+    assert Pump(flow=math.inf).flow == math.inf
+
+
+def test_a_field_without_declaration_is_refused():
+    @dataclass(slots=True)
+    class Careless(Component):
+        ratio: float = 1.0
+
+    with pytest.raises(TypeError, match="ratio is not declared by"):
+        Careless()
+
+    @dataclass(slots=True)
+    class Startless(Component):
+        ratio: float = field(metadata={"causality": "input"})
+
+    with pytest.raises(TypeError, match="ratio is not declared by"):
+        variables_of(Startless)
+
+
+def test_a_component_has_to_say_what_it_does():
+    assert Pump().check() == 0
+    with pytest.raises(NotImplementedError):
+        Pump().initialize(0.0)
+    with pytest.raises(NotImplementedError):
+        Pump().step(0.0, 1.0)
+
+
+def test_problems_are_errors_unless_they_say_otherwise():
+    assert not Problem("it leaks").warning
+    assert Problem("it drips", warning=True).warning
+    assert Component.problems == ()
