@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test check docs clean
+.PHONY: demo test check docs validation clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu build
@@ -19,9 +19,15 @@ check: .venv/installed-for-tests
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# the tables of variables in the READMEs of the FMUs
+# the tables of variables in the READMEs of the FMUs, and their reference results
 docs: .venv/installed
 	$(BIN)/python -c "from loomfmu.fmi.builder import write_readmes; write_readmes()"
+	$(BIN)/python -c "from loomfmu.fmi.references import write_references; write_references()"
+
+# the report that compares everything published with what is computed
+validation: .venv/installed
+	$(INSTALL) --editable .[plot]
+	$(BIN)/loomfmu validate
 
 .venv/created:
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"

@@ -1,0 +1,279 @@
+"""Zhu and Zhou 2021, the rapier belt outside its guide: Tables 1 to 7, Figure 10, the deflection."""
+
+import math
+from functools import cache
+
+import numpy as np
+
+from ..components.weft_insertion import WeftInsertion
+from ..design import loom
+from ..machines import HEADS, MACHINES, parameters, table
+from ..physics import belt as physics
+from ..units import STANDARD_GRAVITY
+from .sections import Chapter, Pair, Row, Section, number
+
+CASES = ("I", "II", "III", "IV")
+# Tables 6 and 7 print the columns III and IV the other way round: printed column of each case
+PRINTED = {"I": "I", "II": "II", "III": "IV", "IV": "III"}
+CASE_HEADS = dict(zip(CASES, HEADS, strict=True))
+CLEARANCES = ("0", "0.30", "0.50", "0.75", "0.80")
+FACTORS = ("0.8", "0.9", "1.0")
+
+
+@cache
+def _weft(machine: str) -> WeftInsertion:
+    weft = WeftInsertion(**parameters("WeftInsertion", machine=machine))  # type: ignore[arg-type]
+    weft.speed = 1.0
+    weft.initialize(0.0)
+    return weft
+
+
+def travel(machine: str, angle: float) -> tuple[float, float, float]:
+    """Travel of a machine's rapier head and its derivatives by the shaft angle [m]."""
+    weft = _weft(machine)
+    weft.step(angle, 0.0)
+    return weft.travel, weft.velocity, weft.acceleration
+
+
+def free_length(machine: str, angle: float) -> float:
+    """Length of the belt outside guide and head [m]; negative inside the guide."""
+    where = parameters("BeltMonitor", machine=machine)
+    return travel(machine, angle)[0] - float(where["head_length"]) - float(where["idle_travel"])
+
+
+@cache
+def safe(machine: str, head: str, factor: float, tension: float = 0.0) -> loom.SafeSpeed:
+    """Safe speed of a machine, found once."""
+    return loom.safe_speed(machine, head, length_factor=factor, tension=tension)
+
+
+def rpm(found: loom.SafeSpeed) -> float:
+    """Its speed in rev/min."""
+    return found.speed / loom.RPM
+
+
+def chapter() -> Chapter:
+    """All tables of the belt."""
+    return Chapter(
+        "Rapier belt outside its guide (Zhu and Zhou, J. Zhejiang Sci-Tech Univ. 45 (2021) 497)",
+        "The frame of axes of the source's Figure 2 is lost. Pivot, assembly and crank phase of each"
+        " machine were identified from Tables 1 and 5; nothing else was adjusted.",
+        (table_1(), table_2(), table_3(), figure_10(), *table_5(), *table_6(), table_7(), deflection()),
+    )
+
+
+def table_1() -> Section:
+    """Window of each machine."""
+    rows = []
+    for name, row in MACHINES.items():
+        start, end = loom.window(name)
+        printed_end = math.radians(float(row["published_accel_end_deg"]))
+        cells = (
+            Pair(row["published_accel_end_deg"], math.degrees(end), 2, place=True),
+            Pair(row["published_free_start_deg"], math.degrees(start), 2, place=True),
+            number(1e3 * free_length(name, end), 1),
+            Pair(row["published_free_length_max_mm"], 1e3 * free_length(name, printed_end), 1),
+        )
+        rows.append(Row((name, *cells)))
+    return Section(
+        "Table 1: end of the positive acceleration, free start, longest free length",
+        (
+            "machine", "end, deg", "free start, deg", "longest free length at the computed end, mm",
+            "at the published end, mm",
+        ),
+        tuple(rows),
+        split=False,
+        remarks=(
+            "The published longest free length is that at the published end, which is given in whole"
+            f" degrees: a degree there is worth {' to '.join(number(each, 0) for each in _growth())} mm.",
+        ),
+        figures=(
+            ("travel.png", "Travel, velocity and acceleration of the rapier head at 400 rev/min (Figure 3)"),
+        ),
+    )  # fmt: skip
+
+
+def _growth() -> tuple[float, float]:
+    """Least and most that the free length grows in a degree at the end of the windows [mm]."""
+    slopes = [1e3 * math.radians(travel(name, loom.window(name)[1])[1]) for name in MACHINES]
+    return min(slopes), max(slopes)
+
+
+def fitted_factors() -> dict[str, float]:
+    """Length factor of each clearance, fitted to the measured loads of Table 2 by least squares."""
+    rows = table("belt_buckling_experiment")
+    found = {}
+    for clearance in CLEARANCES:
+        pinned = np.array(
+            [physics.critical_force(1e-3 * float(row["free_length_mm"]), 1.0, 0.25) for row in rows]
+        )
+        load = np.array([float(row[f"c_{clearance}"]) for row in rows])
+        found[clearance] = float(np.sqrt(pinned @ pinned / (pinned @ load)))
+    return found
+
+
+def table_2() -> Section:
+    """Measured buckling loads."""
+    factors = fitted_factors()
+    rows = []
+    for row in table("belt_buckling_experiment"):
+        length = 1e-3 * float(row["free_length_mm"])
+        loads = (
+            Pair(row[f"c_{c}"], physics.critical_force(length, factors[c], 0.25), 1, measured=True)
+            for c in CLEARANCES
+        )
+        rows.append(Row((row["free_length_mm"], *loads)))
+    return Section(
+        "Table 2: measured buckling loads, N",
+        ("free length, mm", *(f"c = {c} mm" for c in CLEARANCES)),
+        tuple(rows),
+        intro="Computed: equation (8) with EI = 0.25 N m2 and the length factors fitted below.",
+        split=False,
+    )
+
+
+def table_3() -> Section:
+    """Length factors."""
+    factors = fitted_factors()
+    printed = {row["clearance_mm"]: row["length_factor"] for row in table("length_factor")}
+    rows = tuple(Row((c, Pair(printed[c], factors[c], 3))) for c in CLEARANCES)
+    return Section(
+        "Table 3: length factor fitted to Table 2",
+        ("clearance, mm", ""),
+        rows,
+        intro="Computed: least squares on the loads of Table 2, by equation (8).",
+        remarks=("`BeltMonitor` takes the published factors, not these.",),
+    )
+
+
+def figure_10() -> Section:
+    """Where the limit lies."""
+    found = safe("WL680-3400", "G6300 left", 0.8)
+    return Section(
+        "Figure 10 and section 4.1: where the lowest limit lies (WL680-3400, mu = 0.8, case I)",
+        ("quantity", ""),
+        (
+            Row(("shaft angle, deg", Pair("101.27", math.degrees(found.angle), 3, place=True))),
+            Row(("safe speed, rev/min", Pair("864", rpm(found), 2))),
+        ),
+        figures=(
+            ("belt_load.png", "Belt load and critical load over the window at the safe speed (Figure 10)"),
+        ),
+    )
+
+
+def table_5() -> tuple[Section, Section]:
+    """Safe speeds and loads over the length factor."""
+    speeds, loads = [], []
+    for row in table("safe_speed_by_length_factor"):
+        name = row["machine"]
+        found = {mu: safe(name, "G6300 left", float(mu)) for mu in FACTORS}
+        pairs = (Pair(row[f"n_mu_{mu}"], rpm(found[mu]), 1) for mu in FACTORS)
+        speeds.append(Row((name, *pairs, number(math.degrees(found["0.8"].angle), 2))))
+        loads.append(Row((name, *(_load(row[f"load_mu_{mu}"], found[mu].critical_force) for mu in FACTORS))))
+    heads = tuple(f"mu = {mu}" for mu in FACTORS)
+    title = "Table 5: safe speed over the length factor, rev/min (case I, 110.5 g)"
+    remark = (
+        "By (9) the angle does not depend on mu, and n mu is the same in a row: what of the printed rows"
+        " varies is in Errata."
+    )
+    figures = (
+        ("speed_over_width.png", "Safe speed against the width of the loom (Table 5)"),
+        ("speed_over_clearance.png", "Safe speed over the clearance of the belt in its guide"),
+    )
+    return (
+        Section(
+            title, ("machine", *heads, "at shaft angle, deg"), tuple(speeds), remarks=(remark,), split=False,
+            figures=figures,
+        ),
+        Section(
+            "Table 5: critical load at the safe speed, N", ("machine", *heads), tuple(loads), split=False
+        ),
+    )  # fmt: skip
+
+
+def _load(printed: str, found: float) -> Pair | str:
+    """A load of Table 5, of which one is not printed."""
+    return Pair(printed, found, 1) if printed else f"not printed / {number(found, 1)}"
+
+
+def table_6() -> tuple[Section, Section]:
+    """Safe speeds and loads of the four heads."""
+    speeds, loads = [], []
+    for row in table("safe_speed_by_case"):
+        name = row["machine"]
+        found = {case: safe(name, CASE_HEADS[case], 0.8) for case in CASES}
+        speeds.append(Row((name, *(Pair(row[f"n_{PRINTED[c]}"], rpm(found[c]), 1) for c in CASES))))
+        pairs = (Pair(row[f"load_{PRINTED[c]}"], found[c].critical_force, 1) for c in CASES)
+        loads.append(Row((name, *pairs)))
+    heads = tuple(f"{c}, {HEADS[CASE_HEADS[c]]['mass_g'].rstrip('0').rstrip('.')} g" for c in CASES)
+    return (
+        Section(
+            "Table 6: safe speed of the four heads, rev/min (mu = 0.8)",
+            ("machine", *heads),
+            tuple(speeds),
+            intro="The columns III and IV as corrected: the source prints them the other way round.",
+            split=False,
+        ),
+        Section(
+            "Table 6: critical load at the safe speed, N (mu = 0.8)",
+            ("machine", *heads),
+            tuple(loads),
+            intro="Columns III and IV as corrected. By (8) to (10) the load cannot depend on the mass: it"
+            " is that of one angle, which the mass does not move.",
+            split=False,
+        ),
+    )
+
+
+def table_7() -> Section:
+    """Safe speeds under a weft tension."""
+    rows = []
+    for row in table("safe_speed_by_yarn_tension"):
+        tension = 1e-3 * float(row["tension_gf"]) * STANDARD_GRAVITY
+        pairs = (
+            Pair(row[f"n_{PRINTED[c]}"], rpm(safe("WL680-3600", CASE_HEADS[c], 1.0, tension)), 1)
+            for c in CASES
+        )
+        rows.append(Row((row["tension_gf"], *pairs)))
+    return Section(
+        "Table 7: safe speed under a weft tension, rev/min (WL680-3600, mu = 1)",
+        ("tension, gf", *CASES),
+        tuple(rows),
+        intro="The tension is in gram-force, 9.80665 mN. The columns III and IV as corrected.",
+        split=False,
+    )
+
+
+def printed_deflection(load_ratio: float, length: float) -> float:
+    """Deflection by (11) as it is printed [m]."""
+    root = math.sqrt(load_ratio)  # sqrt(F / F_cr)
+    below = 2.0 * load_ratio + root / math.pi * math.sin(2.0 * math.pi * root)
+    return 2.0 * math.sqrt(2.0) * length / math.pi * math.sqrt((1.0 - 1.0 / root) / below)
+
+
+def deflection() -> Section:
+    """How far the belt bends at 686 rev/min."""
+    found = safe("WL680-3600", "G6300 left", 0.8)
+    length = free_length("WL680-3600", found.angle)
+    published = (686.0 / 685.0) ** 2
+    own = (686.0 / rpm(found)) ** 2
+    bent = {ratio: 1e3 * physics.elastica_deflection(ratio, length) for ratio in (published, own)}
+    return Section(
+        "Section 4.2 and Figure 11: deflection at 686 rev/min (WL680-3600, mu = 0.8, case I)",
+        ("quantity", ""),
+        (
+            Row(("exact elastica, against the published limit of 685 rev/min, mm",
+                 Pair("8", bent[published], 1))),
+            Row(
+                (
+                    "(11) as printed, against 685 rev/min, mm",
+                    number(1e3 * printed_deflection(published, length), 1),
+                ),
+                "half of the elastica: see Errata",
+            ),
+            Row((f"exact elastica, against the computed limit of {number(rpm(found), 1)} rev/min, mm",
+                 number(bent[own], 1))),
+        ),
+        remarks=(f"The free length at the lowest limit is {number(1e3 * length, 1)} mm.",),
+    )  # fmt: skip

@@ -1,0 +1,89 @@
+"""Figures of the report: one file each, 800 pixels wide. The only place that needs matplotlib."""
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Draw = Callable[["Figure"], None]
+
+# colours that the colour-blind tell apart too (Okabe and Ito)
+BLUE, ORANGE, GREEN, PURPLE, SKY, RED, GREY, BLACK = (
+    "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#808080", "#000000",
+)  # fmt: skip
+SERIES = {"WL680": BLUE, "WL800": ORANGE, "WL450": GREEN}
+LAW_COLOURS = {
+    "uniform": GREY,
+    "harmonic ends": BLUE,
+    "sloped line": ORANGE,
+    "sloped sine": GREEN,
+    "slotted levers": PURPLE,
+    "non-circular gears": SKY,
+}
+
+STYLE: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 11,
+    "axes.grid": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.8,
+    "lines.linewidth": 1.8,
+    "legend.frameon": False,
+    "legend.fontsize": 10,
+}
+
+
+def available() -> bool:
+    """Whether matplotlib is installed."""
+    return find_spec("matplotlib") is not None
+
+
+def figures() -> dict[str, tuple[float, Draw]]:
+    """File name of every figure, with its height in inches and what draws it."""
+    from . import plots_dobby, plots_others, plots_weft
+
+    return plots_weft.FIGURES | plots_dobby.FIGURES | plots_others.FIGURES
+
+
+def write(directory: Path) -> list[Path]:
+    """Draw all figures into a directory."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, (height, draw) in figures().items():
+        with matplotlib.rc_context(STYLE):
+            figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
+            draw(figure)
+            paths.append(directory / name)
+            _save(figure, paths[-1])
+    return paths
+
+
+def _palette() -> list[int]:
+    """White, the greys in use, the colours in use and six shades of each towards white."""
+    values = [255, 255, 255, *(value for grey in (0x55, 0xDD, 0xEE) for value in (grey, grey, grey))]
+    for colour in (BLUE, ORANGE, GREEN, PURPLE, SKY, RED, GREY, BLACK):
+        parts = [int(colour[place : place + 2], 16) for place in (1, 3, 5)]
+        for shade in range(7):
+            values += [round(part + (255 - part) * shade / 7.5) for part in parts]
+    return values
+
+
+def _save(figure: "Figure", path: Path) -> None:
+    """Write a figure with a palette, which makes it a third as large, and without a date."""
+    from PIL import Image
+
+    drawn = BytesIO()
+    figure.savefig(drawn, format="png")
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_palette())
+    image = Image.open(drawn).convert("RGB")
+    image.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)

@@ -1,0 +1,188 @@
+"""Korolev, the rotor of the dobby: its laws (section 3.1), dwells (2.5, Table 3.1), accelerations (3.4)."""
+
+import math
+from functools import cache
+
+from ..components.dobby_drive import DobbyDrive
+from ..machines import table
+from ..physics.heald import lift_fraction
+from ..physics.rotor import HARMONIC_ENDS, SLOPED_LINE, SLOPED_SINE, UNIFORM, dwell_angle
+from .sections import Pair, Row, Section, number
+
+LAWS = {
+    "uniform": UNIFORM,
+    "harmonic ends": HARMONIC_ENDS,
+    "sloped line": SLOPED_LINE,
+    "sloped sine": SLOPED_SINE,
+}
+MECHANISMS = {"slotted levers": 5, "non-circular gears": 6}
+MODULATED = ("harmonic ends", "sloped line", "sloped sine")
+REDUCTIONS = ("0.3", "0.4", "0.5", "0.6", "0.7")
+TOLERANCE = 0.015  # of the stroke, section 2.5
+STROKE = 0.098  # m, the default of HealdFrame
+SPEED = 400.0 * math.pi / 30.0
+
+
+@cache
+def drive(law: str, reduction: float = 0.5) -> DobbyDrive:
+    """A drive with a law, at rest at shaft angle 0, its slow point there too, at a speed of 1 rad/s."""
+    number_of = (LAWS | MECHANISMS)[law]
+    found = DobbyDrive(law=number_of, speed_reduction=reduction, slow_point=0.0, speed=1.0)
+    found.initialize(0.0)
+    return found
+
+
+def rotor(law: str, reduction: float, x: float) -> tuple[float, float, float]:
+    """Rotor angle of a law and its derivatives at a shaft angle from the slow point."""
+    return drive(law, reduction).rotor(x)
+
+
+def largest_lift_acceleration(law: str, reduction: float) -> float:
+    """Largest second derivative of the lift by the shaft angle, as a share of the stroke."""
+    from scipy.optimize import minimize_scalar
+
+    def size(x: float) -> float:
+        return -abs(lift_fraction(*rotor(law, reduction, x))[2])
+
+    step = math.pi / 360.0
+    start = min((k * step for k in range(361)), key=size)
+    found = minimize_scalar(
+        size, bounds=(max(start - step, 0.0), min(start + step, math.pi)), method="bounded",
+        options={"xatol": 1e-10},
+    )  # fmt: skip
+    return -min(float(found.fun), size(start))
+
+
+def sections() -> tuple[Section, ...]:
+    """All that the source says of the rotor."""
+    return (published_peaks(), peaks(), table_3_1(), prototype_dwells(), frame_acceleration())
+
+
+def published_peaks() -> Section:
+    """The three figures in the text."""
+    harmonic = drive("harmonic ends", 0.7)
+    taken_off = 1.0 - rotor("harmonic ends", 0.7, 0.0)[1]
+    return Section(
+        "Sections 3.1 and 3.6: peaks of the rotor laws at zeta = 0.7",
+        ("quantity", ""),
+        (
+            Row(("harmonic ends: largest S''", Pair("1.6", harmonic.highest_acceleration, 4))),
+            Row(("harmonic ends: speed taken off at the slow point", Pair("0.7", taken_off, 4))),
+            *(
+                Row((f"{law}: largest rotor speed over the shaft's",
+                     Pair("1.4", drive(law, 0.7).highest_speed, 4)))
+                for law in ("sloped line", "sloped sine", "harmonic ends")
+            ),
+        ),
+        remarks=("The source does not say which law its ratio of 1.4 belongs to (section 3.6.1.2).",),
+    )  # fmt: skip
+
+
+def _peaks_row(law: str, reduction: str) -> Row:
+    of = drive(law, float(reduction or "0.5"))
+    lowest = min(rotor(law, float(reduction or "0.5"), x)[1] for x in (0.0, math.pi))
+    cells = (
+        number(lowest, 4), number(of.highest_speed, 4), number(of.highest_acceleration, 4),
+        number(of.highest_jerk, 3), number(math.degrees(of.dwell_angle), 2),
+        number(math.degrees(of.clear_shed_angle), 2),
+    )  # fmt: skip
+    return Row((law, reduction or "-", *cells))
+
+
+def peaks() -> Section:
+    """Peaks and dwells of every law."""
+    rows = [_peaks_row("uniform", "")]
+    rows += [_peaks_row(law, z) for law in MODULATED for z in REDUCTIONS]
+    rows += [_peaks_row(law, "") for law in MECHANISMS]
+    return Section(
+        "Section 3.1: every rotor law (computed; the source's curves stand in lost figures)",
+        (
+            "law", "zeta", "lowest S'", "highest S'", "highest S''", "highest S'''", "dwell, deg",
+            "clear shed, deg",
+        ),
+        tuple(rows),
+        intro="Derivatives by the shaft angle. Dwell: a changing frame within 1.5 % of its stroke of its"
+        " end. Clear shed: within 8.325 %, which is a warp height of 15 mm or more of the largest 16.36 mm"
+        " of the spline cam.",
+        remarks=(
+            "The dimensions of the slotted levers (pins at 100 and 100 mm, eccentricity 40 mm) and the"
+            " harmonics of the non-circular gears (-0.27, -0.13, -0.05, -0.025) are assumptions: none are"
+            " published.",
+        ),
+        figures=(("rotor_laws.png", "Speed and acceleration of the rotor by all laws (Figures 3.2 and"
+                                    " 3.3)"),),
+    )  # fmt: skip
+
+
+def table_3_1() -> Section:
+    """Measured dwell beside the laws."""
+    rows = []
+    for row in table("heald_dwell_experiment"):
+        z = float(row["speed_reduction"])
+        pairs = (
+            Pair(row["upper_dwell_deg"], math.degrees(dwell_angle(LAWS[law], z, TOLERANCE)), 1, measured=True)
+            for law in MODULATED
+        )
+        rows.append(Row((row["speed_reduction"], *pairs)))
+    return Section(
+        "Table 3.1 and Figure 3.17: measured conditional dwell, deg",
+        ("zeta", *MODULATED),
+        tuple(rows),
+        split=False,
+        remarks=(
+            "Measured on a loom STB-180 at 280 picks/min. No law gives the measured dwell: a law has"
+            " neither the play nor the elasticity of the drive. Nothing was adjusted to bring the two"
+            " together.",
+            "Rise and fall in the table are 360 deg less the dwell, and the dwells are centred on 195 deg,"
+            " but for the two misprints in Errata.",
+        ),
+        figures=(("dwell.png", "Conditional dwell over the speed reduction (Figure 3.17)"),),
+    )
+
+
+def reduction_for(law: str, dwell: float) -> float | None:
+    """Speed reduction with which a law dwells for an angle [rad]; None if there is none."""
+    from scipy.optimize import brentq
+
+    def excess(reduction: float) -> float:
+        return dwell_angle(LAWS[law], reduction, TOLERANCE) - dwell
+
+    if excess(1.0) < 0.0:
+        return None
+    return float(brentq(excess, 0.0, 1.0, xtol=1e-13))
+
+
+def prototype_dwells() -> Section:
+    """What the two dwells of section 2.5 ask of the laws."""
+    rows = []
+    for name, dwell in (("prototype, 135 to 225 deg", 90.0), ("KRU-20, 320 to 55 deg", 95.0)):
+        cells = []
+        for law in MODULATED:
+            found = reduction_for(law, math.radians(dwell))
+            cells.append("none" if found is None else number(found, 3))
+        rows.append(Row((name, number(dwell, 0), *cells)))
+    return Section(
+        "Section 2.5: speed reduction that each law needs for the dwells of the two dobbies (computed)",
+        ("dobby", "dwell, deg", *MODULATED),
+        tuple(rows),
+    )
+
+
+def frame_acceleration() -> Section:
+    """Growth of the frame's acceleration over the speed reduction."""
+    rows = []
+    for law in ("uniform", *MODULATED):
+        low, high = (STROKE * SPEED**2 * largest_lift_acceleration(law, z) for z in (0.3, 0.7))
+        growth = 100.0 * (high / low - 1.0)
+        cell = number(growth, 1) if law == "uniform" else Pair("28", growth, 1, measured=True)
+        rows.append(Row((law, number(low, 2), number(high, 2), cell)))
+    return Section(
+        "Section 3.4 and Figure 3.18: growth of the frame's acceleration from zeta = 0.3 to 0.7, %",
+        ("law", "m/s2 at 0.3", "m/s2 at 0.7", ""),
+        tuple(rows),
+        intro="Accelerations at 400 rev/min with a stroke of 98 mm; the published growth is measured.",
+        remarks=(
+            "The source does not say which law its loom had: that the sloped sine agrees may be chance.",
+        ),
+        figures=(("heald.png", "Motion of a heald frame and of its carrier (default drive, 250 rev/min)"),),
+    )
