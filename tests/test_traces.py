@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -91,6 +92,7 @@ def test_the_layout_is_flat_and_along_one_time(file: h5py.File, result: loomfmu.
     for name in result.scene.instances:
         assert file[f"{name}/time"] == file["time"]  # one object, not a copy
         for variable, dataset in file[name].items():
+            assert re.fullmatch("[A-Za-z][A-Za-z0-9_]*", variable)
             assert dataset.shape == (2161,)
             if variable != "time":
                 assert dataset.dims[0][0] == file["time"]

@@ -5,7 +5,9 @@ name only once it is complete; until then every block written can be read, even 
 """
 
 import contextlib
+import errno
 import json
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,7 +23,33 @@ from . import units
 from .errors import LoomfmuError, suggestion
 
 ROWS = 1024  # of a block and of a chunk
+SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
+PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
 Floats = NDArray[np.float64]
+
+
+def _reserve(file: int, size: int) -> None:
+    """Take disk space for a file before HDF5 writes it: HDF5 does not survive a write that fails.
+
+    Raises OSError where there is no space; where a system cannot tell, nothing is reserved.
+    """
+    if hasattr(os, "posix_fallocate"):
+        try:
+            os.posix_fallocate(file, 0, size)
+        except OSError as error:
+            if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL):
+                raise
+
+
+def _take(path: Path, mode: str, size: int) -> None:
+    """Reserve disk space for a file that is not open, or leave it as it was."""
+    with path.open(mode) as file:
+        before = os.fstat(file.fileno()).st_size
+        try:
+            _reserve(file.fileno(), size)
+        except OSError:
+            file.truncate(before)
+            raise
 
 
 @dataclass(frozen=True)
@@ -55,9 +83,19 @@ class TraceWriter:
         self.channels = channels
         self.rows = 0
         self.partial.parent.mkdir(parents=True, exist_ok=True)
-        # v110 is the oldest format that can be read while it is written and after a kill
-        self._file = h5py.File(self.partial, "w", libver=("v110", "v110"))
+        texts = sum(len(text.encode()) for text in attributes.values())
+        header = SPARE + texts + PER_DATASET * (len(channels) + 2)
+        self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:
+            _take(self.partial, "wb", header)
+        except OSError:
+            self.partial.unlink(missing_ok=True)
+            raise
+        # v110 is the oldest format that can be read while it is written and after a kill
+        # no block is read again: by default HDF5 keeps 8 MB of each dataset in memory
+        self._file = h5py.File(self.partial, "w", libver=("v110", "v110"), rdcc_nbytes=16 * ROWS)
+        try:
+            _reserve(self._file.id.get_vfd_handle(), header)
             self._file.attrs.update({"Conventions": "CF-1.11", **attributes, "status": "running"})
             self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
             self._time.make_scale("time")
@@ -107,6 +145,7 @@ class TraceWriter:
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: NDArray[np.int32]) -> None:
         """Write a block: values along the rows, signals along the columns."""
+        _reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
         start, self.rows = self.rows, self.rows + len(time)
         for dataset, values in ((self._time, time), (self._angle, angle)):
             dataset.resize((self.rows,))
@@ -119,21 +158,37 @@ class TraceWriter:
     def seal(self, status: str) -> None:
         """Close the file under its provisional name, marked with its status."""
         self._file.close()
-        with h5py.File(self.partial, "r+") as file:
-            file.attrs["status"] = status
+        self._annotate("status", status)
 
     def complete(self, verdicts: Sequence[dict[str, Any]]) -> Path:
         """Give the sealed file its verdicts and its final name."""
-        with h5py.File(self.partial, "r+") as file:
-            file.attrs["claims"] = json.dumps(verdicts)
+        self._annotate("claims", json.dumps(verdicts))
         self.partial.replace(self.path)
         return self.path
+
+    def _annotate(self, name: str, text: str) -> None:
+        """Write an attribute of the closed file."""
+        _take(self.partial, "r+b", _superblock(self.partial)[1] + len(text.encode()) + SPARE)
+        with h5py.File(self.partial, "r+") as file:
+            file.attrs[name] = text
 
     def abandon(self, status: str) -> Path:
         """Close what was written so far, marked incomplete; its path."""
         with contextlib.suppress(OSError):  # a full disk: what was flushed can still be read
             self.seal(status)
         return self.partial
+
+
+def _superblock(path: Path) -> tuple[bool, int]:
+    """Whether an HDF5 file is marked as being written for readers beside the writer, and its length.
+
+    The mark stays when the writer is killed; the length is the one that the file says it has.
+    """
+    with path.open("rb") as file:
+        head = file.read(36)
+    if len(head) < 36 or head[8] != 3:  # the version that our files have
+        return False, 0
+    return bool(head[11] & 4), int.from_bytes(head[28:36], "little")
 
 
 class Trace:
@@ -143,19 +198,25 @@ class Trace:
         self.path = Path(path)
         try:
             self._file = self._open()
-        except (OSError, FileNotFoundError) as error:
-            reason = f"it is no readable trace ({error})" if self.path.exists() else "there is no such file"
-            raise LoomfmuError(f"{self.path}: {reason}") from None
-        if "time" not in self._file:
+        except FileNotFoundError:
+            raise LoomfmuError(f"{self.path}: there is no such file") from None
+        except (OSError, RuntimeError) as error:
+            raise LoomfmuError(f"{self.path}: it is no readable trace ({error})") from None
+        if not {"time", "shaft_angle"} <= set(self._file) or not {"title", "status"} <= set(self._file.attrs):
             self._file.close()
-            raise LoomfmuError(f"{self.path}: it is no trace: it has no /time")
+            raise LoomfmuError(
+                f"{self.path}: it is no trace of a run: it lacks /time, /shaft_angle or a title"
+            )
         self._cache: dict[str, NDArray[Any]] = {}
 
     def _open(self) -> Any:
         try:
             return h5py.File(self.path, "r")
         except OSError:
-            return h5py.File(self.path, "r", swmr=True)  # being written, or its writer was killed
+            marked, length = _superblock(self.path)
+            if not marked or self.path.stat().st_size < length:
+                raise  # HDF5 would look for the rest of a file that was cut off again and again
+        return h5py.File(self.path, "r", swmr=True)
 
     def __enter__(self) -> Self:
         return self
@@ -171,11 +232,18 @@ class Trace:
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
         if signal not in self._cache:
-            self._cache[signal] = self._dataset(signal)[: self.rows]
+            self._cache[signal] = self._read(self._dataset(signal))
         return self._cache[signal]
 
+    def _read(self, dataset: Any) -> NDArray[Any]:
+        try:
+            return np.asarray(dataset[: self.rows])
+        except (OSError, RuntimeError) as error:
+            raise LoomfmuError(f"{self.path}: {dataset.name} cannot be read ({error})") from None
+
     def __contains__(self, signal: str) -> bool:
-        return "/" + signal.replace(".", "/") in self._file
+        path = "/" + signal.replace(".", "/")
+        return path in self._file and isinstance(self._file[path], h5py.Dataset)
 
     def __iter__(self) -> Iterator[str]:
         for name, group in self._file.items():
@@ -198,12 +266,12 @@ class Trace:
     @cached_property
     def time(self) -> Floats:
         """Time of the samples [s]."""
-        return np.asarray(self._file["time"][: self.rows])
+        return self._read(self._file["time"])
 
     @cached_property
     def shaft_angle(self) -> Floats:
         """Shaft angle of the samples, not wrapped [rad]."""
-        return np.asarray(self._file["shaft_angle"][: self.rows])
+        return self._read(self._file["shaft_angle"])
 
     @property
     def attributes(self) -> dict[str, Any]:

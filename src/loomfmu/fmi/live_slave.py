@@ -20,6 +20,7 @@ CATEGORIES = {
 }
 INSTANTIATED, INITIALIZING, STEPPING = "instantiated", "initializing", "stepping"
 LARGEST = 1.7976931348623157e308
+LARGEST_INTEGER = 2147483647
 FORMATS = {"Real": "d", "Integer": "q", "Boolean": "?"}
 
 
@@ -117,7 +118,12 @@ class LiveSlave(Fmi2Slave):
 
     def get_integer(self, references: list[int]) -> list[int]:
         """Values of integer variables and enumerations."""
-        return self._get(references, "Integer", 0)
+        values = self._get(references, "Integer", 0)
+        for reference, value in zip(references, values, strict=True):
+            if not -LARGEST_INTEGER <= value <= LARGEST_INTEGER:
+                self._fail(ERROR, f"{self.rows[reference].name} = {value} is more than an FMI integer holds")
+                return [0] * len(references)
+        return values
 
     def get_boolean(self, references: list[int]) -> list[bool]:
         """Values of boolean variables."""
@@ -261,7 +267,10 @@ class LiveSlave(Fmi2Slave):
         guid, mode, time, stale, failure, values = state
         text = failure.encode()[:60000]
         head = (guid.encode(), mode.encode(), time, stale, len(text))
-        packed: bytes = struct.pack(cls._format(), *head, *values) + text
+        try:
+            packed: bytes = struct.pack(cls._format(), *head, *values) + text
+        except struct.error:  # an integer beyond 64 bits
+            return b""
         return packed
 
     @classmethod

@@ -27,7 +27,9 @@ def flatten(component: type[Component]) -> str:
     from_math: set[str] = set()
     for method in methods.values():
         _collect(method, functions, constants, from_math)
-    parts = [HEADER.format(name=component.__name__), f"from math import {', '.join(sorted(from_math))}\n"]
+    parts = [HEADER.format(name=component.__name__)]
+    if from_math:
+        parts.append(f"from math import {', '.join(sorted(from_math))}\n")
     parts.append("\n".join(f"{name} = {value!r}" for name, value in constants.items()))
     parts += [inspect.getsource(function) for function in functions.values()]
     parts.append(_class(component, methods))

@@ -1,0 +1,258 @@
+"""What a scene says, and what becomes of it."""
+
+import math
+from pathlib import Path
+
+import pytest
+from direct_loom import small, traced
+from live_fmus import fmu_cache
+
+from loomfmu import LoomfmuError
+from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.graph import Wire
+
+__all__ = ["fmu_cache"]
+
+LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01/10/01"\ndampers = true\n'
+RPM = 2 * math.pi / 60
+
+
+def wired(text: str) -> set[str]:
+    return {str(wire) for wire in scenes.parse(text).wires}
+
+
+def test_a_standard_loom_is_spelt_out_by_nobody() -> None:
+    scene = scenes.parse(LOOM)
+    frames = [f"{kind}_{number}" for kind in ("heald", "damper") for number in range(1, 5)]
+    assert list(scene.instances) == ["shaft", "weft", "belt", "dobby", *frames]
+    kinds = {name: instance.fmu.name for name, instance in scene.instances.items()}
+    assert kinds["heald_3"] == "HealdFrame"
+    assert kinds["damper_4"] == "HealdDamper"
+    wires = {str(wire) for wire in scene.wires}
+    for name in ("weft", "belt", "dobby"):
+        for signal in ("angle", "velocity", "acceleration"):
+            assert f"shaft.{signal} -> {name}.shaft_{signal}" in wires
+    assert "weft.travel -> belt.travel" in wires
+    assert "dobby.rotor_angle -> heald_2.rotor_angle" in wires
+    assert "heald_3.lift -> damper_3.lift" in wires
+    assert not any("heald_3" in wire and "damper_4" in wire for wire in wires)
+
+
+def test_mechanisms_on_the_shaft_follow_it_of_themselves() -> None:
+    scene = scenes.parse(LOOM)
+    for name, instance in scene.instances.items():
+        follows = name in ("weft", "belt", "dobby")
+        assert instance.values.get("follow_shaft", False) is follows
+        assert instance.values.get("inputs_at_step_end", False) is (name != "shaft")
+    alone = scenes.parse(LOOM + "[weft]\nfollow_shaft = false\n")
+    assert alone.instances["weft"].values["follow_shaft"] is False
+
+
+def test_published_machines_and_heads_set_what_they_know() -> None:
+    values = {name: instance.values for name, instance in scenes.parse(LOOM).instances.items()}
+    assert values["weft"]["output_length"] == 0.121
+    assert values["weft"]["moving_mass"] == values["belt"]["head_mass"] == 0.1105
+    assert values["belt"]["head_length"] == 0.55
+    other = scenes.parse(LOOM + '[belt]\nhead = "GS900 left"\nhead_length = "540 mm"\n').instances
+    assert other["belt"].values["head_mass"] == 0.1222
+    assert math.isclose(other["belt"].values["head_length"], 0.54, rel_tol=1e-15)  # one product
+    assert other["weft"].values["moving_mass"] == 0.1105
+
+
+def test_every_frame_has_its_string_of_pegs() -> None:
+    instances = scenes.parse(LOOM + '[heald_2]\npattern = "0010"\n').instances
+    assert (instances["heald_1"].values["pattern_length"], instances["heald_1"].values["pattern_1"]) == (2, 1)
+    assert (instances["heald_2"].values["pattern_length"], instances["heald_2"].values["pattern_1"]) == (4, 4)
+    long = scenes.parse(LOOM + f'[heald_1]\npattern = "{"1" * 17 + "0" * 3}"\n').instances["heald_1"].values
+    assert (long["pattern_length"], long["pattern_1"], long["pattern_2"]) == (20, 65535, 1)
+
+
+# ---- wires
+
+
+def test_a_wire_can_be_added_and_replaced() -> None:
+    before = wired(LOOM)
+    text = LOOM + '[wires]\n"belt.yarn_tension" = "damper_1.transmitted_force"\n'
+    assert wired(text) == before | {"damper_1.transmitted_force -> belt.yarn_tension"}
+    text = LOOM + '[wires]\n"damper_2.lift" = "heald_1.lift"\n'
+    assert wired(text) == before - {"heald_2.lift -> damper_2.lift"} | {"heald_1.lift -> damper_2.lift"}
+    nested = LOOM + "[wires.damper_2]\nlift = 'heald_1.lift'\n"
+    assert wired(nested) == wired(text)
+
+
+@pytest.mark.parametrize("cut", ['"belt.travel" = false', "belt.travel = false", "belt = {travel = false}"])
+def test_a_wire_can_be_cut(cut: str) -> None:
+    assert wired(f"{LOOM}[wires]\n{cut}\n") == wired(LOOM) - {"weft.travel -> belt.travel"}
+
+
+def test_cutting_what_is_not_wired_is_refused() -> None:
+    with pytest.raises(LoomfmuError, match=r"^wires: 'belt.travl' is not wired; did you mean 'belt.travel'"):
+        scenes.parse(LOOM + '[wires]\n"belt.travl" = false\n')
+
+
+def test_an_input_that_is_given_a_value_is_not_wired(tmp_path: Path) -> None:
+    text = LOOM + '[belt]\ntravel = "900 mm"\nvelocity = 0.0\nacceleration = 100.0\n'
+    assert wired(text) == wired(LOOM) - {
+        f"weft.{signal} -> belt.{signal}" for signal in ("travel", "velocity", "acceleration")
+    }
+    scene = scenes.parse("revolutions = 0.1\nsteps_per_revolution = 90\n" + text)
+    with traced(scene, tmp_path) as trace:
+        assert set(trace["belt.inertia_force"]) == {0.1105 * 100.0}
+
+
+def test_a_cut_wire_leaves_the_start_value(tmp_path: Path) -> None:
+    rest = "[wires]\nbelt.travel = false\nbelt.velocity = false\nbelt.acceleration = false\n"
+    scene = small(90, 0.1, rest=rest)
+    start = scene.instances["belt"].fmu.ports["acceleration"].start
+    with traced(scene, tmp_path) as trace:
+        assert set(trace["belt.inertia_force"]) == {0.1105 * start}
+
+
+# ---- groups, own names, values
+
+
+def test_a_table_without_number_is_for_all_members_and_a_members_own_says_more() -> None:
+    text = LOOM + '[heald]\nstroke = "60 mm"\nframe_mass = 10.0\n[heald_2]\nstroke = "70 mm"\n'
+    for order in (text, LOOM + "\n".join(["[heald_2]", 'stroke = "70 mm"', *text.split("\n")[5:8]]) + "\n"):
+        values = {name: instance.values for name, instance in scenes.parse(order).instances.items()}
+        assert [round(values[f"heald_{n}"]["stroke"], 12) for n in (1, 2, 3, 4)] == [0.06, 0.07, 0.06, 0.06]
+        assert all(values[f"heald_{n}"]["frame_mass"] == 10.0 for n in (1, 2, 3, 4))
+
+
+@pytest.mark.parametrize("group_first", [True, False])
+def test_a_group_may_stand_before_its_members(group_first: bool) -> None:
+    group, members = '[heald]\nstroke = "60 mm"\n', '[heald_1]\npattern = "10"\n[heald_2]\npattern = "01"\n'
+    scene = scenes.parse(group + members if group_first else members + group)
+    assert sorted(scene.instances) == ["heald_1", "heald_2", "shaft"]
+    assert all(scene.instances[f"heald_{n}"].values["stroke"] == 0.06 for n in (1, 2))
+
+
+def test_one_frame_needs_no_number() -> None:
+    scene = scenes.parse('[dobby]\n[heald]\npattern = "10"\n[damper]\n')
+    assert "heald.lift -> damper.lift" in {str(wire) for wire in scene.wires}
+    assert "dobby.rotor_angle -> heald.rotor_angle" in {str(wire) for wire in scene.wires}
+
+
+def test_set_reaches_one_member_all_members_and_the_runs_own_keys() -> None:
+    given = {
+        "heald.stroke": "60mm",
+        "heald_2.stroke": "70 mm",
+        "shaft.speed": "685rpm",
+        "belt.guide_clearance": "0.5mm",
+        "revolutions": "2.5",
+        "steps_per_revolution": "360",
+    }
+    scene = scenes.parse("revolutions = 9\n" + LOOM + '[heald_1]\nstroke = "80 mm"\n', overrides=given)
+    values = {name: instance.values for name, instance in scene.instances.items()}
+    assert [round(values[f"heald_{n}"]["stroke"], 12) for n in (1, 2, 3)] == [0.06, 0.07, 0.06]
+    assert math.isclose(scene.speed, 685 * RPM, rel_tol=1e-15)
+    assert math.isclose(values["belt"]["guide_clearance"], 0.5e-3, rel_tol=1e-15)
+    assert (scene.revolutions, scene.steps_per_revolution, scene.steps) == (2.5, 360, 900)
+
+
+def test_numbers_are_si_and_texts_have_units() -> None:
+    for given in (71.733, "71.733", "71.733 rad/s"):
+        scene = scenes.parse("", overrides={"shaft.speed": given})
+        assert scene.speed == 71.733
+    assert math.isclose(scenes.parse("", overrides={"shaft.speed": "685 rpm"}).speed, 685 * RPM)
+    assert scenes.parse("", overrides={"shaft.ripple_order": "3"}).instances["shaft"].values == {
+        "ripple_order": 3
+    }
+
+
+@pytest.mark.parametrize(
+    ("given", "law"),
+    [
+        ("'sloped_line'", 3),
+        ("'sloped-line'", 3),
+        ("'sloped line'", 3),
+        ("3", 3),
+        ("'3'", 3),
+        ("'uniform'", 1),
+    ],
+)
+def test_a_law_has_a_name_or_a_number(given: str, law: int) -> None:
+    value = scenes.parse(f"[dobby]\nlaw = {given}\n").instances["dobby"].values["law"]
+    assert value == law and type(value) is int
+
+
+@pytest.mark.parametrize(
+    ("given", "value"), [("true", True), ("false", False), ("'true'", True), ("'False'", False)]
+)
+def test_yes_or_no(given: str, value: bool) -> None:
+    scene = scenes.parse(f"[belt]\nprescribe_length_factor = {given}\n")
+    assert scene.instances["belt"].values["prescribe_length_factor"] is value
+
+
+def test_components_under_names_of_their_own() -> None:
+    text = """
+[left_head]
+component = "WeftInsertion"
+machine = "WL800-3600"
+[wires]
+"left_head.shaft_angle" = "shaft.angle"
+"left_head.shaft_velocity" = "shaft.velocity"
+"""
+    scene = scenes.parse(text)
+    left = scene.instances["left_head"]
+    assert left.fmu.name == "WeftInsertion"
+    assert left.values["planar_linkage"] is False
+    assert left.values["follow_shaft"] is True
+    # the standard wires of a component hold under any name
+    assert Wire(("shaft", "acceleration"), ("left_head", "shaft_acceleration")) in scene.wires
+
+
+# ---- the rest
+
+
+def test_records_by_pattern() -> None:
+    scene = scenes.parse('record = ["belt.*margin", "heald_?.lift", "weft.travel"]\n' + LOOM)
+    assert scene.record == [
+        "weft.travel",
+        "belt.margin",
+        "belt.lowest_margin",
+        *(f"heald_{number}.lift" for number in range(1, 5)),
+    ]
+    everything = scenes.parse(LOOM).record
+    assert "dobby.pick" in everything and "belt.at_risk" in everything
+    assert not any(signal.split(".")[1] == "shaft_angle" for signal in everything)  # inputs are not outputs
+
+
+def test_what_is_recorded_has_its_rates_with_it(tmp_path: Path) -> None:
+    text = 'revolutions = 0.1\nrecord = ["heald_1.lift"]\n' + LOOM
+    with traced(scenes.parse(text), tmp_path) as trace:
+        assert set(trace) == {
+            "shaft.angle", "shaft.velocity", "shaft.acceleration",
+            "heald_1.lift", "heald_1.velocity", "heald_1.acceleration",
+        }  # fmt: skip
+    with traced(scenes.parse("record = []\n" + LOOM), tmp_path) as trace:
+        assert set(trace) == {"shaft.angle", "shaft.velocity", "shaft.acceleration"}
+
+
+def test_defaults_of_a_scene_that_says_nothing() -> None:
+    scene = scenes.parse("", "nothing")
+    assert (scene.title, scene.description, scene.name) == ("nothing", "", "nothing")
+    assert (scene.revolutions, scene.steps_per_revolution, scene.steps) == (1, 1440, 1440)
+    assert math.isclose(scene.speed, 400 * RPM, rel_tol=1e-15)
+    assert scene.claims == []
+
+
+def test_a_file_is_named_in_what_is_said_of_it(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text("[belt]\nmargin = 3\n")
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.load(path)
+    assert str(raised.value) == f"{path}: belt.margin is an output of BeltMonitor and cannot be set"
+    path.write_bytes(b"title = '\xff'\n")
+    with pytest.raises(LoomfmuError, match=r"cannot be read .*utf-8"):
+        scenes.load(path)
+
+
+def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> None:
+    from loomfmu.cosim.run import run
+
+    scene = small(90, 0.1)
+    result = run(scene, set={"shaft.speed": "700 rpm"}, output=tmp_path / "other.h5")
+    assert math.isclose(result.scene.speed, 700 * RPM)
+    assert math.isclose(scene.speed, 400 * RPM)
+    assert result.trace["shaft.velocity"][0] == result.scene.speed

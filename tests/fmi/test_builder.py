@@ -1,0 +1,289 @@
+"""The FMU as a file: what is in it, that builds repeat, and what its identity stands for."""
+
+import ast
+import hashlib
+import html
+import struct
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from live_fmus import COMPONENTS, NAMES, fmu_cache, in_a_process
+
+from loomfmu import components
+from loomfmu.cosim import fmus
+from loomfmu.fmi import builder, documentation
+from loomfmu.fmi.references import SAMPLES, STEP_SIZE, reference, write_references
+from loomfmu.fmi.source import SourceError, flatten
+from loomfmu.variables import Component, output, parameter, variables_of
+
+__all__ = ["fmu_cache"]
+
+every_fmu = pytest.mark.parametrize("name", NAMES)
+
+
+def contents(name: str) -> dict[str, bytes]:
+    with zipfile.ZipFile(fmus.of_component(name).path) as zipped:
+        return {entry.filename: zipped.read(entry) for entry in zipped.infolist()}
+
+
+# ---- what is in it
+
+
+@every_fmu
+def test_documentation_has_equations_and_every_variable(name: str) -> None:
+    page = contents(name)["documentation/index.html"].decode()
+    assert page.startswith("<!DOCTYPE html>")
+    assert "<h2>Equations</h2>" in page
+    assert "<pre><code>" in page
+    for variable in variables_of(COMPONENTS[name]):
+        assert f"<td><code>{variable.name}</code></td>" in page
+        assert f"<td>{html.escape(variable.description, quote=False)}</td>" in page
+
+
+@every_fmu
+def test_documentation_says_what_the_host_must_have(name: str) -> None:
+    page = contents(name)["documentation/externalDependencies.html"].decode()
+    assert name in page
+    assert "CPython 3.11 or newer" in page
+    assert "GLIBC 2.32" in page
+
+
+@every_fmu
+def test_licences_of_all_that_is_in_it(name: str) -> None:
+    files = contents(name)
+    assert b"MIT License" in files["documentation/licenses/license.txt"]
+    assert b"MIT License" in files["documentation/licenses/pythonfmu.txt"]
+    assert files["documentation/licenses/license.txt"] != files["documentation/licenses/pythonfmu.txt"]
+
+
+@every_fmu
+def test_icon_is_a_png_of_128_by_128(name: str) -> None:
+    png = contents(name)["model.png"]
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    assert struct.unpack(">II", png[16:24]) == (128, 128)
+
+
+@every_fmu
+def test_binaries_are_for_linux_and_windows(name: str) -> None:
+    files = contents(name)
+    assert files[f"binaries/linux64/{name}.so"].startswith(b"\x7fELF")
+    assert files[f"binaries/win64/{name}.dll"].startswith(b"MZ")
+
+
+@every_fmu
+def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> None:
+    files = contents(name)
+    modules = {path: text for path, text in files.items() if path.endswith(".py")}
+    entry = files["resources/slavemodule.txt"].decode()
+    package = entry.removesuffix("_entry")
+    identity = builder.guid(COMPONENTS[name]).replace("-", "")
+    assert package == f"loomfmu_{name.lower()}_{identity[:16]}"
+    assert set(modules) == {
+        f"resources/{entry}.py",
+        f"resources/{package}/__init__.py",
+        f"resources/{package}/component.py",
+        f"resources/{package}/slave.py",
+    }
+    imported = set()
+    for text in modules.values():
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0
+                imported.add(str(node.module))
+    own = {module for module in imported if module.split(".")[0] == package}
+    assert imported - own <= {"math", "operator", "struct", "typing", "collections.abc"}
+
+
+@every_fmu
+def test_the_component_in_it_imports_math_alone(name: str) -> None:
+    tree = ast.parse(flatten(COMPONENTS[name]))
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    assert [node.module for node in imports if isinstance(node, ast.ImportFrom)] == ["math"]
+    assert len(imports) == 1
+
+
+@every_fmu
+def test_the_readme_in_the_repository_is_up_to_date(name: str) -> None:
+    text = (builder.folder(COMPONENTS[name]) / "README.md").read_text(encoding="utf-8")
+    assert documentation.with_table(text, COMPONENTS[name]) == text, "run `make docs`"
+
+
+def test_a_readme_without_the_marks_is_refused() -> None:
+    with pytest.raises(ValueError, match="the README of MainShaft lacks the marks"):
+        documentation.with_table("# MainShaft\n", components.MainShaft)
+
+
+# ---- builds repeat
+
+
+def digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_builds_repeat_in_another_directory_and_another_process(tmp_path: Path) -> None:
+    before = {name: digest(fmus.of_component(name).path) for name in NAMES}
+    assert {name: digest(builder.build(name, tmp_path / "here")) for name in NAMES} == before
+    for seed in ("1", "4242"):
+        there = tmp_path / f"there {seed}"
+        script = "import sys; from loomfmu.cli import main; main(['build', '--output', sys.argv[1]])"
+        in_a_process(script, str(there), PYTHONHASHSEED=seed)
+        assert {name: digest(there / f"{name}.fmu") for name in NAMES} == before
+
+
+@every_fmu
+def test_entries_are_in_order_and_dated_alike(name: str) -> None:
+    with zipfile.ZipFile(fmus.of_component(name).path) as zipped:
+        names = zipped.namelist()
+        assert names == sorted(names)
+        assert {entry.date_time for entry in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_nothing_is_left_behind_where_an_fmu_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "MainShaft.fmu").mkdir()
+    (tmp_path / "MainShaft.fmu" / "in the way").touch()
+    with pytest.raises(OSError, match=r"MainShaft\.fmu"):
+        builder.build("MainShaft", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["MainShaft.fmu"]
+    with pytest.raises(KeyError):
+        builder.build("Spindle", tmp_path)
+
+
+# ---- identity
+
+
+@dataclass(slots=True)
+class MainShaft(Component):
+    """A shaft."""
+
+    speed: float = parameter("rad/s", 1.0, "Speed", minimum=-10.0, maximum=10.0)
+    law: int = parameter("1", 1, "Law", choices=("constant", "ramp"))
+    angle: float = output("rad", "Angle", unbounded=True)
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Go on."""
+        self.angle = self.speed * (time + step_size)
+        return 0
+
+
+Original = MainShaft
+
+
+def declared(name: str, kind: type, field: object) -> type[Component]:
+    """The same component with one other declaration."""
+    made = type(
+        "MainShaft", (Original,), {"__annotations__": {name: kind}, name: field, "__doc__": Original.__doc__}
+    )
+    return dataclass(slots=True)(made)
+
+
+def test_identity_changes_with_every_declaration() -> None:
+    others = [
+        declared("speed", float, parameter("rad/s", 2.0, "Speed", minimum=-10.0, maximum=10.0)),
+        declared("speed", float, parameter("rad/s", 1.0, "Speed", minimum=-20.0, maximum=10.0)),
+        declared("speed", float, parameter("rad/s", 1.0, "Speed", minimum=-10.0, maximum=20.0)),
+        declared("speed", float, parameter("rad/s", 1.0, "Other speed", minimum=-10.0, maximum=10.0)),
+        declared("speed", float, parameter("m/s", 1.0, "Speed", minimum=-10.0, maximum=10.0)),
+        declared("speed", float, parameter("rad/s", 1.0, "Speed", minimum=-10.0, maximum=10.0, nominal=5.0)),
+        declared(
+            "speed", float, parameter("rad/s", 1.0, "Speed", minimum=-10.0, maximum=10.0, display="rev/min")
+        ),
+        declared("law", int, parameter("1", 1, "Law", choices=("constant", "smooth ramp"))),
+        declared("angle", float, output("rad", "Angle")),
+        declared("angle", float, output("rad", "Angle", unbounded=True, depends=())),
+        declared("more", float, output("rad", "More")),
+    ]
+    same = declared("angle", float, output("rad", "Angle", unbounded=True))
+    identities = [builder.guid(other) for other in [Original, *others]]
+    # an output without inputs depends on none, said or not: that one description is the same
+    assert identities[10] == identities[0]
+    del identities[10]
+    assert len(set(identities)) == len(identities)
+    assert builder.guid(same) == builder.guid(Original)
+
+
+def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
+    @dataclass(slots=True)
+    class Faster(Original):
+        """A shaft."""
+
+        def step(self, time: float, step_size: float) -> int:
+            """Go on."""
+            self.angle = 2.0 * self.speed * (time + step_size)
+            return 0
+
+    Faster.__name__ = "MainShaft"
+    before = builder.guid(Original)
+    assert builder.guid(Faster) != before
+    slave = builder._slave_source()
+    monkeypatch.setattr(builder, "_slave_source", lambda: slave + "# other\n")
+    assert builder.guid(Original) != before
+    monkeypatch.setattr(builder, "_slave_source", lambda: slave)
+    assert builder.guid(Original) == before
+    monkeypatch.setattr(builder, "version", lambda: "99.0")
+    assert builder.guid(Original) != before
+
+
+@every_fmu
+def test_value_references_and_identity_are_those_of_the_file(name: str) -> None:
+    fmu = fmus.of_component(name)
+    assert fmu.guid == builder.guid(COMPONENTS[name])
+    assert [port.reference for port in fmu.ports.values()] == list(range(len(fmu.ports)))
+    assert fmu.identifier == name
+
+
+def test_a_component_that_cannot_stand_alone_is_refused() -> None:
+    @dataclass(slots=True)
+    class Tied(Original):
+        """A shaft."""
+
+        def step(self, time: float, step_size: float) -> int:
+            """Go on."""
+            return len(str(np.zeros(3)))
+
+    with pytest.raises(SourceError, match="step uses np, which is neither a function of the physics"):
+        flatten(Tied)
+
+
+# ---- reference results
+
+
+@every_fmu
+def test_the_fmu_gives_the_reference_results(name: str) -> None:
+    path = builder.folder(COMPONENTS[name]) / "reference.csv"
+    expected = np.genfromtxt(path, delimiter=",", names=True)
+    assert len(expected) == SAMPLES
+    found = fmpy.simulate_fmu(
+        fmus.of_component(name).path, stop_time=expected["time"][-1], output_interval=STEP_SIZE
+    )
+    outputs = [v.name for v in variables_of(COMPONENTS[name]) if v.causality == "output"]
+    assert list(expected.dtype.names) == ["time", *outputs]
+    for output_ in expected.dtype.names:
+        # the same operations in the same order: only another libm may differ, by some last bits
+        scale = np.max(np.abs(expected[output_]))
+        np.testing.assert_allclose(found[output_], expected[output_], rtol=0, atol=1e-12 * scale)
+
+
+def test_reference_results_are_written_where_the_fmus_lie(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("loomfmu.fmi.references.folder", lambda component: tmp_path)
+    monkeypatch.setattr("loomfmu.fmi.references.COMPONENTS", {"MainShaft": components.MainShaft})
+    write_references()
+    written = (tmp_path / "reference.csv").read_text()
+    assert written == reference(components.MainShaft)
+    lines = written.splitlines()
+    assert lines[0] == "time,angle,velocity,acceleration"
+    assert lines[1] == "0.0,0.0,41.88790204786391,0.0"
+    assert len(lines) == 1 + 145
+    last = [float(value) for value in lines[-1].split(",")]
+    np.testing.assert_allclose(last[:2], [0.15, 2 * np.pi], rtol=1e-15)  # one revolution, 2.5 deg apart

@@ -1,0 +1,198 @@
+/* The motor as an FMI 3.0 co-simulation FMU. */
+
+#include <stdlib.h>
+
+#include "fmi3FunctionTypes.h"
+#include "motor.h"
+
+typedef struct {
+    Motor motor;
+    fmi3LogMessageCallback log;
+    fmi3InstanceEnvironment environment;
+} Instance;
+
+const char *fmi3GetVersion(void) { return "3.0"; }
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                                         fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events,
+                                         fmi3Boolean early, const fmi3ValueReference intermediate[], size_t count,
+                                         fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback update)
+{
+    Instance *instance;
+    (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early, (void)intermediate;
+    (void)count, (void)update;
+    if (strcmp(token, "{motor-3}") != 0) {
+        log(environment, fmi3Error, "error", "another token");
+        return NULL;
+    }
+    instance = calloc(1, sizeof(Instance));
+    motor_defaults(&instance->motor);
+    instance->log = log;
+    instance->environment = environment;
+    return instance;
+}
+
+void fmi3FreeInstance(fmi3Instance c) { free(c); }
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean defined, fmi3Float64 tolerance,
+                                       fmi3Float64 start, fmi3Boolean stop_defined, fmi3Float64 stop)
+{
+    Instance *i = c;
+    (void)defined, (void)tolerance, (void)stop_defined, (void)stop;
+    i->motor.time = start;
+    if (i->motor.inertia <= 0.0) {
+        i->log(i->environment, fmi3Error, "error", "J is not above 0");
+        return fmi3Error;
+    }
+    motor_rates(&i->motor);
+    return fmi3OK;
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
+{
+    motor_rates(&((Instance *)c)->motor);
+    return fmi3OK;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance c) { (void)c; return fmi3OK; }
+fmi3Status fmi3Reset(fmi3Instance c) { (void)c; return fmi3Error; }
+
+static double *real(Motor *m, fmi3ValueReference r)
+{
+    double *all[] = {&m->inertia, &m->stall_torque, &m->free_speed, &m->load, &m->phi, &m->w, &m->a, &m->time};
+    return all[r];
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 v[], size_t k)
+{
+    for (size_t j = 0; j < n && j < k; j++) v[j] = *real(&((Instance *)c)->motor, r[j]);
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Float64 v[], size_t k)
+{
+    for (size_t j = 0; j < n && j < k; j++) *real(&((Instance *)c)->motor, r[j]) = v[j];
+    return fmi3OK;
+}
+
+/* integers: 20 the steps made, 22 the parameter verbose that counts, as 20 does, in Int32 */
+fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int32 v[], size_t k)
+{
+    Motor *m = &((Instance *)c)->motor;
+    for (size_t j = 0; j < n && j < k; j++) v[j] = r[j] == 20 ? m->steps : m->verbose;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Int32 v[], size_t k)
+{
+    for (size_t j = 0; j < n && j < k; j++) if (r[j] == 22) ((Instance *)c)->motor.verbose = v[j];
+    return fmi3OK;
+}
+
+/* enumerations: 30 the parameter mode, 31 the same as an output */
+fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int64 v[], size_t k)
+{
+    (void)r;
+    for (size_t j = 0; j < n && j < k; j++) v[j] = ((Instance *)c)->motor.mode;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Int64 v[], size_t k)
+{
+    for (size_t j = 0; j < n && j < k; j++) if (r[j] == 30) ((Instance *)c)->motor.mode = (int)v[j];
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Boolean v[], size_t k)
+{
+    (void)r;
+    for (size_t j = 0; j < n && j < k; j++) v[j] = ((Instance *)c)->motor.at_speed != 0;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Boolean v[], size_t k)
+{
+    Motor *m = &((Instance *)c)->motor;
+    for (size_t j = 0; j < n && j < k; j++) if (r[j] == 41 && v[j]) m->load = 1.0e9;
+    return fmi3OK;
+}
+
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boolean keep, fmi3Boolean *event,
+                      fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *reached)
+{
+    Instance *i = c;
+    (void)keep;
+    *event = *early = false;
+    *terminate = i->motor.load > i->motor.stall_torque;
+    *reached = time + h;
+    if (i->motor.verbose && i->motor.steps < i->motor.verbose) {
+        i->log(i->environment, fmi3Warning, "load", "it turns, 100 %s of it");
+    }
+    motor_step(&i->motor, h);
+    return fmi3OK;
+}
+
+/* what the standard wants to be there and the motor has not */
+
+#define NOT_THERE(name) fmi3Status name(void) { return fmi3Error; }
+
+NOT_THERE(fmi3SetDebugLogging)
+NOT_THERE(fmi3InstantiateModelExchange)
+NOT_THERE(fmi3InstantiateScheduledExecution)
+NOT_THERE(fmi3EnterEventMode)
+NOT_THERE(fmi3GetFloat32)
+NOT_THERE(fmi3GetInt8)
+NOT_THERE(fmi3GetUInt8)
+NOT_THERE(fmi3GetInt16)
+NOT_THERE(fmi3GetUInt16)
+NOT_THERE(fmi3GetUInt32)
+NOT_THERE(fmi3GetUInt64)
+NOT_THERE(fmi3GetString)
+NOT_THERE(fmi3GetBinary)
+NOT_THERE(fmi3GetClock)
+NOT_THERE(fmi3SetFloat32)
+NOT_THERE(fmi3SetInt8)
+NOT_THERE(fmi3SetUInt8)
+NOT_THERE(fmi3SetInt16)
+NOT_THERE(fmi3SetUInt16)
+NOT_THERE(fmi3SetUInt32)
+NOT_THERE(fmi3SetUInt64)
+NOT_THERE(fmi3SetString)
+NOT_THERE(fmi3SetBinary)
+NOT_THERE(fmi3SetClock)
+NOT_THERE(fmi3GetNumberOfVariableDependencies)
+NOT_THERE(fmi3GetVariableDependencies)
+NOT_THERE(fmi3GetFMUState)
+NOT_THERE(fmi3SetFMUState)
+NOT_THERE(fmi3FreeFMUState)
+NOT_THERE(fmi3SerializedFMUStateSize)
+NOT_THERE(fmi3SerializeFMUState)
+NOT_THERE(fmi3DeserializeFMUState)
+NOT_THERE(fmi3GetDirectionalDerivative)
+NOT_THERE(fmi3GetAdjointDerivative)
+NOT_THERE(fmi3EnterConfigurationMode)
+NOT_THERE(fmi3ExitConfigurationMode)
+NOT_THERE(fmi3GetIntervalDecimal)
+NOT_THERE(fmi3GetIntervalFraction)
+NOT_THERE(fmi3GetShiftDecimal)
+NOT_THERE(fmi3GetShiftFraction)
+NOT_THERE(fmi3SetIntervalDecimal)
+NOT_THERE(fmi3SetIntervalFraction)
+NOT_THERE(fmi3SetShiftDecimal)
+NOT_THERE(fmi3SetShiftFraction)
+NOT_THERE(fmi3EvaluateDiscreteStates)
+NOT_THERE(fmi3UpdateDiscreteStates)
+NOT_THERE(fmi3EnterContinuousTimeMode)
+NOT_THERE(fmi3CompletedIntegratorStep)
+NOT_THERE(fmi3SetTime)
+NOT_THERE(fmi3SetContinuousStates)
+NOT_THERE(fmi3GetContinuousStateDerivatives)
+NOT_THERE(fmi3GetEventIndicators)
+NOT_THERE(fmi3GetContinuousStates)
+NOT_THERE(fmi3GetNominalsOfContinuousStates)
+NOT_THERE(fmi3GetNumberOfEventIndicators)
+NOT_THERE(fmi3GetNumberOfContinuousStates)
+NOT_THERE(fmi3EnterStepMode)
+NOT_THERE(fmi3GetOutputDerivatives)
+NOT_THERE(fmi3ActivateModelPartition)

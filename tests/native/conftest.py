@@ -1,0 +1,71 @@
+"""Tests here run native FMUs of the machine's own platform: built once, in a cache of their own."""
+
+import shutil
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from live_fmus import fmu_cache
+from natives import Native
+
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim import fmus
+
+__all__ = ["fmu_cache"]
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What takes minutes runs on demand."""
+    if "slow" not in config.option.markexpr:
+        for item in items:
+            if item.get_closest_marker("slow"):
+                item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))
+
+
+@pytest.fixture(scope="session")
+def tools() -> None:
+    """What builds native FMUs."""
+    for module in ("pyccel", "ziglang"):
+        if find_spec(module) is None:
+            pytest.skip(f"{module} is not installed: no native FMU can be built")
+    if not sys.platform.startswith("linux"):
+        pytest.skip("the tests of native FMUs know Linux alone")
+
+
+@pytest.fixture(scope="session")
+def gcc(tools: None) -> str:
+    """A compiler that is not the one the FMUs were built with."""
+    found = shutil.which("gcc")
+    if found is None:
+        pytest.skip("gcc is not installed")
+    return found
+
+
+@pytest.fixture(scope="session")
+def built(fmu_cache: None, tools: None) -> dict[str, fmus.Fmu]:
+    """All native FMUs."""
+    with ThreadPoolExecutor(max_workers=4) as pool:
+        found = pool.map(lambda name: fmus.of_component(name, "native"), COMPONENTS)
+        return dict(zip(COMPONENTS, found, strict=True))
+
+
+@pytest.fixture(scope="session")
+def sources(built: dict[str, fmus.Fmu]) -> dict[str, Path]:
+    """The folder of C sources of each FMU, as a user finds it."""
+    return {name: fmu.directory / "sources" for name, fmu in built.items()}
+
+
+@pytest.fixture
+def native(built: dict[str, fmus.Fmu]):
+    """Opens instances and frees them after the test."""
+    opened: list[Native] = []
+
+    def open_(component: str, **options: object) -> Native:
+        opened.append(Native(built[component], **options))
+        return opened[-1]
+
+    yield open_
+    for instance in opened:
+        instance.free()

@@ -1,0 +1,111 @@
+"""Native FMUs under hosts written in C: one that keeps the rules, and one that keeps none."""
+
+import math
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from fmpy import platform
+
+from loomfmu.components import COMPONENTS
+from loomfmu.fmi.native_builder import HEADERS
+from loomfmu.variables import variables_of
+
+every_fmu = pytest.mark.parametrize("name", COMPONENTS)
+HERE = Path(__file__).parent
+SIZE = 1e-3
+SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-g"]
+
+
+def compiled(*command: str | Path) -> None:
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+
+
+@pytest.fixture(scope="module")
+def host(gcc, tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("host") / "host"
+    warnings = ["-Wall", "-Wextra", "-Werror"]
+    compiled(gcc, "-std=c99", "-O1", *warnings, f"-I{HEADERS}", "-o", path, HERE / "host.c", "-ldl")
+    return path
+
+
+@every_fmu
+def test_a_host_without_python_gets_the_components_results(built, host, name):
+    component = COMPONENTS[name]
+    steps = 1000 if name != "WarpTension" else 200
+    letters = "".join({float: "r", int: "i", bool: "b"}[v.type] for v in variables_of(component))
+    library = built[name].directory / "binaries" / platform / f"{name}.so"
+    run = subprocess.run(
+        [host, library, built[name].guid, str(steps), repr(SIZE), letters],
+        capture_output=True, text=True, check=False, env={},
+    )  # fmt: skip
+    assert (run.returncode, run.stderr) == (0, "")
+    python = component()
+    assert python.initialize(0.0) == 0
+    for step in range(steps):
+        assert python.step(step * SIZE, SIZE) == 0
+    for variable, line in zip(variables_of(component), run.stdout.split(), strict=True):
+        wanted = float(getattr(python, variable.name))
+        assert math.isclose(float(line), wanted, rel_tol=1e-12, abs_tol=1e-300), variable.name
+
+
+# ---- a host that keeps no rules
+
+
+@pytest.fixture(scope="module")
+def fuzzers(sources, gcc, tmp_path_factory) -> dict[str, Path]:
+    """The fuzz host with each FMU's sources, sanitized."""
+    folder = tmp_path_factory.mktemp("fuzz")
+
+    def build(name: str) -> tuple[str, Path]:
+        path = folder / name
+        call = ["-std=c99", "-O1", *SANITIZERS, f"-I{sources[name]}", "-o", path, HERE / "fuzz.c", "-lm"]
+        compiled(gcc, *call)
+        return name, path
+
+    with ThreadPoolExecutor() as pool:
+        return dict(pool.map(build, COMPONENTS))
+
+
+def fuzzed(fuzzer: Path, seed: int) -> list[int]:
+    """How many steps were made, states restored, bytes taken for a state and refused, in 30,000 calls."""
+    run = subprocess.run([fuzzer, str(seed), "30000"], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, f"seed {seed}: {run.stderr[-4000:]}"
+    return [int(word) for word in run.stdout.split()]
+
+
+@every_fmu
+def test_random_calls_and_random_bytes_do_no_harm(fuzzers, name):
+    stepped, restored, unpacked, refused = fuzzed(fuzzers[name], 1)
+    assert stepped > 2000 and restored > 50 and unpacked > 100 and unpacked + refused > 2000
+
+
+@pytest.mark.slow
+@every_fmu
+def test_many_random_calls_and_bytes_do_no_harm(fuzzers, name):
+    with ThreadPoolExecutor() as pool:
+        counts = list(pool.map(lambda seed: fuzzed(fuzzers[name], seed), range(100, 150)))
+    assert sum(each[2] + each[3] for each in counts) > 100_000
+
+
+@pytest.mark.slow
+@every_fmu
+def test_valgrind_finds_nothing(built, sources, gcc, tmp_path, name):
+    valgrind = shutil.which("valgrind")
+    if valgrind is None:
+        pytest.skip("valgrind is not installed")
+    path = tmp_path / name
+    compiled(gcc, "-std=c99", "-O1", "-g", f"-I{sources[name]}", "-o", path, HERE / "fuzz.c", "-lm")
+    call = [valgrind, "--error-exitcode=9", "--leak-check=full", "--quiet", path, "7", "5000"]
+    run = subprocess.run(call, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr[-4000:]
+
+
+def test_a_sanitizer_would_be_heard(gcc, tmp_path):
+    # the tests above are worth nothing if the sanitizers are silent
+    (tmp_path / "bad.c").write_text("int main(int n, char **w) { int a[2] = {0}; (void)w; return a[n + 1]; }")
+    compiled(gcc, *SANITIZERS, "-o", tmp_path / "bad", tmp_path / "bad.c")
+    assert subprocess.run([tmp_path / "bad"], capture_output=True, check=False).returncode != 0

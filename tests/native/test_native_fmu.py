@@ -1,0 +1,158 @@
+"""What a native FMU is made of: description, exported functions, dependencies, sources, bytes."""
+
+import hashlib
+import os
+import re
+import subprocess
+import xml.etree.ElementTree as ElementTree
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from natives import library
+
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim import fmus
+from loomfmu.errors import LoomfmuError
+from loomfmu.fmi import native_builder
+from loomfmu.fmi.builder import guid
+from loomfmu.fmi.fat_binary import ALIGNMENT, fat_binary
+
+every_fmu = pytest.mark.parametrize("name", COMPONENTS)
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+
+
+def output_of(*command: str | Path) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def binary(fmu: fmus.Fmu) -> Path:
+    return fmu.directory / "binaries" / "linux64" / f"{fmu.name}.so"
+
+
+@every_fmu
+def test_it_is_valid(built, name):
+    assert fmpy.validation.validate_fmu(str(built[name].path)) == []
+
+
+@every_fmu
+def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(built, name):
+    def described(flavour: str) -> tuple[dict[str, str], str]:
+        directory = fmus.of_component(name, flavour).directory
+        root = ElementTree.parse(directory / "modelDescription.xml").getroot()
+        kind = root.find("CoSimulation")
+        capabilities = dict(kind.attrib)
+        kind.attrib.clear()
+        kind.text = None
+        for child in list(kind):
+            kind.remove(child)
+        ElementTree.indent(root)
+        return capabilities, ElementTree.tostring(root, encoding="unicode")
+
+    (live, one), (native, other) = described("live"), described("native")
+    assert other == one
+    inputs = any(port.causality == "input" and port.kind == "Real" for port in built[name].ports.values())
+    assert {key: value for key, value in native.items() if live.get(key) != value} == {
+        key: value
+        for key, value in {
+            "canInterpolateInputs": "true" if inputs else "false",
+            "canNotUseMemoryManagementFunctions": "false",
+            "maxOutputDerivativeOrder": native["maxOutputDerivativeOrder"],
+        }.items()
+        if live.get(key) != value
+    }
+    assert built[name].guid == guid(COMPONENTS[name])
+
+
+@every_fmu
+def test_it_needs_nothing_but_libc_and_libm(built, name):
+    needed = {line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", binary(built[name])).splitlines()}
+    assert needed <= {"linux-vdso.so.1", "libm.so.6", "libc.so.6", "ld-linux-x86-64.so.2"}
+    versions = re.findall(r"GLIBC_(\d+)\.(\d+)", output_of("objdump", "-T", binary(built[name])))
+    assert max((int(major), int(minor)) for major, minor in versions) <= (2, 17)
+
+
+@every_fmu
+def test_it_exports_the_functions_of_the_standard_and_nothing_else(built, name):
+    header = (native_builder.HEADERS / "fmi2Functions.h").read_text()
+    common, model_exchange, co_simulation = re.split(r"Functions for FMI2 for .*", header[: header.rindex("*/")])[:3]
+    wanted = set(re.findall(r"#define (fmi2\w+) +fmi2FullName\(fmi2\w+\)", common + co_simulation))
+    assert len(wanted) == 34 and "fmi2NewDiscreteStates" in model_exchange
+    symbols = output_of("objdump", "-T", binary(built[name])).splitlines()
+    exported = {line.split()[-1] for line in symbols if " g " in line}
+    assert exported == wanted
+    assert library(built[name]).fmi2GetVersion() == b"2.0"
+    assert library(built[name]).fmi2GetTypesPlatform() == b"default"
+
+
+@every_fmu
+def test_its_sources_compile_without_a_warning(sources, gcc, name):
+    for options in (["-O2"], ["-O0", "-DNDEBUG"]):
+        call = [gcc, "-std=c99", *options, *WARNINGS, "-c", "fmi2.c", "-o", os.devnull]
+        run = subprocess.run(call, cwd=sources[name], capture_output=True, text=True, check=False)
+        assert run.returncode == 0, run.stderr
+
+
+def test_the_documented_command_builds_it_again(sources, gcc, tmp_path):
+    name = "BeltMonitor"
+    page = (sources[name].parent / "documentation" / "index.html").read_text()
+    command = re.search(r"<code>(cc [^<]*)", page)[1]
+    folder = tmp_path / "sources"
+    folder.mkdir()
+    for file in sources[name].iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    subprocess.run(command, shell=True, cwd=folder, check=True)
+    assert "fmi2DoStep" in output_of("objdump", "-T", folder / f"{name}.so")
+
+
+def test_all_it_holds_has_a_licence(built):
+    with zipfile.ZipFile(built["MainShaft"].path) as zipped:
+        names = set(zipped.namelist())
+        assert "Redistribution and use" in zipped.read("documentation/licenses/fmi_headers.txt").decode()
+    assert {"documentation/licenses/license.txt", "sources/fmi2Functions.h", "sources/component.c"} <= names
+    assert not [name for name in names if name.endswith((".py", ".pyc"))]
+    description = ElementTree.fromstring(zipfile.ZipFile(built["MainShaft"].path).read("sources/buildDescription.xml"))
+    assert [file.get("name") for file in description.iter("SourceFile")] == ["fmi2.c"]
+
+
+def test_builds_repeat_to_the_byte(built, tmp_path, monkeypatch):
+    # another directory and an empty cache of the compiler: nothing is taken from the first build
+    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "zig"))
+    monkeypatch.setenv("ZIG_LOCAL_CACHE_DIR", str(tmp_path / "zig"))
+    again = native_builder.build_native("MainShaft", tmp_path, ("linux64",))
+    assert hashlib.sha256(again.read_bytes()).hexdigest() == built["MainShaft"].sha256
+
+
+def test_a_fat_binary_holds_its_parts():
+    intel = b"\xcf\xfa\xed\xfe\x07\x00\x00\x01\x03\x00\x00\x00" + b"intel" * 5000
+    arm = b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01\x00\x00\x00\x00" + b"arm" * 7000
+    joined = fat_binary([intel, arm])
+    words = [int.from_bytes(joined[4 * n : 4 * n + 4], "big") for n in range(12)]
+    assert words[:2] == [0xCAFEBABE, 2]
+    for part, (processor, kind, offset, size, alignment) in zip((intel, arm), (words[2:7], words[7:12]), strict=True):
+        assert joined[offset : offset + size] == part
+        assert offset % 2**ALIGNMENT == 0 and alignment == ALIGNMENT
+        assert processor.to_bytes(4, "little") == part[4:8] and kind.to_bytes(4, "little") == part[8:12]
+    with pytest.raises(ValueError, match="a part of a fat binary begins with 0x464c457f"):
+        fat_binary([b"\x7fELF" + b"\0" * 8])
+
+
+def test_an_unknown_platform_or_flavour_is_named(tools):
+    with pytest.raises(LoomfmuError, match=r"there is no platform 'linux46'; did you mean 'linux64'\?"):
+        native_builder.check_platforms(("win64", "linux46"))
+    with pytest.raises(LoomfmuError, match=r"there is no flavour 'nativ'; did you mean 'native'\?"):
+        fmus.of_component("MainShaft", "nativ")
+
+
+@pytest.mark.slow
+def test_it_is_built_for_all_platforms(tools, tmp_path):
+    path = native_builder.build_native("MainShaft", tmp_path)
+    assert fmpy.validation.validate_fmu(str(path)) == []
+    with zipfile.ZipFile(path) as zipped:
+        windows = zipped.read("binaries/win64/MainShaft.dll")
+        mac = zipped.read("binaries/darwin64/MainShaft.dylib")
+        assert "documentation/licenses/mingw-w64.txt" in zipped.namelist()
+    assert windows[:2] == b"MZ" and b"fmi2DoStep" in windows
+    assert mac[:8] == bytes.fromhex("cafebabe00000002") and mac.count(b"_fmi2DoStep") >= 2
+    assert native_builder.build_native("MainShaft", tmp_path / "again").read_bytes() == path.read_bytes()

@@ -1,0 +1,146 @@
+"""Native FMUs give the results of the components they were made from."""
+
+import math
+import random
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from driving import assign, inputs, span
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from live_fmus import REVOLUTION
+from natives import DISCARD, ERROR, OK
+
+import loomfmu
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim import fmus
+from loomfmu.variables import Component, Variable, variables_of
+
+every_fmu = pytest.mark.parametrize("name", COMPONENTS)
+# the same operations in the same order; pow() of a square is a product in C, which may round otherwise
+SAME = 1e-12
+LARGEST_INTEGER = 2147483647
+
+
+def same(found: Any, wanted: Any) -> bool:
+    return bool(found == wanted or math.isclose(found, wanted, rel_tol=SAME, abs_tol=1e-300))
+
+
+def value_of(variable: Variable) -> st.SearchStrategy[Any]:
+    """The start of a variable, or a value where it usually lies."""
+    if variable.type is bool:
+        return st.booleans()
+    if variable.type is int:
+        low, high = int(variable.minimum or 0), int(variable.maximum or 100)
+        return st.one_of(st.just(variable.start), st.integers(low, high))
+    low, high = span(variable)
+    return st.one_of(st.just(variable.start), st.floats(low, high, allow_subnormal=False))
+
+
+def settable(component: type[Component], causality: str) -> st.SearchStrategy[dict[str, Any]]:
+    return st.fixed_dictionaries(
+        {v.name: value_of(v) for v in variables_of(component) if v.causality == causality}
+    )
+
+
+steps = st.lists(
+    st.tuples(st.sampled_from([0.0, 1e-6, 1e-4, 1e-3, 3e-3, REVOLUTION / 8.0, 1.7 * REVOLUTION]), st.booleans()),
+    min_size=1, max_size=8,
+)  # fmt: skip
+
+
+def attempted(component: Component, method: str, *arguments: float) -> int | None:
+    """What a call returns, a warning as 0; None where it raises."""
+    try:
+        problem = int(getattr(component, method)(*arguments))
+    except (ArithmeticError, ValueError):
+        return None
+    return 0 if problem and component.problems[problem - 1].warning else problem
+
+
+def compare(component: Component, native: Any) -> None:
+    wanted = {v.name: getattr(component, v.name) for v in variables_of(type(component))}
+    if any(not isinstance(each, bool) and abs(each) > LARGEST_INTEGER and isinstance(each, int) for each in wanted.values()):
+        return  # FMI has no place for it
+    for name, found in native.variables().items():
+        assert same(found, wanted[name]), f"{name}: native {found!r}, component {wanted[name]!r}"
+
+
+@every_fmu
+def test_random_parameters_inputs_and_steps(native, name):
+    component = COMPONENTS[name]
+    instance = native(name)
+
+    @settings(max_examples=40)
+    @given(settable(component, "parameter"), st.lists(settable(component, "input"), min_size=9, max_size=9), steps)
+    def check(parameters: dict[str, Any], driven: list[dict[str, Any]], sizes: list[tuple[float, bool]]) -> None:
+        assert instance.call("Reset") == OK
+        python = component(**parameters, **driven[0])
+        assert (instance.set_up(), instance.set(**parameters, **driven[0])) == (OK, OK), instance.texts
+        problem = attempted(python, "initialize", 0.0)
+        assert instance.initialize() == (OK if problem == 0 else ERROR), instance.texts
+        if problem != 0:
+            return
+        compare(python, instance)
+        time = 0.0
+        for (size, moved), values in zip(sizes, driven[1:], strict=False):
+            if moved:
+                assign(python, values)
+                assert instance.set(**values) == OK
+            problem = attempted(python, "step", time, size)
+            assert instance.step(time, size) == (OK if problem == 0 else DISCARD), instance.texts
+            if problem != 0:
+                return
+            compare(python, instance)
+            time += size
+
+    check()
+
+
+@every_fmu
+def test_long_runs(native, name):
+    # states that live from step to step: a difference would grow
+    component = COMPONENTS[name]()
+    instance = native(name).start()
+    assert component.initialize(0.0) == 0
+    rng = random.Random(1)
+    time = 0.0
+    for _ in range(2000):
+        size = rng.choice([1e-4, 3e-4, 2e-3])
+        values = {v.name: rng.uniform(*span(v)) for v in inputs(COMPONENTS[name])}
+        assign(component, values)
+        assert instance.set(**values) == OK
+        problem = attempted(component, "step", time, size)
+        assert instance.step(time, size) == (OK if problem == 0 else DISCARD), instance.texts
+        time += size
+        if problem:
+            break
+    compare(component, instance)
+
+
+@every_fmu
+def test_fmpy_simulates_it_as_the_component_steps(built, name):
+    found = fmpy.simulate_fmu(built[name].path, stop_time=0.02, output_interval=1e-3, validate=False)
+    component = COMPONENTS[name]()
+    assert component.initialize(0.0) == 0
+    for sample, time in enumerate(found["time"]):
+        for output in found.dtype.names[1:]:
+            assert same(found[output][sample], getattr(component, output)), output
+        if sample + 1 < len(found):
+            assert attempted(component, "step", float(time), float(found["time"][sample + 1] - time)) == 0
+
+
+def test_a_scene_gives_the_same_trace_with_either_flavour(built, tmp_path):
+    runs = {
+        flavour: loomfmu.run("sims/wl680_3600.toml", output=tmp_path / f"{flavour}.h5", flavour=flavour)
+        for flavour in ("live", "native")
+    }
+    live, native = runs["live"].trace, runs["native"].trace
+    assert list(native) == list(live)
+    for signal in live:
+        np.testing.assert_allclose(native[signal], live[signal], rtol=SAME, atol=0.0, err_msg=signal)
+    assert [bool(v) for v in runs["native"].claims] == [bool(v) for v in runs["live"].claims]
+    sums = {flavour: run.trace.attributes["fmu_BeltMonitor_sha256"] for flavour, run in runs.items()}
+    assert sums["native"] == built["BeltMonitor"].sha256 != sums["live"]

@@ -1,0 +1,232 @@
+"""From Python to C: the same results, and one line for what does not translate."""
+
+import ctypes
+import itertools
+import math
+import os
+import re
+import subprocess
+
+import pytest
+import toys
+
+from loomfmu.components import COMPONENTS
+from loomfmu.fmi import translate as translating
+from loomfmu.fmi.native_builder import SHELL, sources
+from loomfmu.fmi.native_tables import tables
+from loomfmu.fmi.translate import TranslationError, translate
+from loomfmu.variables import Problem, variables_of
+
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+
+EVERY_WAY = """
+#include "component.c"
+void start(struct Arithmetic *self) { Arithmetic__init__(self); }
+int64_t initialize(struct Arithmetic *self, double t) { return Arithmetic__initialize(self, t); }
+int64_t step(struct Arithmetic *self, double t, double h) { return Arithmetic__step(self, t, h); }
+int64_t whole(double x) { return pyc_whole(x); }
+int64_t modulo(int64_t a, int64_t b) { return pyc_modulo(a, b); }
+int64_t division(int64_t a, int64_t b) { return pyc_integer_division(a, b); }
+double fmodulo(double a, double b) { return pyc_fmodulo(a, b); }
+double floor_division(double a, double b) { return pyc_floor_division(a, b); }
+"""
+
+
+class Struct(ctypes.Structure):
+    """The translated Arithmetic."""
+
+    _fields_ = tuple(
+        (v.name, {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool}[v.type])
+        for v in variables_of(toys.Arithmetic)
+    )
+
+
+@pytest.fixture(scope="module")
+def compiled(gcc, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("arithmetic")
+    translated = translate(toys.Arithmetic)
+    (folder / "component.c").write_text(translated.code)
+    (folder / "component.h").write_text(translated.header)
+    (folder / "pyc_math_c.h").write_text((SHELL / "pyc_math_c.h").read_text())
+    (folder / "every_way.c").write_text(EVERY_WAY)
+    call = [gcc, "-shared", "-fPIC", "-O2", "-std=c99", *WARNINGS, "-o", "every_way.so", "every_way.c", "-lm"]
+    run = subprocess.run(call, cwd=folder, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    library = ctypes.CDLL(str(folder / "every_way.so"))
+    doubles, wholes = (ctypes.c_double, ctypes.c_double), (ctypes.c_int64, ctypes.c_int64)
+    for name, kinds in (("fmodulo", doubles), ("floor_division", doubles), ("modulo", wholes), ("division", wholes)):
+        getattr(library, name).argtypes, getattr(library, name).restype = kinds, kinds[0]
+    library.whole.argtypes, library.whole.restype = [ctypes.c_double], ctypes.c_int64
+    library.step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double]
+    return library
+
+
+def test_arithmetic_is_pythons(compiled):
+    values = [-7.75, -3.0, -0.5, 0.5, 1.25, 2.0, 6.5, 1e3]
+    for x, y in itertools.product(values, values):
+        for count in (-9, -1, 0, 3, 8, 14):
+            python, c = toys.Arithmetic(x=x, y=y, count=count), Struct()
+            compiled.start(ctypes.byref(c))
+            c.x, c.y, c.count = x, y, count
+            assert python.step(0.0, 0.0) == compiled.step(ctypes.byref(c), 0.0, 0.0) == 0
+            for variable in variables_of(toys.Arithmetic):
+                found, wanted = getattr(c, variable.name), getattr(python, variable.name)
+                # x**2 is a product in C
+                assert found == pytest.approx(wanted, rel=1e-15), (variable.name, x, y, count)
+
+
+def test_remainders_and_quotients(compiled):
+    floats = [-8.0, -5.5, -1.0, -0.1, -0.0, 0.0, 0.1, 1.0, 3.0, 1e300, 5e-324, math.inf]
+    for a, b in itertools.product(floats, floats):
+        if b != 0.0 and not math.isinf(a):
+            for found, wanted in ((compiled.fmodulo(a, b), a % b), (compiled.floor_division(a, b), a // b)):
+                assert math.copysign(1.0, found) == math.copysign(1.0, wanted) and found == wanted, (a, b)
+    integers = [-(2**63), -(2**60), -17, -3, -1, 1, 2, 5, 2**60, 2**63 - 1]
+    for a, b in itertools.product([*integers, 0], integers):
+        assert compiled.modulo(a, b) == a % b
+        assert compiled.division(a, b) == min(a // b, 2**63 - 1)
+    assert compiled.modulo(5, 0) == compiled.division(5, 0) == 0  # Python raises
+
+
+def test_whole_numbers_of_any_double_are_defined(compiled):
+    for value in (-2.9, 2.9, 0.0, -(2.0**53), 2.0**59):
+        assert compiled.whole(value) == int(value)
+    for value in (1e30, math.inf):
+        assert compiled.whole(value) == 2**60 and compiled.whole(-value) == -(2**60)
+    assert compiled.whole(math.nan) == 0
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_it_holds_no_globals_and_all_variables_in_their_order(tools, name):
+    translated = translate(COMPONENTS[name])
+    assert translated.members == tuple(v.name for v in variables_of(COMPONENTS[name]))
+    for line in translated.code.splitlines():
+        if line and line[0] not in " {}/" and not line.startswith(("#", " *")):
+            assert line.startswith("static ") and "(" in line, line
+
+
+def test_translations_repeat(tools):
+    first = translate(COMPONENTS["MainShaft"])
+    translating._done.clear()
+    assert translate(COMPONENTS["MainShaft"]) == first
+
+
+@pytest.mark.parametrize(
+    ("component", "function", "line", "reason"),
+    [
+        (toys.UsesList, "step", "values = [time, step_size]", "List is not in the subset"),
+        (toys.CallsInWhile, "step", "while mixed(self.value, 1.0) < 3.0 and exp(self.value) < 9.0:",
+         "mixed is called in the condition of a while"),
+        (toys.ReadsItsResult, "step", "self.value, self.other = self.both(time)",
+         "both() uses self.value, one of its own results"),
+        (toys.ChangesType, "step", "count = 0.5 * time", "Object has already been defined with type 'int'"),
+    ],
+)  # fmt: skip
+def test_what_does_not_translate_is_named_with_its_place(tools, component, function, line, reason):
+    with pytest.raises(TranslationError) as caught:
+        translate(component)
+    text = str(caught.value)
+    assert "\n" not in text
+    assert text.startswith(f"{component.__name__}.{function} (toys.py, line ")
+    assert f": `{line}` does not translate to C: {reason}" in text
+    with open(toys.__file__, encoding="utf-8") as file:
+        number = int(re.search(r"line (\d+)\)", text)[1])
+        assert file.read().splitlines()[number - 1].strip() == line
+
+
+REFUSED = {
+    "y = max(x, 2.0)": "max is neither of math nor a function of the physics",
+    "y = f'{x}'": "JoinedStr is not in the subset",
+    "y = 'a'": "'a' is no number",
+    "y = lambda: x": "Lambda is not in the subset",
+    "y = [i for i in range(3)]": "ListComp is not in the subset",
+    "assert x > 0": "Assert is not in the subset",
+    "raise ValueError": "Raise is not in the subset",
+    "y = x is None": "Is is not in the subset",
+    "y = None": "None is no number",
+    "y = self.step.time": "self.step.time is no variable of the component",
+    "y = self.jump(x)": "jump is no method of the component",
+    "y = sqrt(x=x)": "an argument given by its name",
+    "for y in (1, 2):\n            pass": "a for that does not run over range()",
+    "while x < 1.0:\n            x = 2.0\n        else:\n            x = 1.0": "an else of a loop",
+    "y = z = x": "an assignment to several names",
+    "def g(y: float) -> float:\n            return y": "FunctionDef is not in the subset",
+}
+
+
+@pytest.mark.parametrize(("line", "reason"), REFUSED.items())
+def test_what_is_not_in_the_subset(tmp_path, monkeypatch, line, reason):
+    text = f'''
+from dataclasses import dataclass
+from math import sqrt
+from loomfmu.variables import Component, output
+
+@dataclass(slots=True)
+class Odd(Component):
+    """Odd."""
+
+    value: float = output("1", "A value")
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Step."""
+        x = time
+        {line}
+        self.value = sqrt(x)
+        return 0
+'''
+    (tmp_path / "odd.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(__import__("sys").modules, "odd", raising=False)
+    odd = __import__("odd").Odd
+    with pytest.raises(TranslationError, match=re.escape(reason)):
+        translate(odd)
+
+
+def test_only_variables_are_shown_in_problems():
+    class Other(COMPONENTS["MainShaft"]):
+        """Another."""
+
+        problems = (Problem("{{x}} {speed}"), Problem("at {place}"))
+
+    with pytest.raises(ValueError, match=r"Other: a problem shows \{place\}, which is no variable"):
+        tables(Other, "token")
+
+
+HOST = """
+#include "fmi2.c"
+static int marks;
+static void logger(void *e, fmi2String i, fmi2Status s, fmi2String c, fmi2String m, ...)
+{
+    char text[200];
+    (void)e; (void)i; (void)s; (void)c;
+    snprintf(text, sizeof text, m, "never", "shown");
+    puts(text);
+    marks++;
+}
+int main(void)
+{
+    fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, NULL};
+    fmi2ValueReference share = 0;
+    fmi2Real value = 1.5;
+    fmi2Component c = fmi2Instantiate("100 %s %n", fmi2CoSimulation, MODEL_TOKEN, "", &callbacks, 0, 1);
+    if (c == NULL || fmi2SetReal(c, &share, 1, &value) != fmi2Error || marks != 1) return 1;
+    fmi2FreeInstance(c);
+    return 0;
+}
+"""
+
+
+def test_messages_are_safe_for_hosts_that_take_them_for_formats(gcc, tmp_path, monkeypatch):
+    for file, text in sources(toys.Arithmetic).items():
+        (tmp_path / file).write_text(text)
+    (tmp_path / "host.c").write_text(HOST)
+    call = [gcc, "-std=c99", *WARNINGS, "-Wno-format-nonliteral", "-o", "host", "host.c", "-lm"]
+    run = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    # a locale with a decimal comma changes nothing either: the host has set none, C's own is used
+    run = subprocess.run([tmp_path / "host"], capture_output=True, text=True, env=os.environ, check=True)
+    assert run.stdout == "share = 150 % is outside [0, 100] %\n"

@@ -1,0 +1,59 @@
+"""Every scene in sims/ runs by the command, and what it claims is true."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from live_fmus import fmu_cache
+
+from loomfmu import Trace
+
+__all__ = ["fmu_cache"]
+
+SIMS = Path(__file__).parents[2] / "sims"
+SCENES = sorted(path.relative_to(SIMS).as_posix() for path in SIMS.glob("*.toml"))
+
+
+def run(scene: str, directory: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "loomfmu.cli", "run", str(SIMS / scene), *arguments]
+    return subprocess.run(command, cwd=directory, capture_output=True, text=True, timeout=120)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
+    done = run(scene, tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "FAILS" not in done.stdout
+    with Trace(tmp_path / "results" / f"{Path(scene).stem}.h5") as trace:
+        assert trace.status == "complete"
+        assert trace.verdicts, "a scene claims something"
+        assert all(verdict["holds"] for verdict in trace.verdicts)
+
+
+def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> None:
+    done = run("wl680_3600.toml", tmp_path, "--set", "shaft.speed=700rpm")
+    assert done.returncode == 1, done.stderr
+    (failed,) = (line for line in done.stdout.splitlines() if "FAILS" in line)
+    assert "the belt does not buckle: lowest margin" in failed
+    assert os.listdir(tmp_path / "results") == ["wl680_3600.h5"]
+    with Trace(tmp_path / "results" / "wl680_3600.h5") as trace:
+        failed_ones = [verdict for verdict in trace.verdicts if not verdict["holds"]]
+        assert [verdict["signal"] for verdict in failed_ones] == ["belt.lowest_margin"]
+        # the margin follows the square of the speed over the limit of 681.8 rev/min, 1 - (700 / 681.8)^2;
+        # both are extremes of curves between samples, equal to some 1e-6
+        limit = trace["belt.lowest_speed_limit"][-1]
+        speed = trace["shaft.velocity"][-1]
+        assert abs(failed_ones[0]["worst"] - (1 - (speed / limit) ** 2)) < 1e-5
+        assert bool(trace["belt.buckled"][-1])
+
+
+@pytest.mark.parametrize(("speed", "status"), [("681 rpm", 0), ("683 rpm", 1)])
+def test_the_margin_vanishes_at_the_speed_limit(tmp_path: Path, speed: str, status: int) -> None:
+    # 681.80 rev/min by the equations, 685 as published
+    scene = (SIMS / "wl680_3600.toml").read_text().split("[[claims]]")[0]
+    (tmp_path / "limit.toml").write_text(scene + '[[claims]]\nkind = "lowest_margin"\nbound = 0.0\n')
+    once = ("--set", "revolutions=1", "--set", f"shaft.speed={speed}")
+    done = run(str(tmp_path / "limit.toml"), tmp_path, *once)
+    assert done.returncode == status, done.stdout + done.stderr
