@@ -4,6 +4,9 @@ import difflib
 from collections.abc import Iterable
 
 
+MOST_SHOWN = 16  # names that a message lists
+
+
 class LoomfmuError(Exception):
     """Bad input, or an FMU that failed; its text is the one line that a user sees."""
 
@@ -18,4 +21,5 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     if near:
         return f"; did you mean {near[0]!r}?"
-    return f"; known: {', '.join(known)}" if known else ""
+    shown = ", ".join(known[:MOST_SHOWN]) + (", .." if len(known) > MOST_SHOWN else "")
+    return f"; known: {shown}" if known else ""

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,15 @@ import numpy as np
 import pytest
 from direct_loom import traced
 from live_fmus import fmu_cache
+from scipy.optimize import brentq
 
 from loomfmu import LoomfmuError, Trace, Verdict, judge
 from loomfmu.components import DobbyDrive
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.run import run
+from loomfmu.design import loom as loom_figures
+from loomfmu.physics.heald import lift_fraction
+from loomfmu.physics.rotor import SLOPED_SINE, rotor_law
 from loomfmu.traces import Channel, TraceWriter
 
 __all__ = ["fmu_cache"]
@@ -402,3 +407,76 @@ def test_a_claim_that_cannot_be_judged_is_refused_with_its_name(
     with pytest.raises(LoomfmuError) as raised:
         judge(loom(), **claim)
     assert str(raised.value).replace(loom().path.name, "loom_0.h5") == said
+
+
+WHOLE_LOOM = """
+revolutions = 1
+steps_per_revolution = 180
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+reed = true
+locks = true
+[shaft]
+speed = "600 rev/min"
+[heald]
+warp_ratio = 0.35
+"""
+
+
+def judged(tmp_path, claim: str):
+    """The one verdict of a claim on a small loom."""
+    scene = scenes.parse(WHOLE_LOOM + f"[[claims]]\n{claim}\n", "loom")
+    return run(scene, output=tmp_path / "loom.h5").claims[0]
+
+
+def test_a_bound_may_be_a_parameter_of_the_run(tmp_path):
+    verdict = judged(tmp_path, 'kind = "above"\nsignal = "belt.lowest_speed_limit"\nbound = "shaft.speed"')
+    assert verdict.holds
+    assert verdict.bound == pytest.approx(2 * math.pi * 10)  # 600 rev/min
+
+
+@pytest.mark.parametrize(
+    ("bound", "message"),
+    [
+        ("shaft.sped", "claim: bound = 'shaft.sped' is no parameter; did you mean 'shaft.speed'?"),
+        ("belt.head_mass", "claim: bound belt.head_mass is in kg, belt.lowest_speed_limit in rad/s"),
+    ],
+)
+def test_a_bound_that_is_no_fitting_parameter_is_refused(tmp_path, bound, message):
+    with pytest.raises(LoomfmuError, match=re.escape(message)):
+        judged(tmp_path, f'kind = "above"\nsignal = "belt.lowest_speed_limit"\nbound = "{bound}"')
+
+
+def test_the_rapier_head_needs_its_height_in_the_shed(tmp_path):
+    open_enough = judged(tmp_path, 'kind = "rapier_in_open_shed"\nhead_height = "18 mm"')
+    too_high = judged(tmp_path, 'kind = "rapier_in_open_shed"\nhead_height = "20 mm"')
+    assert open_enough.holds
+    assert not too_high.holds
+    # the head enters and leaves at the same distance from the transfer, where the sheds are as open:
+    # 0.35 * 98 mm * |1/2 - f| * 2 with the lift fraction f of the law at that angle
+    assert open_enough.worst == pytest.approx(too_high.worst, rel=1e-12)
+    _guide, travel = loom_figures._travel("WL680-3600")
+    entry = brentq(lambda angle: travel(angle)[0] - 0.243, 0.1, math.pi, xtol=1e-14)
+    angle = rotor_law(SLOPED_SINE, entry + math.pi, 0.5)[0]  # from the slow point half a turn before
+    opening = 2 * 0.35 * 0.098 * abs(0.5 - lift_fraction(angle, 0.0, 0.0)[0])
+    # samples of 2 deg joined by quintics: better than 1e-9 of the stroke
+    assert open_enough.worst == pytest.approx(opening, abs=1e-9)
+
+
+def test_the_reed_is_clear_of_the_rapier(tmp_path):
+    assert judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "40 mm"').holds
+    near = judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "60 mm"')
+    assert not near.holds
+    # the head enters at about 60 deg, when the reed has gone back 53 mm
+    assert 0.045 < near.worst < 0.060
+
+
+def test_the_pattern_locks_are_in_time_up_to_their_speed_limit(tmp_path):
+    """By torque the limit is 554 rev/min: at 600 the claim fails, at 540 it holds."""
+    assert not judged(tmp_path, 'kind = "locks_in_time"').holds
+    scene = scenes.parse(
+        WHOLE_LOOM + '[[claims]]\nkind = "locks_in_time"\n', "loom", {"shaft.speed": "540 rev/min"}
+    )
+    assert run(scene, output=tmp_path / "slow.h5").holds

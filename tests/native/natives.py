@@ -15,6 +15,7 @@ ALLOCATE = CFUNCTYPE(c_void_p, c_size_t, c_size_t)
 RELEASE = CFUNCTYPE(None, c_void_p)
 C_TYPES = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
+
 class Callbacks(Structure):
     """fmi2CallbackFunctions."""
 
@@ -23,6 +24,7 @@ class Callbacks(Structure):
         ("environment", c_void_p),
     )  # fmt: skip
 
+
 def library(fmu: Fmu) -> ctypes.CDLL:
     """The FMU's library, with the types of what is no int."""
     loaded = ctypes.CDLL(str(fmu.directory / "binaries" / platform / f"{fmu.identifier}.so"))
@@ -30,12 +32,13 @@ def library(fmu: Fmu) -> ctypes.CDLL:
     loaded.fmi2GetVersion.restype = loaded.fmi2GetTypesPlatform.restype = c_char_p
     return loaded
 
+
 class Native:
     """An instance of a native FMU. Nothing raises: calls return the FMI status."""
 
     def __init__(
-        self, fmu: Fmu, *, logging: bool = True, guid: str | None = None, name: str | None = "tested", kind: int = 1,
-        own_memory: bool = False,
+        self, fmu: Fmu, *, logging: bool = True, guid: str | None = None, name: str | None = "tested",
+        kind: int = 1, own_memory: bool = False,
     ) -> None:  # fmt: skip
         self.fmu = fmu
         self.library = library(fmu)
@@ -49,9 +52,14 @@ class Native:
         )
         self.component = c_void_p(
             self.library.fmi2Instantiate(
-                None if name is None else name.encode(), kind, (guid or fmu.guid).encode(), b"file:///nowhere",
-                byref(self.callbacks), 0, int(logging),
-            )  # fmt: skip
+                None if name is None else name.encode(),
+                kind,
+                (guid or fmu.guid).encode(),
+                b"file:///nowhere",
+                byref(self.callbacks),
+                0,
+                int(logging),
+            )
         )
 
     def _log(self, _environment: Any, _instance: bytes, status: int, category: bytes, text: bytes) -> None:
@@ -158,4 +166,3 @@ class Native:
 
     def drop(self, state: c_void_p) -> int:
         return self.call("FreeFMUstate", byref(state))
-

@@ -92,7 +92,9 @@ def test_inputs_without_given_derivatives_go_on_with_their_declared_rates(native
     component.shaft_velocity = 50.0 + SIZE * (300.0 + SIZE / 2.0 * 1e5)
     component.shaft_acceleration = 300.0 + SIZE * 1e5
     component.step(0.0, SIZE)
-    assert jerk.get("travel", "acceleration") == pytest.approx([component.travel, component.acceleration], rel=1e-14)
+    assert jerk.get("travel", "acceleration") == pytest.approx(
+        [component.travel, component.acceleration], rel=1e-14
+    )
 
 
 def test_derivatives_hold_for_one_step(native):
@@ -126,7 +128,10 @@ def test_better_than_holding_the_inputs(native):
                 instance.start(**values)
             assert instance.set(**values) == OK
             if derivatives:
-                rate = {("acceleration", 1): -432.0 * math.cos(angle), ("acceleration", 2): 25920.0 * math.sin(angle)}
+                rate = {
+                    ("acceleration", 1): -432.0 * math.cos(angle),
+                    ("acceleration", 2): 25920.0 * math.sin(angle),
+                }
                 assert instance.set_derivatives(rate) == OK
             assert instance.step(step * 0.05 / steps, 0.05 / steps) == OK
         return float(instance.get("displacement")[0])

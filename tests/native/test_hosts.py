@@ -62,7 +62,7 @@ def fuzzers(sources, gcc, tmp_path_factory) -> dict[str, Path]:
 
     def build(name: str) -> tuple[str, Path]:
         path = folder / name
-        call = ["-std=c99", "-O1", *SANITIZERS, f"-I{sources[name]}", "-o", path, HERE / "fuzz.c", "-lm"]
+        call = ["-std=c99", "-O0", *SANITIZERS, f"-I{sources[name]}", "-o", path, HERE / "fuzz.c", "-lm"]
         compiled(gcc, *call)
         return name, path
 

@@ -67,7 +67,9 @@ def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(buil
 
 @every_fmu
 def test_it_needs_nothing_but_libc_and_libm(built, name):
-    needed = {line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", binary(built[name])).splitlines()}
+    needed = {
+        line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", binary(built[name])).splitlines()
+    }
     assert needed <= {"linux-vdso.so.1", "libm.so.6", "libc.so.6", "ld-linux-x86-64.so.2"}
     versions = re.findall(r"GLIBC_(\d+)\.(\d+)", output_of("objdump", "-T", binary(built[name])))
     assert max((int(major), int(minor)) for major, minor in versions) <= (2, 17)
@@ -76,7 +78,9 @@ def test_it_needs_nothing_but_libc_and_libm(built, name):
 @every_fmu
 def test_it_exports_the_functions_of_the_standard_and_nothing_else(built, name):
     header = (native_builder.HEADERS / "fmi2Functions.h").read_text()
-    common, model_exchange, co_simulation = re.split(r"Functions for FMI2 for .*", header[: header.rindex("*/")])[:3]
+    common, model_exchange, co_simulation = re.split(
+        r"Functions for FMI2 for .*", header[: header.rindex("*/")]
+    )[:3]
     wanted = set(re.findall(r"#define (fmi2\w+) +fmi2FullName\(fmi2\w+\)", common + co_simulation))
     assert len(wanted) == 34 and "fmi2NewDiscreteStates" in model_exchange
     symbols = output_of("objdump", "-T", binary(built[name])).splitlines()
@@ -112,7 +116,9 @@ def test_all_it_holds_has_a_licence(built):
         assert "Redistribution and use" in zipped.read("documentation/licenses/fmi_headers.txt").decode()
     assert {"documentation/licenses/license.txt", "sources/fmi2Functions.h", "sources/component.c"} <= names
     assert not [name for name in names if name.endswith((".py", ".pyc"))]
-    description = ElementTree.fromstring(zipfile.ZipFile(built["MainShaft"].path).read("sources/buildDescription.xml"))
+    description = ElementTree.fromstring(
+        zipfile.ZipFile(built["MainShaft"].path).read("sources/buildDescription.xml")
+    )
     assert [file.get("name") for file in description.iter("SourceFile")] == ["fmi2.c"]
 
 
@@ -130,7 +136,9 @@ def test_a_fat_binary_holds_its_parts():
     joined = fat_binary([intel, arm])
     words = [int.from_bytes(joined[4 * n : 4 * n + 4], "big") for n in range(12)]
     assert words[:2] == [0xCAFEBABE, 2]
-    for part, (processor, kind, offset, size, alignment) in zip((intel, arm), (words[2:7], words[7:12]), strict=True):
+    for part, (processor, kind, offset, size, alignment) in zip(
+        (intel, arm), (words[2:7], words[7:12]), strict=True
+    ):
         assert joined[offset : offset + size] == part
         assert offset % 2**ALIGNMENT == 0 and alignment == ALIGNMENT
         assert processor.to_bytes(4, "little") == part[4:8] and kind.to_bytes(4, "little") == part[8:12]

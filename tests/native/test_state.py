@@ -53,7 +53,9 @@ def test_a_state_of_every_mode(native, name):
     run(instance, name, 0, 1)
     saved.append(instance.save())
     assert instance.call("Terminate") == OK
-    for state, following in zip(saved, ("SetupExperiment", "ExitInitializationMode", "Terminate"), strict=True):
+    for state, following in zip(
+        saved, ("SetupExperiment", "ExitInitializationMode", "Terminate"), strict=True
+    ):
         assert instance.call("SetFMUstate", state) == OK
         assert (instance.set_up() if following == "SetupExperiment" else instance.call(following)) == OK
         assert instance.drop(state) == OK

@@ -15,7 +15,6 @@ from natives import DISCARD, ERROR, OK
 
 import loomfmu
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import fmus
 from loomfmu.variables import Component, Variable, variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
@@ -45,10 +44,8 @@ def settable(component: type[Component], causality: str) -> st.SearchStrategy[di
     )
 
 
-steps = st.lists(
-    st.tuples(st.sampled_from([0.0, 1e-6, 1e-4, 1e-3, 3e-3, REVOLUTION / 8.0, 1.7 * REVOLUTION]), st.booleans()),
-    min_size=1, max_size=8,
-)  # fmt: skip
+sizes = st.sampled_from([0.0, 1e-6, 1e-4, 1e-3, 3e-3, REVOLUTION / 8.0, 1.7 * REVOLUTION])
+steps = st.lists(st.tuples(sizes, st.booleans()), min_size=1, max_size=8)
 
 
 def attempted(component: Component, method: str, *arguments: float) -> int | None:
@@ -62,7 +59,10 @@ def attempted(component: Component, method: str, *arguments: float) -> int | Non
 
 def compare(component: Component, native: Any) -> None:
     wanted = {v.name: getattr(component, v.name) for v in variables_of(type(component))}
-    if any(not isinstance(each, bool) and abs(each) > LARGEST_INTEGER and isinstance(each, int) for each in wanted.values()):
+    if any(
+        not isinstance(each, bool) and abs(each) > LARGEST_INTEGER and isinstance(each, int)
+        for each in wanted.values()
+    ):
         return  # FMI has no place for it
     for name, found in native.variables().items():
         assert same(found, wanted[name]), f"{name}: native {found!r}, component {wanted[name]!r}"
@@ -74,8 +74,14 @@ def test_random_parameters_inputs_and_steps(native, name):
     instance = native(name)
 
     @settings(max_examples=40)
-    @given(settable(component, "parameter"), st.lists(settable(component, "input"), min_size=9, max_size=9), steps)
-    def check(parameters: dict[str, Any], driven: list[dict[str, Any]], sizes: list[tuple[float, bool]]) -> None:
+    @given(
+        settable(component, "parameter"),
+        st.lists(settable(component, "input"), min_size=9, max_size=9),
+        steps,
+    )
+    def check(
+        parameters: dict[str, Any], driven: list[dict[str, Any]], sizes: list[tuple[float, bool]]
+    ) -> None:
         assert instance.call("Reset") == OK
         python = component(**parameters, **driven[0])
         assert (instance.set_up(), instance.set(**parameters, **driven[0])) == (OK, OK), instance.texts

@@ -54,7 +54,12 @@ def compiled(gcc, tmp_path_factory):
     assert run.returncode == 0, run.stderr
     library = ctypes.CDLL(str(folder / "every_way.so"))
     doubles, wholes = (ctypes.c_double, ctypes.c_double), (ctypes.c_int64, ctypes.c_int64)
-    for name, kinds in (("fmodulo", doubles), ("floor_division", doubles), ("modulo", wholes), ("division", wholes)):
+    for name, kinds in (
+        ("fmodulo", doubles),
+        ("floor_division", doubles),
+        ("modulo", wholes),
+        ("division", wholes),
+    ):
         getattr(library, name).argtypes, getattr(library, name).restype = kinds, kinds[0]
     library.whole.argtypes, library.whole.restype = [ctypes.c_double], ctypes.c_int64
     library.step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double]

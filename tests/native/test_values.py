@@ -65,7 +65,11 @@ def test_parameters_are_fixed_and_outputs_not_set(native):
 
 
 def test_references_of_another_kind(native):
-    for kind, reference, word in (("Real", 2, "Real"), ("Boolean", 0, "Boolean"), ("Integer", 999, "Integer")):
+    for kind, reference, word in (
+        ("Real", 2, "Real"),
+        ("Boolean", 0, "Boolean"),
+        ("Integer", 999, "Integer"),
+    ):
         instance = native("WeftInsertion").start()
         place = (c_double if kind == "Real" else c_int)()
         assert instance.call(f"Get{kind}", (c_uint * 1)(reference), c_size_t(1), byref(place)) == ERROR
@@ -215,11 +219,12 @@ def test_reset_is_a_new_instance(native):
 
 
 def test_a_native_one_is_used_like_a_live_one(native, live):
-    compiled, python = native("HealdFrame").start(pattern_length=5), live("HealdFrame").start(pattern_length=5)
+    compiled, python = (
+        native("HealdFrame").start(pattern_length=5),
+        live("HealdFrame").start(pattern_length=5),
+    )
     for step in range(100):
         for instance in (compiled, python):
             assert instance.set(rotor_angle=0.3 * step) == OK
             assert instance.step(step * 1e-3, 1e-3) == OK
         assert compiled.outputs() == python.outputs()
-
-

@@ -32,15 +32,26 @@ def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
         assert all(verdict["holds"] for verdict in trace.verdicts)
 
 
+BEYOND = sorted(path.name for path in (SIMS / "beyond_the_limit").glob("*.toml"))
+
+
+@pytest.mark.parametrize("scene", BEYOND)
+def test_a_loom_beyond_its_limit_fails_its_claims(tmp_path: Path, scene: str) -> None:
+    done = run(f"beyond_the_limit/{scene}", tmp_path)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "FAILS" in done.stdout
+
+
 def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> None:
     done = run("wl680_3600.toml", tmp_path, "--set", "shaft.speed=700rpm")
     assert done.returncode == 1, done.stderr
-    (failed,) = (line for line in done.stdout.splitlines() if "FAILS" in line)
-    assert "the belt does not buckle: lowest margin" in failed
+    failed = [line for line in done.stdout.splitlines() if "FAILS" in line]
+    assert "the belt does not buckle: lowest margin" in failed[0]
+    assert "the loom runs below its safe speed" in failed[1]
     assert os.listdir(tmp_path / "results") == ["wl680_3600.h5"]
     with Trace(tmp_path / "results" / "wl680_3600.h5") as trace:
         failed_ones = [verdict for verdict in trace.verdicts if not verdict["holds"]]
-        assert [verdict["signal"] for verdict in failed_ones] == ["belt.lowest_margin"]
+        assert [verdict["signal"] for verdict in failed_ones] == ["belt.lowest_margin", "belt.lowest_speed_limit"]
         # the margin follows the square of the speed over the limit of 681.8 rev/min, 1 - (700 / 681.8)^2;
         # both are extremes of curves between samples, equal to some 1e-6
         limit = trace["belt.lowest_speed_limit"][-1]

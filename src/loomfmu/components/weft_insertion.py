@@ -28,7 +28,7 @@ class WeftInsertion(ShaftDriven):
         Problem(
             "the planar four-bar does not close over the rocker's swing: crank_length = {crank_length},"
             " coupler_length = {coupler_length}, output_length = {output_length}, pivot at"
-            " ({pivot_x}, {pivot_y}), a dead point {closure} short"
+            " ({pivot_x}, {pivot_y}); its closure is {closure} and may not be negative"
         ),
         Problem("assembly = {assembly} is outside {{-1, 1}}"),
     )

@@ -10,6 +10,7 @@ the verdict says that it speaks of the samples.
 
 import inspect
 import math
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
@@ -57,7 +58,7 @@ def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], 
     for name, given in arguments.items():
         where = f"claim {kind!r}: {name}"
         several = name in ("window", "angles")
-        if given is None or name not in UNITS:
+        if given is None or name not in UNITS or names_parameter(name, given):
             continue
         if name == "window" and not (isinstance(given, list | tuple) and len(given) == 2):
             raise LoomfmuError(f"{where} = {given!r} is not [from, to] in shaft angle")
@@ -77,6 +78,11 @@ def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], 
                 raise LoomfmuError(f"{where} = {value:g} is outside (0, 0.5), shares of the stroke")
 
 
+def names_parameter(argument: str, given: Any) -> bool:
+    """Whether a bound is that of a parameter, such as "shaft.speed"."""
+    return argument == "bound" and isinstance(given, str) and bool(PARAMETER.fullmatch(given))
+
+
 def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
     """The signals that a claim needs to have been recorded, in a scene with these instances."""
     kind = claim.get("kind")
@@ -92,6 +98,8 @@ def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
         signals += [f"{heald}.{variable}" for heald in healds for variable in ("lift", "warp_height")]
     return signals
 
+
+PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")
 
 # arguments that are quantities, and their units; a bound's is that of its signal
 UNITS = {
@@ -122,12 +130,15 @@ NEEDS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 def above(trace: Trace, signal: str, bound: float | str, window: list[float | str] | None = None) -> Verdict:
-    """A signal stays at or above a bound: over the whole run, or in a window of shaft angles."""
+    """A signal stays at or above a bound: over the whole run, or in a window of shaft angles.
+
+    The bound is a quantity, or the name of a parameter of the run, such as "shaft.speed".
+    """
     return _bounded(trace, signal, bound, window, 1.0)
 
 
 def below(trace: Trace, signal: str, bound: float | str, window: list[float | str] | None = None) -> Verdict:
-    """A signal stays at or below a bound: over the whole run, or in a window of shaft angles."""
+    """A signal stays at or below a bound; see `above`."""
     return _bounded(trace, signal, bound, window, -1.0)
 
 
@@ -234,7 +245,10 @@ KINDS: dict[str, Callable[..., Verdict]] = {
 def _bounded(
     trace: Trace, signal: str, bound: float | str, window: list[float | str] | None, sign: float
 ) -> Verdict:
-    limit = units.parse(bound, trace.unit(signal))
+    if names_parameter("bound", bound):
+        limit = trace.parameter(str(bound))
+    else:
+        limit = units.parse(bound, trace.unit(signal))
     edges = None
     word = "above" if sign > 0 else "below"
     claim = f"stays {word}"
