@@ -211,9 +211,7 @@ def test_the_moving_frame_does_the_work(warp_force):
     step = 2.0 * pi / SLOW / steps
 
     def energy():
-        return (
-            0.5 * 15.0 * (damper.velocity + damper.rate) ** 2 + 0.5 * 4 * 5960.0 * damper.displacement**2
-        )
+        return 0.5 * 15.0 * (damper.velocity + damper.rate) ** 2 + 0.5 * 4 * 5960.0 * damper.displacement**2
 
     def powers():
         return (

@@ -51,7 +51,8 @@ def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> 
     assert os.listdir(tmp_path / "results") == ["wl680_3600.h5"]
     with Trace(tmp_path / "results" / "wl680_3600.h5") as trace:
         failed_ones = [verdict for verdict in trace.verdicts if not verdict["holds"]]
-        assert [verdict["signal"] for verdict in failed_ones] == ["belt.lowest_margin", "belt.lowest_speed_limit"]
+        signals = [verdict["signal"] for verdict in failed_ones]
+        assert signals == ["belt.lowest_margin", "belt.lowest_speed_limit"]
         # the margin follows the square of the speed over the limit of 681.8 rev/min, 1 - (700 / 681.8)^2;
         # both are extremes of curves between samples, equal to some 1e-6
         limit = trace["belt.lowest_speed_limit"][-1]
