@@ -388,3 +388,12 @@ def test_parameters_of_a_machine_reach_the_monitor():
     published = {"head_length": 0.55, "idle_travel": 0.322, "head_mass": 0.1134}
     # grams and millimetres are converted with one rounding
     assert parameters("BeltMonitor", machine=WIDE, head="GS900 right") == pytest.approx(published, rel=1e-15)
+
+
+def test_samples_closer_than_their_squares_can_be_told_apart_are_one():
+    """A shaft that turns by 1e-232 rad between samples: the square of that underflows."""
+    belt = BeltMonitor(follow_shaft=True, inputs_at_step_end=True)
+    assert belt.initialize(0.0) == 0
+    belt.shaft_angle = 1e-232
+    assert belt.step(0.0, 1e-200) == 0
+    assert belt.lowest_margin == pytest.approx(belt.margin)

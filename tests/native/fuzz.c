@@ -213,14 +213,18 @@ static void life(fmi2Component component)
     chosen[1] = names[pick(4)];
     switch (pick(10)) {
     case 0: (void)fmi2SetDebugLogging(component, (int)pick(2), pick(3), pick(20) ? chosen : NULL); break;
-    case 1: (void)fmi2SetupExperiment(component, 0, 0.0, pick(4) ? 0.0 : any_real(), pick(5) == 0, any_real()); break;
+    case 1:
+        (void)fmi2SetupExperiment(component, 0, 0.0, pick(4) ? 0.0 : any_real(), pick(5) == 0, any_real());
+        break;
     case 2:
     case 3: (void)fmi2EnterInitializationMode(component); break;
     case 4:
     case 5: (void)fmi2ExitInitializationMode(component); break;
     case 6: (void)(pick(8) ? fmi2OK : fmi2Terminate(component)); break;
     case 7: (void)(pick(20) ? fmi2OK : fmi2CancelStep(component)); break;
-    case 8: (void)(pick(20) ? fmi2OK : fmi2GetDirectionalDerivative(component, NULL, 0, NULL, 0, NULL, NULL)); break;
+    case 8:
+        (void)(pick(20) ? fmi2OK : fmi2GetDirectionalDerivative(component, NULL, 0, NULL, 0, NULL, NULL));
+        break;
     default: (void)(pick(4) ? fmi2OK : fmi2Reset(component)); break;
     }
 }
@@ -248,8 +252,9 @@ static void call(fmi2Component *component, fmi2FMUstate *saved)
     static const fmi2CallbackFunctions full = {logger, allocate, release, NULL, NULL};
     if (*component == NULL) {
         starving = pick(20) == 0;
-        *component = fmi2Instantiate(pick(20) ? "fuzz %s%n" : pick(2) ? NULL : " ", pick(20) ? fmi2CoSimulation : (fmi2Type)pick(3),
-                                     any_token(), NULL, pick(50) ? &full : NULL, 0, (int)pick(2));
+        *component = fmi2Instantiate(pick(20) ? "fuzz %s%n" : pick(2) ? NULL : " ",
+                                     pick(20) ? fmi2CoSimulation : (fmi2Type)pick(3), any_token(), NULL,
+                                     pick(50) ? &full : NULL, 0, (int)pick(2));
         return;
     }
     if (((Instance *)*component)->state.mode == BROKEN && pick(3) == 0) {

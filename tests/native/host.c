@@ -58,7 +58,8 @@ int main(int count, char **words)
     LOAD(fmi2GetBooleanTYPE, fmi2GetBoolean)
     LOAD(fmi2TerminateTYPE, fmi2Terminate)
     LOAD(fmi2FreeInstanceTYPE, fmi2FreeInstance)
-    component = fmi2Instantiate("alone", fmi2CoSimulation, words[2], "file:///", &callbacks, fmi2False, fmi2True);
+    component = fmi2Instantiate("alone", fmi2CoSimulation, words[2], "file:///", &callbacks, fmi2False,
+                                fmi2True);
     if (component == NULL) {
         return 4;
     }

@@ -17,6 +17,9 @@ from ..physics.shaft import carried
 from ..variables import Problem, input_, output, parameter, state
 from .shaft_driven import ShaftDriven
 
+# Time [s] and shaft angle [rad] below which two samples are one: their squares would underflow
+SHORTEST = 1e-15
+
 
 @dataclass(slots=True)
 class BeltMonitor(ShaftDriven):
@@ -135,7 +138,7 @@ class BeltMonitor(ShaftDriven):
         self.take_sample(time, step_size if self.inputs_at_step_end else 0.0)
         duration = at - self.sampled_time
         self.judge(duration)
-        if duration > 0.0:
+        if duration > SHORTEST:
             self.acceleration_rate = (self.acceleration - self.sampled_acceleration) / duration
             self.bend_rate = (self.joined_bend - self.sampled_bend) / duration
         self.remember(at)
@@ -258,11 +261,11 @@ class BeltMonitor(ShaftDriven):
                 self.lowest_speed_limit = limit
         turn = fabs(self.joined_angle - self.sampled_angle)
         outside = self.travel > guide or self.sampled_travel > guide
-        if duration > 0.0 and outside and turn <= 0.25 * pi:
+        if duration > SHORTEST and outside and turn <= 0.25 * pi:
             if force > 0.0 or self.head_mass * self.sampled_acceleration + self.sampled_force > 0.0:
                 self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
             pushed = self.joined_bend > 0.0 or self.sampled_bend > 0.0
-            if pushed and self.joined_turning and self.sampled_turning and turn > 0.0:
+            if pushed and self.joined_turning and self.sampled_turning and turn > SHORTEST:
                 self.lowest_speed_limit = self.lowest_between(True, self.lowest_speed_limit, duration)
         if self.lowest_margin < 0.0:
             self.buckled = True

@@ -41,12 +41,17 @@ def build(name: str, directory: Path) -> Path:
 
     Raises KeyError for an unknown name and OSError where the directory cannot be written.
     """
+    return write(name, directory, archive(COMPONENTS[name]))
+
+
+def write(name: str, directory: Path, content: bytes) -> Path:
+    """Write an FMU into a directory, all of it or nothing, and return its path."""
     directory.mkdir(parents=True, exist_ok=True)
     target = directory / f"{name}.fmu"
     handle, temporary = tempfile.mkstemp(dir=directory, prefix=f".{name}.", suffix=".fmu")
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(archive(COMPONENTS[name]))
+            stream.write(content)
         Path(temporary).replace(target)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
@@ -56,13 +61,18 @@ def build(name: str, directory: Path) -> Path:
 
 def archive(component: type[Component]) -> bytes:
     """The FMU as bytes."""
+    return zipped(_contents(component))
+
+
+def zipped(contents: dict[str, bytes]) -> bytes:
+    """Files by their names as a zip, the same bytes for the same files."""
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as zipped:
-        for name, content in sorted(_contents(component).items()):
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archived:
+        for name, content in sorted(contents.items()):
             entry = zipfile.ZipInfo(name, EARLIEST)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
-            zipped.writestr(entry, content)
+            archived.writestr(entry, content)
     return buffer.getvalue()
 
 
@@ -75,9 +85,9 @@ def write_readmes() -> None:
 
 
 def guid(component: type[Component]) -> str:
-    """Identity of an FMU: of its variables, its source and the slave that runs it."""
-    digest = hashlib.sha256()
-    for part in (_rows(component), flatten(component), _slave_source(), version()):
+    """Identity of an FMU: of its model description, its source and the slave that runs it."""
+    digest = hashlib.sha256(model_description(component, "", version()))
+    for part in (_rows(component), flatten(component), _slave_source()):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
 
@@ -95,8 +105,8 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
         "model.png": (source / "icon.png").read_bytes(),
         "documentation/index.html": documentation.page(name, readme),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
-        "documentation/licenses/license.txt": _license("loomfmu"),
-        "documentation/licenses/pythonfmu.txt": _license("pythonfmu"),
+        "documentation/licenses/license.txt": license_of("loomfmu"),
+        "documentation/licenses/pythonfmu.txt": license_of("pythonfmu"),
         "resources/slavemodule.txt": f"{package}_entry".encode(),
         f"resources/{package}_entry.py": _entry(component, package, identity).encode(),
         f"resources/{package}/__init__.py": b"",
@@ -155,7 +165,7 @@ def _slave_source() -> str:
     return Path(live_slave.__file__).read_text(encoding="utf-8")
 
 
-def _license(distribution: str) -> bytes:
+def license_of(distribution: str) -> bytes:
     """The licence text that a distribution carries, or that lies at the root of a checkout."""
     for file in metadata.files(distribution) or ():
         if "license" in file.name.lower():

@@ -11,8 +11,13 @@ DEFAULT_STOP_TIME = 1.0
 DEFAULT_STEP_SIZE = 1e-4
 
 
-def model_description(component: type[Component], guid: str, version: str) -> bytes:
-    """The model description as XML text, the same bytes for the same declarations."""
+def model_description(
+    component: type[Component], guid: str, version: str, native: dict[str, str] | None = None
+) -> bytes:
+    """The model description as XML text, the same bytes for the same declarations.
+
+    `native` holds what the native flavour can do beyond the live one.
+    """
     variables = variables_of(component)
     name = component.__name__
     root = Element(
@@ -26,19 +31,20 @@ def model_description(component: type[Component], guid: str, version: str) -> by
         generationTool=f"loomfmu {version}",
         variableNamingConvention="flat",
     )
-    SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=name,
-        needsExecutionTool="false",
-        canHandleVariableCommunicationStepSize="true",
-        canInterpolateInputs="false",
-        canBeInstantiatedOnlyOncePerProcess="false",
-        canNotUseMemoryManagementFunctions="true",
-        canGetAndSetFMUstate="true",
-        canSerializeFMUstate="true",
-    )
-    _units(root, variables)
+    capabilities = {
+        "modelIdentifier": name,
+        "needsExecutionTool": "false",
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": "false",
+        "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canNotUseMemoryManagementFunctions": "true",
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+    }
+    kind = SubElement(root, "CoSimulation", capabilities | (native or {}))
+    if native is not None:
+        SubElement(SubElement(kind, "SourceFiles"), "File", name="fmi2.c")
+    unit_definitions(root, variables)
     _types(root, name, variables)
     categories = SubElement(root, "LogCategories")
     for category, description in CATEGORIES.values():
@@ -56,9 +62,9 @@ def model_description(component: type[Component], guid: str, version: str) -> by
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
-def _units(root: Element, variables: tuple[Variable, ...]) -> None:
+def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:
     """Every unit in use, with its SI exponents and its display units."""
-    displays: dict[str, set[str]] = {}
+    displays: dict[str, set[str]] = {name: {name} for name in also}
     for variable in variables:
         if variable.type is float:
             displays.setdefault(variable.unit, set()).add(variable.display)
@@ -97,17 +103,22 @@ def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> 
         variability=variable.variability,
         description=variable.description,
     )
+    if not variable.settable:
+        scalar.set("initial", "calculated")
+    kind = "Enumeration" if variable.choices else FMI_TYPES[variable.type]
+    SubElement(scalar, kind, attributes_of(variable, model))
+
+
+def attributes_of(variable: Variable, model: str) -> dict[str, str]:
+    """Start, limits, unit and type of a variable, which FMI 2 and FMI 3 call by the same names."""
     attributes: dict[str, str] = {}
-    kind = FMI_TYPES[variable.type]
     if variable.settable:
         attributes["start"] = _text(variable.start)
-    else:
-        scalar.set("initial", "calculated")
-    if kind != "Boolean":
+    if variable.type is not bool:
         for key, value in (("min", variable.minimum), ("max", variable.maximum)):
             if value is not None:
                 attributes[key] = _text(variable.type(value))
-    if kind == "Real":
+    if variable.type is float:
         attributes["unit"] = variable.unit
         if variable.display != variable.unit:
             attributes["displayUnit"] = variable.display
@@ -116,9 +127,8 @@ def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> 
         if variable.unbounded:
             attributes["unbounded"] = "true"
     if variable.choices:
-        kind = "Enumeration"
         attributes["declaredType"] = f"{model}.{variable.name}"
-    SubElement(scalar, kind, attributes)
+    return attributes
 
 
 def _text(value: float | int | bool) -> str:

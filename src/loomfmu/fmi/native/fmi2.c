@@ -1,0 +1,209 @@
+/* FMI 2.0 for co-simulation: the functions of the standard over an instance of the component. */
+#include "component.c"
+#include "fmi2Functions.h"
+
+typedef struct {
+    fmi2CallbackLogger logger;
+    fmi2CallbackAllocateMemory allocate;
+    fmi2CallbackFreeMemory release;
+    fmi2ComponentEnvironment environment;
+} Host;
+
+#include "instance.h"
+
+static const char *const kind_names[] = {"Real", "Integer", "Boolean"};
+
+static void *fmu_allocate(const Host *host, size_t size)
+{
+    return host->allocate != NULL ? host->allocate(1, size) : calloc(1, size);
+}
+
+static void fmu_release(const Host *host, void *memory)
+{
+    if (host->allocate != NULL) {
+        host->release(memory);
+    } else {
+        free(memory);
+    }
+}
+
+#define MODES (INSTANTIATED | INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN)
+
+#include "messages.c"
+#include "instance.c"
+#include "values.c"
+#include "carry.c"
+#include "states.c"
+
+/* Where functions may be called: the table of calling sequences in section 4.2.4 of the standard. */
+#define ALWAYS MODES
+#define READING (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN)
+#define SETTING (INSTANTIATED | INITIALIZING | STEPPING)
+#define STEPPED (STEPPING | STEP_FAILED | TERMINATED)
+
+/* Hosts take the message for a format, as the standard has it, or for a text: with each per cent sign
+ * doubled it is safe for both. */
+static void fmu_tell(Instance *instance, Status status, const char *category, const char *message)
+{
+    char format[2 * TEXT_SIZE];
+    size_t length = 0;
+    if (instance->host.logger == NULL) {
+        return;
+    }
+    for (; *message != '\0' && length < sizeof format - 2; message++) {
+        if (*message == '%') {
+            format[length++] = '%';
+        }
+        format[length++] = *message;
+    }
+    format[length] = '\0';
+    instance->host.logger(instance->host.environment, instance->name, (fmi2Status)status, category, format);
+}
+
+/* ---- life cycle */
+
+const char *fmi2GetTypesPlatform(void)
+{
+    return fmi2TypesPlatform;
+}
+
+const char *fmi2GetVersion(void)
+{
+    return fmi2Version;
+}
+
+/* Why an instance cannot be made, or NULL. */
+static const char *fmu_refusal(fmi2String name, fmi2Type type, fmi2String token)
+{
+    if (name == NULL || name[strspn(name, " \t\r\n")] == '\0') {
+        return "an instance needs a name";
+    }
+    if (type != fmi2CoSimulation) {
+        return MODEL_NAME " is for co-simulation only";
+    }
+    if (token == NULL || strcmp(token, MODEL_TOKEN) != 0) {
+        return "the GUID is not that of " MODEL_NAME ", " MODEL_TOKEN;
+    }
+    return NULL;
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, fmi2String resources,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                              fmi2Boolean logging)
+{
+    Host host = {NULL, NULL, NULL, NULL};
+    const char *reason = fmu_refusal(name, type, token);
+    Instance *instance = NULL;
+    (void)resources; /* there are none */
+    (void)visible;
+    if (functions == NULL) {
+        return NULL;
+    }
+    host.logger = functions->logger;
+    host.environment = functions->componentEnvironment;
+    if (functions->allocateMemory != NULL && functions->freeMemory != NULL) {
+        host.allocate = functions->allocateMemory;
+        host.release = functions->freeMemory;
+    }
+    if (reason == NULL) {
+        instance = fmu_allocate(&host, sizeof *instance + strlen(name) + 1);
+        reason = "there is no memory for an instance";
+    }
+    if (instance == NULL) {
+        if (host.logger != NULL) {
+            host.logger(host.environment, name != NULL ? name : "", fmi2Error, categories[FAILED - 1], reason);
+        }
+        return NULL;
+    }
+    instance->host = host;
+    instance->name = (char *)(instance + 1);
+    memcpy(instance->name, name, strlen(name) + 1);
+    fmu_reset(instance);
+    (void)fmu_set_logging(instance, logging != fmi2False, 0, NULL);
+    return instance;
+}
+
+void fmi2FreeInstance(fmi2Component component)
+{
+    Instance *instance = component;
+    if (instance != NULL) {
+        Host host = instance->host;
+        fmu_release(&host, instance);
+    }
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean on, size_t count,
+                               const fmi2String names[])
+{
+    Instance *instance = component;
+    if (!fmu_allowed(instance, ALWAYS, "fmi2SetDebugLogging")) {
+        return fmi2Error;
+    }
+    return (fmi2Status)fmu_set_logging(instance, on != fmi2False, count, names);
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined, fmi2Real tolerance,
+                               fmi2Real start_time, fmi2Boolean stop_time_defined, fmi2Real stop_time)
+{
+    Instance *instance = component;
+    (void)tolerance_defined; /* nothing here is solved to a tolerance */
+    (void)tolerance;
+    if (!fmu_allowed(instance, INSTANTIATED, "fmi2SetupExperiment")) {
+        return fmi2Error;
+    }
+    if (!isfinite(start_time) || (stop_time_defined != fmi2False && !(stop_time >= start_time))) {
+        return (fmi2Status)fmu_complain(instance, FAILED,
+                                        "the start time is not finite or after the stop time");
+    }
+    instance->state.time = start_time;
+    instance->state.stop_time = stop_time_defined != fmi2False ? stop_time : HUGE_VAL;
+    instance->state.set_up = true;
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component component)
+{
+    Instance *instance = component;
+    if (!fmu_allowed(instance, INSTANTIATED, "fmi2EnterInitializationMode")) {
+        return fmi2Error;
+    }
+    if (!instance->state.set_up) {
+        return (fmi2Status)fmu_complain(instance, FAILED, "fmi2SetupExperiment is to be called first");
+    }
+    instance->state.mode = INITIALIZING;
+    instance->state.stale = true;
+    return fmi2OK;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component component)
+{
+    Instance *instance = component;
+    if (!fmu_allowed(instance, INITIALIZING, "fmi2ExitInitializationMode") || fmu_refresh(instance) != OK) {
+        return fmi2Error;
+    }
+    instance->state.mode = STEPPING;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Terminate(fmi2Component component)
+{
+    Instance *instance = component;
+    if (!fmu_allowed(instance, STEPPING | STEP_FAILED, "fmi2Terminate")) {
+        return fmi2Error;
+    }
+    instance->state.mode = TERMINATED;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component component)
+{
+    Instance *instance = component;
+    if (!fmu_allowed(instance, ALWAYS, "fmi2Reset")) {
+        return fmi2Error;
+    }
+    fmu_reset(instance);
+    return fmi2OK;
+}
+
+#include "fmi2_values.c"
+#include "fmi2_steps.c"

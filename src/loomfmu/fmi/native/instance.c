@@ -1,0 +1,138 @@
+/* The life of an instance: start, steps, end. */
+
+static void fmu_reset(Instance *instance)
+{
+    State *state = &instance->state;
+    memset(state, 0, sizeof *state);
+    memset(instance->warned, 0, sizeof instance->warned);
+    component_start(&state->component);
+    state->mode = INSTANTIATED;
+    state->stop_time = HUGE_VAL;
+    state->stale = true;
+    instance->last_step = OK;
+}
+
+/* Where the host stands, in words. */
+static const char *fmu_mode_name(int mode)
+{
+    switch (mode) {
+    case INSTANTIATED:
+        return "instantiated";
+    case INITIALIZING:
+        return "initialization mode";
+    case STEPPING:
+        return "step mode";
+    case STEP_FAILED:
+        return "step failed";
+    case TERMINATED:
+        return "terminated";
+    case EVENTS:
+        return "event mode";
+    case CONTINUOUS_TIME:
+        return "continuous-time mode";
+    case BROKEN:
+        break;
+    }
+    return "error";
+}
+
+/* Whether a function may be called now; tells if not. */
+static bool fmu_allowed(Instance *instance, int modes, const char *function)
+{
+    char message[256];
+    if (instance == NULL) {
+        return false;
+    }
+    if ((instance->state.mode & modes) != 0) {
+        return true;
+    }
+    (void)snprintf(message, sizeof message, "%s is not allowed in the state '%s'", function,
+                   fmu_mode_name(instance->state.mode));
+    (void)fmu_complain(instance, FAILED, message);
+    return false;
+}
+
+/* A result that is not finite is none: Python would have raised an exception on the way to it. */
+static Status fmu_check_finite(Instance *instance, bool at_start, double time, Status status)
+{
+    int i;
+    for (i = 0; i < VARIABLES; i++) {
+        const Row *row = &rows[i];
+        if (row->kind == REAL && row->causality > INPUT && !isfinite(fmu_value(instance, row))) {
+            Text text;
+            fmu_begin(&text);
+            fmu_add(&text, "at ");
+            if (at_start) {
+                fmu_add(&text, "the start");
+            } else {
+                fmu_add_time(&text, time);
+                fmu_add(&text, " s");
+            }
+            fmu_add(&text, ": ");
+            fmu_add(&text, row->name);
+            fmu_add(&text, " is not finite");
+            return fmu_complain(instance, status, text.text);
+        }
+    }
+    return OK;
+}
+
+/* Computes the start from the parameters and inputs as they now stand. */
+static Status fmu_refresh(Instance *instance)
+{
+    State *state = &instance->state;
+    int64_t problem;
+    Status status = OK;
+    if (!state->stale) {
+        return OK;
+    }
+    state->stale = false;
+    problem = component_initialize(&state->component, state->time);
+    if (problem != 0) {
+        status = fmu_report(instance, problem, FAILED);
+    }
+    return status == OK ? fmu_check_finite(instance, true, state->time, FAILED) : status;
+}
+
+static Status fmu_complain_of_step(Instance *instance, Status status, double time, double size, const char *why)
+{
+    Text text;
+    fmu_begin(&text);
+    fmu_add(&text, "a step from ");
+    fmu_add_time(&text, time);
+    fmu_add(&text, " s by ");
+    fmu_add_time(&text, size);
+    fmu_add(&text, why);
+    return fmu_complain(instance, status, text.text);
+}
+
+/* Whether a step is one that could be made at all. */
+static Status fmu_check_step(Instance *instance, double time, double size)
+{
+    double slack = 1e-6 * size + 1e-9 * fabs(instance->state.stop_time); /* what a sum of steps may be off */
+    if (!isfinite(time) || !isfinite(size) || size < 0.0) {
+        return fmu_complain_of_step(instance, DISCARD, time, size, " s: finite and forward is asked for");
+    }
+    if (time + size > instance->state.stop_time + slack) {
+        return fmu_complain_of_step(instance, FAILED, time, size, " s goes past the stop time");
+    }
+    return OK;
+}
+
+/* One step. Where it cannot be made the component stays as it was. */
+static Status fmu_step(Instance *instance, double time, double size)
+{
+    State *state = &instance->state;
+    Component before = state->component;
+    int64_t problem = component_step(&state->component, time, size);
+    Status status = problem != 0 ? fmu_report(instance, problem, DISCARD) : OK;
+    if (status == OK) {
+        status = fmu_check_finite(instance, false, time, DISCARD);
+    }
+    if (status == OK) {
+        state->time = time + size;
+    } else {
+        state->component = before;
+    }
+    return status;
+}

@@ -1,0 +1,72 @@
+/* Integer and remainder arithmetic as Python has it, for the translated components. */
+#ifndef PYC_MATH_C_H
+#define PYC_MATH_C_H
+
+#include <math.h>
+#include <stdint.h>
+
+/* Where Python's unlimited integers end here: room is left for what is added to them. */
+#define PYC_LARGEST (INT64_C(1) << 60)
+
+/* A whole number as an integer. Python knows no largest one and raises on what is not finite; here
+ * the largest, or 0 for NaN, stands for it, and the step ends with outputs that are refused. */
+static inline int64_t pyc_whole(double value)
+{
+    if (value >= (double)PYC_LARGEST) {
+        return PYC_LARGEST;
+    }
+    if (value <= -(double)PYC_LARGEST) {
+        return -PYC_LARGEST;
+    }
+    return isnan(value) ? 0 : (int64_t)value;
+}
+
+/* Remainder with the sign of the divisor; 0 where Python raises. */
+static inline int64_t pyc_modulo(int64_t value, int64_t divisor)
+{
+    int64_t rest;
+    if (divisor == 0 || divisor == -1) {
+        return 0;
+    }
+    rest = value % divisor;
+    return rest != 0 && (rest < 0) != (divisor < 0) ? rest + divisor : rest;
+}
+
+static inline int64_t pyc_integer_division(int64_t value, int64_t divisor)
+{
+    if (divisor == 0) {
+        return 0;
+    }
+    if (divisor == -1) {
+        return value == INT64_MIN ? INT64_MAX : -value;
+    }
+    return value / divisor - (value % divisor != 0 && (value < 0) != (divisor < 0) ? 1 : 0);
+}
+
+/* Remainder with the sign of the divisor, as CPython's float_rem. */
+static inline double pyc_fmodulo(double value, double divisor)
+{
+    double rest = fmod(value, divisor);
+    if (rest != 0.0) {
+        return (divisor < 0.0) != (rest < 0.0) ? rest + divisor : rest;
+    }
+    return copysign(0.0, divisor);
+}
+
+/* As CPython's float_floor_div: consistent with the remainder, which floor(a / b) is not. */
+static inline double pyc_floor_division(double value, double divisor)
+{
+    double rest = fmod(value, divisor);
+    double quotient = (value - rest) / divisor;
+    double whole;
+    if (rest != 0.0 && (divisor < 0.0) != (rest < 0.0)) {
+        quotient -= 1.0;
+    }
+    if (quotient == 0.0) {
+        return copysign(0.0, value / divisor);
+    }
+    whole = floor(quotient);
+    return quotient - whole > 0.5 ? whole + 1.0 : whole;
+}
+
+#endif

@@ -1,0 +1,250 @@
+/* The state of an instance as bytes: the same on every machine, and refused if it is not ours.
+ *
+ * Layout, all numbers little-endian: "LOOMFMU" and the version of the layout, the token, the mode and
+ * flags, the times, all variables in the order of their references, what carries the inputs, a checksum.
+ */
+
+#define LAYOUT "LOOMFMU\1"
+#define TOKEN_SIZE (sizeof MODEL_TOKEN - 1)
+#define DERIVATIVES_SIZE ((size_t)VARIABLES * (1 + 8 * HIGHEST_ORDER))
+#define STATE_SIZE (8 + TOKEN_SIZE + 4 + 2 * 8 + (size_t)VARIABLES * 8 + DERIVATIVES_SIZE + 8)
+
+/* Bytes that are written, or read back in the same order. */
+typedef struct {
+    unsigned char *bytes;
+    bool writing;
+} Stream;
+
+static uint64_t fmu_pass_bits(Stream *stream, uint64_t bits, int count)
+{
+    uint64_t found = 0;
+    int i;
+    for (i = 0; i < count; i++) {
+        if (stream->writing) {
+            stream->bytes[i] = (unsigned char)(bits >> (8 * i) & 255U);
+        }
+        found |= (uint64_t)stream->bytes[i] << (8 * i);
+    }
+    stream->bytes += count;
+    return found;
+}
+
+static double fmu_pass_real(Stream *stream, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits = fmu_pass_bits(stream, bits, 8);
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static int64_t fmu_pass_integer(Stream *stream, int64_t value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits = fmu_pass_bits(stream, bits, 8);
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* One variable, in eight bytes whatever its kind. */
+static void fmu_pass_variable(Stream *stream, Component *component, const Row *row)
+{
+    void *place = (char *)component + row->offset;
+    if (row->kind == REAL) {
+        *(double *)place = fmu_pass_real(stream, *(double *)place);
+    } else if (row->kind == INTEGER) {
+        *(int64_t *)place = fmu_pass_integer(stream, *(int64_t *)place);
+    } else {
+        *(bool *)place = fmu_pass_bits(stream, *(bool *)place ? 1 : 0, 8) != 0;
+    }
+}
+
+/* Writes a state, or reads one: the same walk, so that both agree. */
+static void fmu_pass_state(Stream *stream, State *state)
+{
+    int i, order;
+    state->mode = (int)fmu_pass_bits(stream, (uint64_t)state->mode, 1);
+    state->set_up = fmu_pass_bits(stream, state->set_up ? 1 : 0, 1) != 0;
+    state->stale = fmu_pass_bits(stream, state->stale ? 1 : 0, 1) != 0;
+    state->carried = fmu_pass_bits(stream, state->carried ? 1 : 0, 1) != 0;
+    state->time = fmu_pass_real(stream, state->time);
+    state->stop_time = fmu_pass_real(stream, state->stop_time);
+    for (i = 0; i < VARIABLES; i++) {
+        fmu_pass_variable(stream, &state->component, &rows[i]);
+        state->given[i] = (unsigned char)fmu_pass_bits(stream, state->given[i], 1);
+        for (order = 0; order < HIGHEST_ORDER; order++) {
+            state->derivatives[i][order] = fmu_pass_real(stream, state->derivatives[i][order]);
+        }
+    }
+}
+
+/* FNV-1a: enough to find what was damaged on the way. */
+static uint64_t fmu_checksum(const unsigned char *bytes, size_t count)
+{
+    uint64_t sum = UINT64_C(14695981039346656037);
+    while (count-- > 0) {
+        sum = (sum ^ *bytes++) * UINT64_C(1099511628211);
+    }
+    return sum;
+}
+
+static void fmu_write_state(const State *state, unsigned char *bytes)
+{
+    State copy = *state;
+    Stream stream = {bytes + 8 + TOKEN_SIZE, true};
+    memcpy(bytes, LAYOUT, 8);
+    memcpy(bytes + 8, MODEL_TOKEN, TOKEN_SIZE);
+    fmu_pass_state(&stream, &copy);
+    (void)fmu_pass_bits(&stream, fmu_checksum(bytes, STATE_SIZE - 8), 8);
+}
+
+/* Whether a state is one that an instance can have been in. */
+static bool fmu_is_possible(const State *state)
+{
+    int i, order;
+    bool known = state->mode > 0 && (state->mode & ~MODES) == 0 && (state->mode & (state->mode - 1)) == 0;
+    if (!known || !isfinite(state->time) || isnan(state->stop_time)) {
+        return false;
+    }
+    for (i = 0; i < VARIABLES; i++) {
+        const char *place = (const char *)&state->component + rows[i].offset;
+        double value = 0.0;
+        if (rows[i].kind == REAL) {
+            value = *(const double *)(const void *)place;
+        } else if (rows[i].kind == INTEGER) {
+            value = (double)*(const int64_t *)(const void *)place;
+        }
+        if (!(value >= rows[i].low && value <= rows[i].high) || state->given[i] >= 1 << HIGHEST_ORDER) {
+            return false;
+        }
+        for (order = 0; order < HIGHEST_ORDER; order++) {
+            if (!isfinite(state->derivatives[i][order])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* The state that bytes hold; false if they hold none of this component. */
+static bool fmu_read_state(State *state, const unsigned char *bytes, size_t size)
+{
+    unsigned char copy[STATE_SIZE];
+    Stream stream = {copy, false};
+    if (size != STATE_SIZE) {
+        return false;
+    }
+    memcpy(copy, bytes, STATE_SIZE);
+    memset(state, 0, sizeof *state);
+    if (memcmp(copy, LAYOUT, 8) != 0 || memcmp(copy + 8, MODEL_TOKEN, TOKEN_SIZE) != 0) {
+        return false;
+    }
+    stream.bytes += 8 + TOKEN_SIZE;
+    fmu_pass_state(&stream, state);
+    if (fmu_pass_bits(&stream, 0, 8) != fmu_checksum(copy, STATE_SIZE - 8)) {
+        return false;
+    }
+    return fmu_is_possible(state);
+}
+
+/* A copy of the state in the host's hands. */
+typedef struct {
+    char mark[8];
+    State state;
+} Saved;
+
+/* The copy behind a handle, or NULL and a message. A handle that was never one cannot be told from one. */
+static Saved *fmu_saved(Instance *instance, void *handle)
+{
+    Saved *saved = handle;
+    if (saved != NULL && memcmp(saved->mark, LAYOUT, sizeof saved->mark) == 0) {
+        return saved;
+    }
+    (void)fmu_complain(instance, FAILED, "the FMU state is not one of this FMU");
+    return NULL;
+}
+
+/* A new copy for a handle that is NULL. */
+static Saved *fmu_provide(Instance *instance, void **handle)
+{
+    if (handle == NULL) {
+        (void)fmu_complain(instance, FAILED, "there is no place for an FMU state");
+        return NULL;
+    }
+    if (*handle == NULL) {
+        Saved *saved = fmu_allocate(&instance->host, sizeof *saved);
+        if (saved == NULL) {
+            (void)fmu_complain(instance, FAILED, "there is no memory for an FMU state");
+            return NULL;
+        }
+        memcpy(saved->mark, LAYOUT, sizeof saved->mark);
+        *handle = saved;
+    }
+    return fmu_saved(instance, *handle);
+}
+
+static Status fmu_save(Instance *instance, void **handle)
+{
+    State present = instance->state; /* a complaint would change it */
+    Saved *saved = fmu_provide(instance, handle);
+    if (saved == NULL) {
+        return FAILED;
+    }
+    saved->state = present;
+    return OK;
+}
+
+static Status fmu_restore(Instance *instance, void *handle)
+{
+    const Saved *saved = fmu_saved(instance, handle);
+    if (saved == NULL) {
+        return FAILED;
+    }
+    instance->state = saved->state;
+    return OK;
+}
+
+static Status fmu_forget(Instance *instance, void **handle)
+{
+    Saved *saved;
+    if (handle == NULL || *handle == NULL) {
+        return OK;
+    }
+    saved = fmu_saved(instance, *handle);
+    if (saved == NULL) {
+        return FAILED;
+    }
+    memset(saved->mark, 0, sizeof saved->mark);
+    fmu_release(&instance->host, saved);
+    *handle = NULL;
+    return OK;
+}
+
+static Status fmu_pack(Instance *instance, void *handle, void *bytes, size_t size)
+{
+    const Saved *saved = fmu_saved(instance, handle);
+    if (saved == NULL) {
+        return FAILED;
+    }
+    if (bytes == NULL || size < STATE_SIZE) {
+        return fmu_refuse(instance, "an FMU state needs %lu bytes%s", (unsigned long)STATE_SIZE, "");
+    }
+    fmu_write_state(&saved->state, bytes);
+    return OK;
+}
+
+static Status fmu_unpack(Instance *instance, const void *bytes, size_t size, void **handle)
+{
+    State read;
+    Saved *saved;
+    if (bytes == NULL || !fmu_read_state(&read, bytes, size)) {
+        return fmu_complain(instance, FAILED, "the bytes are not an FMU state of this FMU");
+    }
+    saved = fmu_provide(instance, handle);
+    if (saved == NULL) {
+        return FAILED;
+    }
+    saved->state = read;
+    return OK;
+}

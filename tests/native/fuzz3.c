@@ -1,0 +1,257 @@
+/* The host of fuzz.c for FMI 3: random calls to both interfaces, and random bytes for states. */
+#include "fmi3.c"
+
+#define INSTANCES 4
+#define SAVED 4
+
+static uint64_t seed;
+static long stepped, solved, unpacked, refused; /* that the fuzz gets somewhere */
+
+static unsigned pick(unsigned below)
+{
+    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (unsigned)(seed >> 33) % below;
+}
+
+static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category,
+                   fmi3String message)
+{
+    (void)environment;
+    if (category == NULL || message == NULL || message[0] == '\0' || status == fmi3OK || status > fmi3Error) {
+        abort();
+    }
+}
+
+static double any_real(void)
+{
+    static const double odd[] = {0.0, -0.0, 1.0, -1.0, 1e-300, 5e-324, 1e18, 1e300, -1e300, NAN, HUGE_VAL};
+    return pick(4) == 0 ? odd[pick(11)] : ((double)pick(2000001) - 1e6) * pow(10.0, (double)pick(16) - 12.0);
+}
+
+/* Mostly a value that the variable takes, so that calls get past the checks. */
+static double fitting_real(unsigned reference)
+{
+    double low, high;
+    if (reference >= VARIABLES || pick(12) == 0) {
+        return any_real();
+    }
+    low = rows[reference].low > -1e6 ? rows[reference].low : -1e3;
+    high = rows[reference].high < 1e6 ? rows[reference].high : 1e3;
+    return low + (high - low) * (double)pick(1000001) * 1e-6;
+}
+
+static unsigned any_reference(Kind kind, bool setting)
+{
+    unsigned tries;
+    for (tries = 0; tries < 100 && pick(40) != 0; tries++) {
+        unsigned reference = pick(VARIABLES);
+        if (rows[reference].kind == kind && (!setting || rows[reference].causality <= INPUT)) {
+            return reference;
+        }
+    }
+    return pick(2) ? pick(VARIABLES + 3) : 4294967295U;
+}
+
+static void values(fmi3Instance instance)
+{
+    unsigned references[5], function = pick(8);
+    double reals[5];
+    int64_t integers[5];
+    bool booleans[5];
+    const char *texts[5] = {"", "", "", "", ""};
+    size_t i, count = pick(5), given = pick(50) ? count : pick(6);
+    Kind kind = function % 4 == 0 ? REAL : function % 4 == 1 ? INTEGER : BOOLEAN;
+    for (i = 0; i < 5; i++) {
+        references[i] = any_reference(kind, function < 4);
+        reals[i] = fitting_real(references[i]);
+        integers[i] = pick(20) ? pyc_whole(fitting_real(references[i])) : pick(2) ? INT64_MIN : INT64_MAX;
+        booleans[i] = pick(2) != 0;
+    }
+    switch (function) {
+    case 0: (void)fmi3SetFloat64(instance, references, count, pick(60) ? reals : NULL, given); break;
+    case 1: (void)fmi3SetInt64(instance, references, count, integers, given); break;
+    case 2: (void)fmi3SetBoolean(instance, references, count, booleans, given); break;
+    case 3: (void)(pick(20) ? fmi3OK : fmi3SetString(instance, references, count, texts, given)); break;
+    case 4: (void)fmi3GetFloat64(instance, pick(60) ? references : NULL, count, reals, given); break;
+    case 5: (void)fmi3GetInt64(instance, references, count, integers, given); break;
+    case 6: (void)fmi3GetBoolean(instance, references, count, booleans, given); break;
+    default: (void)(pick(20) ? fmi3OK : fmi3GetUInt8(instance, NULL, count, NULL, given)); break;
+    }
+}
+
+/* Bytes of a true state, damaged or not, or any bytes at all, into a handle. */
+static void bytes(fmi3Instance instance, fmi3FMUState *saved)
+{
+    uint8_t content[STATE_SIZE + 64];
+    size_t i, size = pick(4) ? STATE_SIZE : pick((unsigned)sizeof content);
+    for (i = 0; i < size; i++) {
+        content[i] = (uint8_t)pick(256);
+    }
+    if (*saved != NULL && pick(3) != 0 && fmi3SerializeFMUState(instance, *saved, content, size) == fmi3OK) {
+        unsigned damage = pick(4);
+        while (damage-- > 0) {
+            content[pick(STATE_SIZE)] ^= (uint8_t)(1 << pick(8));
+        }
+        if (pick(3) == 0) { /* a checksum that fits lets damage pass on to the other checks */
+            Stream stream = {content + STATE_SIZE - 8, true};
+            memcpy(content, LAYOUT, 8);
+            memcpy(content + 8, MODEL_TOKEN, TOKEN_SIZE);
+            (void)fmu_pass_bits(&stream, fmu_checksum(content, STATE_SIZE - 8), 8);
+        }
+    }
+    if (fmi3DeserializeFMUState(instance, pick(60) ? content : NULL, size, saved) == fmi3OK) {
+        unpacked++;
+    } else {
+        refused++;
+    }
+}
+
+static void states(fmi3Instance instance, fmi3FMUState *saved)
+{
+    size_t size;
+    switch (pick(6)) {
+    case 0: (void)fmi3GetFMUState(instance, pick(60) ? saved : NULL); break;
+    case 1: (void)fmi3SetFMUState(instance, *saved); break;
+    case 2: (void)fmi3FreeFMUState(instance, pick(60) ? saved : NULL); break;
+    case 3: (void)fmi3SerializedFMUStateSize(instance, *saved, pick(60) ? &size : NULL); break;
+    default: bytes(instance, saved); break;
+    }
+}
+
+static void step(fmi3Instance instance)
+{
+    double time = pick(10) ? (double)pick(1000) * 1e-3 : any_real(), reached;
+    double size = pick(10) ? (double)pick(1000) * 1e-5 : any_real();
+    bool flags[3];
+    if (size > 1e3 && pick(50) != 0) {
+        size = 1e-3; /* a damper takes its time over an hour */
+    }
+    stepped += fmi3DoStep(instance, time, size, pick(2) != 0, &flags[0], &flags[1], &flags[2],
+                          pick(60) ? &reached : NULL) == fmi3OK;
+}
+
+static void solve(fmi3Instance instance)
+{
+    bool flags[5];
+    double next;
+    size_t count = pick(10) == 0;
+    switch (pick(9)) {
+    case 0: (void)fmi3EnterEventMode(instance); break;
+    case 1:
+        (void)fmi3UpdateDiscreteStates(instance, &flags[0], &flags[1], &flags[2], &flags[3], &flags[4],
+                                       pick(60) ? &next : NULL);
+        break;
+    case 2: (void)fmi3EnterContinuousTimeMode(instance); break;
+    case 3: (void)fmi3CompletedIntegratorStep(instance, true, &flags[0], pick(60) ? &flags[1] : NULL); break;
+    case 4: (void)fmi3GetContinuousStates(instance, &next, count); break;
+    case 5: (void)fmi3GetNumberOfEventIndicators(instance, pick(60) ? &count : NULL); break;
+    default:
+        solved += fmi3SetTime(instance, pick(10) ? (double)pick(1000) * 1e-3 : any_real()) == fmi3OK;
+        break;
+    }
+}
+
+static void start(fmi3Instance instance)
+{
+    (void)fmi3Reset(instance);
+    (void)fmi3EnterInitializationMode(instance, false, 0.0, 0.0, false, 0.0);
+    (void)fmi3ExitInitializationMode(instance);
+    if (((Instance *)instance)->state.mode == EVENTS) {
+        (void)fmi3EnterContinuousTimeMode(instance);
+    }
+}
+
+static void life(fmi3Instance instance)
+{
+    const char *names[] = {"logStatusWarning", "none", NULL};
+    const char *chosen[1];
+    unsigned reference = any_reference(REAL, false);
+    int32_t order = (int32_t)pick(5) - 1;
+    double value;
+    chosen[0] = names[pick(3)];
+    switch (pick(8)) {
+    case 0: (void)fmi3SetDebugLogging(instance, pick(2) != 0, pick(2), pick(20) ? chosen : NULL); break;
+    case 1:
+        (void)fmi3EnterInitializationMode(instance, false, 0.0, any_real(), pick(3) == 0, any_real());
+        break;
+    case 2: (void)fmi3ExitInitializationMode(instance); break;
+    case 3: (void)(pick(8) ? fmi3OK : fmi3Terminate(instance)); break;
+    case 4: (void)(pick(20) ? fmi3OK : fmi3EnterConfigurationMode(instance)); break;
+    case 5:
+        (void)fmi3GetOutputDerivatives(instance, &reference, 1, pick(60) ? &order : NULL, &value,
+                                       pick(60) != 0);
+        break;
+    case 6: (void)(pick(20) ? fmi3OK : fmi3GetClock(instance, &reference, 1, NULL)); break;
+    default: (void)(pick(4) ? fmi3OK : fmi3Reset(instance)); break;
+    }
+}
+
+static void call(fmi3Instance *instance, fmi3FMUState *saved)
+{
+    const char *token = pick(20) ? MODEL_TOKEN : pick(2) ? "another" : NULL;
+    const char *name = pick(20) ? "fuzz" : NULL;
+    if (*instance == NULL) {
+        if (pick(2)) {
+            *instance = fmi3InstantiateCoSimulation(name, token, NULL, false, pick(2) != 0, pick(20) == 0, false,
+                                                    NULL, 0, NULL, pick(20) ? logger : NULL, NULL);
+        } else {
+            *instance = fmi3InstantiateModelExchange(name, token, NULL, false, pick(2) != 0, NULL, logger);
+        }
+        return;
+    }
+    if (((Instance *)*instance)->state.mode == BROKEN && pick(3) == 0) {
+        start(*instance);
+        return;
+    }
+    switch (pick(16)) {
+    case 0: states(*instance, saved); break;
+    case 1: bytes(*instance, saved); break;
+    case 2: life(*instance); break;
+    case 3: start(*instance); break;
+    case 4:
+        if (pick(30) == 0) {
+            fmi3FreeInstance(*instance);
+            *instance = NULL;
+        }
+        break;
+    case 5:
+    case 6:
+    case 7:
+    case 8:
+    case 9:
+        if (((Instance *)*instance)->host.model_exchange != (pick(40) == 0)) {
+            solve(*instance);
+        } else {
+            step(*instance);
+        }
+        break;
+    default: values(*instance); break;
+    }
+}
+
+/* fuzz3 SEED CALLS: prints how far it got; the sanitizers see what is left behind */
+int main(int count, char **words)
+{
+    fmi3Instance instances[INSTANCES] = {NULL};
+    fmi3FMUState saved[SAVED] = {NULL};
+    fmi3Instance last;
+    long calls;
+    int i;
+    seed = count > 1 ? strtoull(words[1], NULL, 10) : 1;
+    for (calls = count > 2 ? atol(words[2]) : 1000; calls > 0; calls--) {
+        call(&instances[pick(INSTANCES)], &saved[pick(SAVED)]);
+    }
+    last = fmi3InstantiateCoSimulation("last", MODEL_TOKEN, NULL, false, false, false, false, NULL, 0, NULL,
+                                       NULL, NULL);
+    for (i = 0; i < SAVED; i++) {
+        if (fmi3FreeFMUState(last, &saved[i]) != fmi3OK) {
+            return 2;
+        }
+    }
+    for (i = 0; i < INSTANCES; i++) {
+        fmi3FreeInstance(instances[i]);
+    }
+    fmi3FreeInstance(last);
+    printf("%ld %ld %ld %ld\n", stepped, solved, unpacked, refused);
+    return 0;
+}
