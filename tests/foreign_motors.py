@@ -23,6 +23,8 @@ UNITS = """
 </UnitDefinitions>
 """
 
+FIXED = 'causality="parameter" variability="fixed"'
+
 FMI2 = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{{motor-2}}" generationTool="Motor Maker 7">
 <CoSimulation modelIdentifier="{identifier}" {flags}/>
@@ -53,30 +55,32 @@ FMI2 = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="3.0" modelName="Motor3" instantiationToken="{motor-3}">
+<fmiModelDescription fmiVersion="3.0" modelName="Motor3" instantiationToken="{{motor-3}}">
 <CoSimulation modelIdentifier="Motor3"/>
-<UnitDefinitions><Unit name="rad"><BaseUnit rad="1"/></Unit><Unit name="rad/s"><BaseUnit rad="1" s="-1"/></Unit>
+<UnitDefinitions><Unit name="rad"><BaseUnit rad="1"/></Unit>
+<Unit name="rad/s"><BaseUnit rad="1" s="-1"/></Unit>
 <Unit name="rad/s2"><BaseUnit rad="1" s="-2"/></Unit><Unit name="N.m"><BaseUnit kg="1" m="2" s="-2"/></Unit>
 <Unit name="kg.m2"><BaseUnit kg="1" m="2"/></Unit></UnitDefinitions>
 <TypeDefinitions><EnumerationType name="Mode"><Item name="both_ways" value="1"/>
 <Item name="no_way_back" value="2"/></EnumerationType></TypeDefinitions>
 <ModelVariables>
-<Float64 name="J" valueReference="0" causality="parameter" variability="fixed" start="0.5" unit="kg.m2"/>
-<Float64 name="tau_stall" valueReference="1" causality="parameter" variability="fixed" start="100" unit="N.m"/>
-<Float64 name="w_free" valueReference="2" causality="parameter" variability="fixed" start="60" unit="rad/s"/>
+<Float64 name="J" valueReference="0" {fixed} start="0.5" unit="kg.m2"/>
+<Float64 name="tau_stall" valueReference="1" {fixed} start="100" unit="N.m"/>
+<Float64 name="w_free" valueReference="2" {fixed} start="60" unit="rad/s"/>
 <Float64 name="load" valueReference="3" causality="input" start="0" unit="N.m"/>
 <Float64 name="angle" valueReference="4" causality="output" unit="rad"/>
 <Float64 name="velocity" valueReference="5" causality="output" unit="rad/s" derivative="4"/>
 <Float64 name="acceleration" valueReference="6" causality="output" unit="rad/s2" derivative="5"/>
 <Int32 name="steps" valueReference="20" causality="output"/>
-<Int32 name="verbose" valueReference="22" causality="parameter" variability="fixed" start="0"/>
-<Enumeration name="mode" valueReference="30" causality="parameter" variability="fixed" start="1" declaredType="Mode"/>
+<Int32 name="verbose" valueReference="22" {fixed} start="0"/>
+<Enumeration name="mode" valueReference="30" {fixed} start="1" declaredType="Mode"/>
 <Enumeration name="mode_used" valueReference="31" causality="output" declaredType="Mode"/>
+<Int64 name="microradians" valueReference="32" causality="output"/>
+<Float32 name="velocity_32" valueReference="60" causality="output" unit="rad/s"/>
 <Boolean name="at_speed" valueReference="40" causality="output"/>
 <Boolean name="stalled" valueReference="41" causality="input" start="false"/>
-<Float64 name="table" valueReference="50" causality="parameter" variability="fixed" start="1 2"><Dimension start="2"/>
-</Float64>
-<String name="label" valueReference="51" causality="parameter" variability="fixed"><Start value="a motor"/></String>
+<Float64 name="table" valueReference="50" {fixed} start="1 2"><Dimension start="2"/></Float64>
+<String name="label" valueReference="51" {fixed}><Start value="a motor"/></String>
 </ModelVariables>
 <ModelStructure/>
 </fmiModelDescription>
@@ -118,8 +122,8 @@ def description2(name: str = "Motor", *, units: bool = True, phi: str = "rad", f
         return f'unit="{text}"' if units else ""
 
     return FMI2.format(
-        name=name, identifier="Motor", flags=flags, units=UNITS if units else "", phi=phi, p="<ScalarVariable ",
-        fixed='causality="parameter" variability="fixed"', angle='declaredType="Angle"' if units else "",
+        name=name, identifier="Motor", flags=flags, units=UNITS if units else "", phi=phi,
+        p="<ScalarVariable ", fixed=FIXED, angle='declaredType="Angle"' if units else "",
         kgm2=unit("kg.m2"), nm=unit("Nm"), w=unit("rad.s-1"), a=unit("rad/s2"), kelvin=unit("K"),
     )  # fmt: skip
 
@@ -135,4 +139,4 @@ def motor2(directory: Path, name: str = "Motor", *, single: bool = False, **opti
 def motor3(directory: Path) -> Path:
     """The motor as an FMI 3.0 FMU."""
     binary = library("fmi3.c", directory / "Motor3.so")
-    return packed(directory / "Motor3.fmu", FMI3, binary, "Motor3", "x86_64-linux")
+    return packed(directory / "Motor3.fmu", FMI3.format(fixed=FIXED), binary, "Motor3", "x86_64-linux")

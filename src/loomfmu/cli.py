@@ -5,6 +5,7 @@ Exit status: 0 all claims hold; 1 a claim failed; 2 bad input or a failed FMU; 1
 
 import argparse
 import math
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,15 +19,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     options = _parser().parse_args(arguments)
     try:
-        return int(options.command(options))
+        status = int(options.command(options))
+        sys.stdout.flush()
+        return status
     except LoomfmuError as error:
         print(f"loomfmu: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # the reader of our output has gone, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except OSError as error:
-        print(f"loomfmu: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"loomfmu: {where}{error.strerror or error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as error:
-        print(f"loomfmu: {error or 'interrupted'}", file=sys.stderr)
+        print(f"loomfmu: {str(error) or 'interrupted'}", file=sys.stderr)
         return 130
 
 
@@ -35,17 +42,28 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     run = commands.add_parser("run", help="co-simulate a scene, record it and judge its claims")
-    run.add_argument("scene", metavar="SCENE.toml")
-    run.add_argument(
-        "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
-        help="a value that differs from the scene's, such as shaft.speed=685rpm",
-    )  # fmt: skip
+    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_set(run)
     run.add_argument("--output", metavar="FILE.h5", help="the trace; results/SCENE.h5 by default")
+    run.add_argument("--native", action="store_true", help="with native FMUs instead of live ones")
     run.set_defaults(command=_run)
+    _add_export(commands)
 
     build = commands.add_parser("build", help="build FMUs")
     build.add_argument("names", nargs="*", metavar="NAME", help="all by default")
-    build.add_argument("--output", type=Path, default=Path("build/fmus"), metavar="DIR")
+    build.add_argument(
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="build/fmus by default; native: build/native or build/native_fmi3",
+    )
+    build.add_argument("--native", action="store_true", help="native FMUs, in C, without Python")
+    build.add_argument(
+        "--platform", metavar="NAME[,NAME]", help="of a native FMU: linux64,win64,darwin64; all by default"
+    )
+    build.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="standard of a native FMU; 2 by default"
+    )
     build.set_defaults(command=_build)
 
     listing = commands.add_parser("list", help="list the FMUs, machines and rapier heads there are")
@@ -54,42 +72,98 @@ def _parser() -> argparse.ArgumentParser:
     show = commands.add_parser("show", help="summarise a trace")
     show.add_argument("trace", metavar="FILE.h5")
     show.set_defaults(command=_show)
+
+    validate = commands.add_parser("validate", help="compare all that is published with what is computed")
+    validate.add_argument("--output", type=Path, default=Path("results"), metavar="DIR")
+    validate.set_defaults(command=_validate)
     return parser
 
 
-def _run(options: argparse.Namespace) -> int:
-    from .cosim.run import run
+def _add_set(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
+        help="a value that differs from the scene's, such as shaft.speed=685rpm",
+    )  # fmt: skip
 
+
+def _add_export(commands: Any) -> None:
+    export = commands.add_parser("export", help="write a scene as a system package for other tools")
+    export.add_argument("scene", metavar="SCENE.toml")
+    export.add_argument("--ssp", type=Path, required=True, metavar="FILE.ssp")
+    _add_set(export)
+    export.add_argument(
+        "--flavour", choices=("live", "native"), help="of the FMUs; native by default if it can be built"
+    )
+    export.add_argument(
+        "--platform", metavar="NAME[,NAME]", help="of native FMUs: linux64,win64,darwin64; all by default"
+    )
+    export.set_defaults(command=_export)
+
+
+def _overrides(options: argparse.Namespace) -> dict[str, Any]:
     overrides: dict[str, Any] = {}
     for text in options.overrides:
         key, equals, value = text.partition("=")
         if not equals:
             raise LoomfmuError(f"--set {text}: not of the form INSTANCE.VARIABLE=VALUE")
         overrides[key.strip()] = value.strip()
-    result = run(options.scene, set=overrides, output=options.output, progress=True)
+    return overrides
+
+
+def _export(options: argparse.Namespace) -> int:
+    from .cosim import scene, ssp
+    from .fmi import native_builder
+
+    chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
+    platforms = native_builder.check_platforms(tuple(chosen))
+    loaded = scene.load(options.scene, _overrides(options))
+    for warning in ssp.export(loaded, options.ssp, options.flavour, platforms):
+        print(f"warning: {warning}", file=sys.stderr)
+    print(options.ssp)
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    from .cosim.run import run
+
+    overrides = _overrides(options)
+    flavour = "native" if options.native else "live"
+    result = run(options.scene, set=overrides, output=options.output, progress=True, flavour=flavour)
     for warning in result.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     scene = result.scene
-    print(
-        f"{scene.title}: {scene.revolutions:g} revolutions at {units.show(scene.speed, 'rev/min')},"
-        f" {scene.steps_per_revolution} steps each"
-    )
+    if scene.step is None:
+        print(
+            f"{scene.title}: {scene.revolutions:g} revolutions at {units.show(scene.speed, 'rev/min')},"
+            f" {scene.steps_per_revolution} steps each"
+        )
+    else:
+        print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")
     _print_verdicts([verdict.as_dict() for verdict in result.claims])
     if scene.description:
         print(f"{scene.description}\n")
-    print(f"trace: {result.path}    summary: loomfmu show {result.path}")
+    command = sys.argv[0] if Path(sys.argv[0]).name == "loomfmu" else "loomfmu"
+    print(f"trace: {result.path}    summary: {command} show {result.path}")
     return 0 if result.holds else 1
 
 
 def _build(options: argparse.Namespace) -> int:
     from .components import COMPONENTS
-    from .fmi import builder
+    from .fmi import builder, native_builder
 
     for name in options.names:
         if name not in COMPONENTS:
             raise LoomfmuError(f"there is no FMU {name!r}{suggestion(name, COMPONENTS)}")
+    if not options.native and (options.platform or options.fmi != 2):
+        raise LoomfmuError("--platform and --fmi are for native FMUs: add --native")
+    chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
+    platforms = native_builder.check_platforms(tuple(chosen))
     for name in options.names or COMPONENTS:
-        print(builder.build(name, options.output))
+        if options.native:
+            output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
+            print(native_builder.build_native(name, output, platforms, options.fmi))
+        else:
+            print(builder.build(name, options.output or Path("build/fmus")))
     return 0
 
 
@@ -111,10 +185,27 @@ def _list(_options: argparse.Namespace) -> int:
     return 0
 
 
+def _validate(options: argparse.Namespace) -> int:
+    from .validation import plots, report
+
+    for path in report.write(options.output):
+        print(path)
+    if not plots.available():
+        print("the plots are left out: they need matplotlib, pip install loomfmu[plot]", file=sys.stderr)
+    return 0
+
+
 def _show(options: argparse.Namespace) -> int:
+    try:
+        return _summarise(options.trace)
+    except (KeyError, RuntimeError) as error:  # what h5py raises where it meets nonsense
+        raise LoomfmuError(f"{options.trace}: it is damaged ({error.args[0]})") from None
+
+
+def _summarise(path: str) -> int:
     from .traces import Trace
 
-    with Trace(options.trace) as trace:
+    with Trace(path) as trace:
         attributes = trace.attributes
         print(f"{attributes['title']} ({attributes['software']}, {trace.status})")
         turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
@@ -128,7 +219,7 @@ def _show(options: argparse.Namespace) -> int:
                 display = trace.display(signal)
                 values = values / units.unit(display).factor
                 shown = "  ".join(f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
-                print(f"{signal:{width}}  {shown}  {display}")
+                print(f"{signal:{width}}  {shown}  {trace.unit(signal) if display == '1' else display}")
         print()
         _print_verdicts(trace.verdicts)
         return 0 if trace.status == "complete" and all(v["holds"] for v in trace.verdicts) else 1

@@ -3,7 +3,6 @@
 import difflib
 from collections.abc import Iterable
 
-
 MOST_SHOWN = 16  # names that a message lists
 
 

@@ -90,11 +90,18 @@ fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, 
     return fmi3OK;
 }
 
-/* enumerations: 30 the parameter mode, 31 the same as an output */
+/* enumerations: 30 the parameter mode, 31 the same as an output; 32 an Int64: millionths of a radian turned */
 fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int64 v[], size_t k)
 {
+    Motor *m = &((Instance *)c)->motor;
+    for (size_t j = 0; j < n && j < k; j++) v[j] = r[j] == 32 ? (fmi3Int64)(m->phi * 1e6) : m->mode;
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetFloat32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float32 v[], size_t k)
+{
     (void)r;
-    for (size_t j = 0; j < n && j < k; j++) v[j] = ((Instance *)c)->motor.mode;
+    for (size_t j = 0; j < n && j < k; j++) v[j] = (fmi3Float32)((Instance *)c)->motor.w;
     return fmi3OK;
 }
 
@@ -141,7 +148,6 @@ NOT_THERE(fmi3SetDebugLogging)
 NOT_THERE(fmi3InstantiateModelExchange)
 NOT_THERE(fmi3InstantiateScheduledExecution)
 NOT_THERE(fmi3EnterEventMode)
-NOT_THERE(fmi3GetFloat32)
 NOT_THERE(fmi3GetInt8)
 NOT_THERE(fmi3GetUInt8)
 NOT_THERE(fmi3GetInt16)

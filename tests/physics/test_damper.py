@@ -157,9 +157,7 @@ def test_located_release_of_an_elastic_stop(depth, share):
     # pressing on an undamped stop the carrier moves on a circle and is let go at its surface
     z, v = 1.0 + depth, -sqrt(1.0 - depth**2) * share
     stiffness, preload = 1.0, 1.0
-    found = locate(
-        CONTACT_CHANGE, 1, z, v, stiffness, 0.0, preload, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, pi / 2
-    )
+    found = locate(CONTACT_CHANGE, 1, z, v, stiffness, 0.0, preload, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, pi / 2)
     amplitude = sqrt(depth**2 + v**2)
     exact = acos(0.0) - acos(depth / amplitude)  # depth(t) = amplitude cos(t + phase)
     # the force is a difference of two lengths of 1: rounding over the speed at the surface

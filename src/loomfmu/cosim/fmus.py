@@ -4,81 +4,31 @@ import hashlib
 import os
 import shutil
 import tempfile
-import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import fmpy
 
-from .. import units
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
-from ..fmi import builder
-from ..variables import variables_of
+from ..fmi import builder, native_builder
+from .descriptions import is_ours, ports_of
+from .ports import Port, Value
 
-Value = float | int | bool
+FLAVOURS = ("live", "native")
 
-
-@dataclass(frozen=True)
-class Port:
-    """A variable of an FMU as its model description tells it."""
-
-    name: str
-    kind: str  # Real, Integer, Boolean
-    reference: int
-    causality: str
-    unit: str
-    display: str
-    minimum: float | None
-    maximum: float | None
-    start: Value | None
-    description: str
-    choices: tuple[str, ...] = ()
-    first_choice: int = 1
-    rate: str | None = None
-
-    def value(self, given: Any, where: str) -> Value:
-        """A value as people write it, in the port's own type and unit, within its limits.
-
-        Raises LoomfmuError with the name, the value and the limits.
-        """
-        if self.kind == "Boolean":
-            if str(given).lower() not in ("true", "false"):
-                raise LoomfmuError(f"{where} = {given!r} is neither true nor false")
-            return str(given).lower() == "true"
-        if self.choices and isinstance(given, str) and not given.isdigit():
-            choice = given.replace("-", "_").replace(" ", "_")
-            if choice not in self.choices:
-                raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(choice, self.choices)}")
-            return self.choices.index(choice) + self.first_choice
-        try:
-            value = units.parse(given, self.unit)
-        except units.UnitError as error:
-            raise LoomfmuError(f"{where}: {error}") from None
-        return self._within(value, where)
-
-    def _within(self, value: float, where: str) -> Value:
-        low = -float("inf") if self.minimum is None else self.minimum
-        high = float("inf") if self.maximum is None else self.maximum
-        if not low <= value <= high or abs(value) == float("inf"):
-            factor = units.unit(self.display).factor
-            label = "" if self.display == "1" else f" {self.display}"
-            raise LoomfmuError(
-                f"{where} = {value / factor:.7g}{label} is outside"
-                f" [{low / factor:.7g}, {high / factor:.7g}]{label}"
-            )
-        if self.kind == "Integer":
-            if value != int(value):
-                raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
-            return int(value)
-        return value
+__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "cache_directory", "file_of", "load", "of_component"]
 
 
 @dataclass(frozen=True)
 class Fmu:
-    """An FMU ready to be instantiated."""
+    """An FMU ready to be instantiated.
+
+    `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
+    a process may have one instance of, `built` one that was built for a scene and not given as a file.
+    """
 
     name: str
     path: Path
@@ -88,6 +38,16 @@ class Fmu:
     identifier: str
     version: str
     ports: dict[str, Port]
+    fmi: int = 2
+    ours: bool = True
+    single: bool = False
+    built: bool = False
+
+    def name_of(self, variable: str) -> str:
+        """What scenes call a variable, given that name or the FMU's own."""
+        if variable in self.ports:
+            return variable
+        return next((port.name for port in self.ports.values() if port.own == variable), variable)
 
     def port(self, name: str, where: str) -> Port:
         """A variable by name. Raises LoomfmuError, naming the nearest."""
@@ -104,38 +64,72 @@ def cache_directory() -> Path:
 
 
 @cache
-def of_component(name: str) -> Fmu:
-    """The FMU of one of our components, built unless the same one was built before."""
+def of_component(name: str, flavour: str = "live") -> Fmu:
+    """The FMU of one of our components, live or native, built unless the same one was built before."""
+    return replace(load(file_of(name, flavour, (native_builder.host_platform(),))), built=True)
+
+
+def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
+    """The file of one of our components, built unless the same one was; a live one is for all platforms."""
     if name not in COMPONENTS:
         raise LoomfmuError(f"there is no component {name!r}{suggestion(name, COMPONENTS)}")
-    built = cache_directory() / "fmus" / builder.guid(COMPONENTS[name])
+    if flavour not in FLAVOURS:
+        raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
+    native, component = flavour == "native", COMPONENTS[name]
+    identity = native_builder.identity(component, platforms) if native else builder.guid(component)
+    built = cache_directory() / "fmus" / identity
     path = built / f"{name}.fmu"
     if not path.exists():
-        builder.build(name, built)
-    return load(path)
+        _ = native_builder.build_native(name, built, platforms) if native else builder.build(name, built)
+    return path
 
 
 def load(path: Path) -> Fmu:
-    """Read an FMU. Raises LoomfmuError for a file that is none."""
+    """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
     try:
-        content = path.read_bytes()
-        sha256 = hashlib.sha256(content).hexdigest()
+        sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
         directory = _unpacked(path, sha256)
-        description = fmpy.read_model_description(str(directory), validate=False)
+        found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:
         raise LoomfmuError(f"{path}: there is no such FMU") from None
-    except (OSError, zipfile.BadZipFile, KeyError) as error:
-        raise LoomfmuError(f"{path}: not a readable FMU ({error})") from None
+    except Exception as error:  # zipfile and fmpy raise a dozen kinds for a damaged archive
+        raise LoomfmuError(f"{path}: not a readable FMU ({_first_line(error)})") from None
+    if not found:
+        raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
+    try:
+        description = fmpy.read_model_description(str(directory), validate=False)
+        ports = ports_of(description)
     except Exception as error:  # fmpy raises its own kinds for a description that is none
-        reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({reason})") from None
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise LoomfmuError(f"{path}: an FMI {description.fmiVersion} FMU; only FMI 2.0 co-simulation is run")
-    ports = {variable.name: _port(variable, description) for variable in description.modelVariables}
+        raise LoomfmuError(
+            f"{path}: its modelDescription.xml cannot be read ({_first_line(error)})"
+        ) from None
+    _check_runnable(path, description)
+    kind = description.coSimulation
     return Fmu(
         name=description.modelName, path=path, sha256=sha256, directory=directory, guid=description.guid,
-        identifier=description.coSimulation.modelIdentifier, version=description.version or "", ports=ports,
+        identifier=kind.modelIdentifier, version=description.version or "", ports=ports,
+        fmi=int(description.fmiVersion[0]), ours=is_ours(description),
+        single=kind.canBeInstantiatedOnlyOncePerProcess,
     )  # fmt: skip
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0]
+
+
+def _check_runnable(path: Path, description: Any) -> None:
+    """Refuse what the master cannot step."""
+    version, kind = description.fmiVersion, description.coSimulation
+    if version == "1.0":
+        raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are run")
+    if kind is None:
+        raise LoomfmuError(
+            f"{path}: it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run"
+        )
+    if kind.needsExecutionTool:
+        raise LoomfmuError(
+            f"{path}: it needs the tool that made it (needsExecutionTool), which is not started"
+        )
 
 
 def _unpacked(path: Path, sha256: str) -> Path:
@@ -153,35 +147,3 @@ def _unpacked(path: Path, sha256: str) -> Path:
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
     return target
-
-
-def _start(kind: str, text: str) -> Value:
-    if kind == "Boolean":
-        return text == "true"
-    return int(text) if kind == "Integer" else float(text)
-
-
-def _port(variable: Any, description: Any) -> Port:
-    kind = {"Enumeration": "Integer"}.get(variable.type, variable.type)
-    items = variable.declaredType.items if variable.type == "Enumeration" and variable.declaredType else []
-    component = COMPONENTS.get(description.modelName)
-    rates = {v.name: v.rate for v in variables_of(component)} if component else {}
-
-    def limit(text: Any) -> float | None:
-        return None if text is None else float(text)
-
-    return Port(
-        name=variable.name,
-        kind=kind,
-        reference=variable.valueReference,
-        causality=variable.causality,
-        unit=variable.unit or "1",
-        display=variable.displayUnit or variable.unit or "1",
-        minimum=1 if items else limit(variable.min),
-        maximum=len(items) if items else limit(variable.max),
-        start=None if variable.start is None else _start(kind, variable.start),
-        description=variable.description or "",
-        choices=tuple(item.name for item in items),
-        first_choice=int(items[0].value) if items else 1,
-        rate=rates.get(variable.name),
-    )

@@ -10,7 +10,7 @@ import math
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,10 @@ class Interrupted(Exception):
 
 
 class Master:
-    """The instances of a scene, coupled. Use it in a `with` statement: it gives them back."""
+    """The instances of a scene, coupled. Use it in a `with` statement: it gives them back.
+
+    Within that statement Ctrl-C does not raise, it fills `interrupted`.
+    """
 
     def __init__(self, scene: Scene):
         self.scene = scene
@@ -70,6 +73,8 @@ class Master:
     # ---- life cycle
 
     def __enter__(self) -> "Master":
+        self._interrupts = ExitStack()
+        self.interrupted = self._interrupts.enter_context(_interrupt_flag())
         try:
             for name in self.order:
                 self.slaves[name] = borrow(self.scene.instances[name].fmu, name)
@@ -82,6 +87,7 @@ class Master:
         for slave in self.slaves.values():
             give_back(slave)
         self.slaves.clear()
+        self._interrupts.close()
 
     def initialize(self) -> None:
         """Set all values, exchange the outputs at the start until they settle, prepare the calls."""
@@ -191,28 +197,28 @@ class Master:
         calls = [(function, arguments) for _slave, _action, (function, arguments) in self._calls]
         step_size, time = self.scene.step_size, self._time
         driven = bool(self.scene.drives)
-        with _interrupt_flag() as interrupted:
-            try:
-                for step in range(self.scene.steps):
-                    if filled == rows:
-                        flush()
-                        filled = 0
-                        progress(step)
-                    time.value = step * step_size
-                    if driven:
-                        self._drive(step + 1)
-                    for function, arguments in calls:
-                        if (status := function(*arguments)) > 1:
-                            raise self._failure(arguments, status)
-                    times[filled] = (step + 1) * step_size
-                    reals[filled] = self.reals
-                    integers[filled] = self.integers
-                    filled += 1
-                    if interrupted:
-                        raise Interrupted
-            finally:
-                if filled:
+        interrupted = self.interrupted
+        try:
+            for step in range(self.scene.steps):
+                if filled == rows:
                     flush()
+                    filled = 0
+                    progress(step)
+                time.value = step * step_size
+                if driven:
+                    self._drive(step + 1)
+                for function, arguments in calls:
+                    if (status := function(*arguments)) > 1:
+                        raise self._failure(arguments, status)
+                times[filled] = (step + 1) * step_size
+                reals[filled] = self.reals
+                integers[filled] = self.integers
+                filled += 1
+                if interrupted:
+                    raise Interrupted
+        finally:
+            if filled:
+                flush()
         progress(self.scene.steps)
 
     def _failure(self, arguments: tuple[Any, ...], status: int) -> LoomfmuError:

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from ..errors import LoomfmuError, suggestion
 from ..traces import ROWS, Channel, Trace, TraceWriter
 from . import scene as scenes
-from .claims import check, check_values, judge, signals_of
-from .fmus import Port
+from . import ssp_read
+from .claims import check, check_values, judge, names_parameter, signals_of
+from .fmus import Fmu, Port, of_component
 from .master import Interrupted, Master
 from .scene import Scene
 from .verdict import Verdict
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
+ANGLES = frozenset(("window", "angles", "at_least"))  # arguments of claims that need a shaft
 
 
 @dataclass(frozen=True)
@@ -50,24 +52,23 @@ def run(
     set: dict[str, Any] | None = None,  # the command's own word
     output: str | Path | None = None,
     progress: bool = False,
+    flavour: str = "live",
 ) -> Result:
     """Co-simulate a scene, record it to HDF5 and judge its claims.
 
     Args:
-        scene: path of a scene file, or a scene that was read before
+        scene: path of a scene file or of a system package (.ssp), or a scene that was read before
         set: values that differ from the scene's, such as {"shaft.speed": "685 rpm"}; numbers are SI
         output: path of the trace; `results/<scene>.h5` below the current directory by default
         progress: show a progress bar on a long run, if standard error is a terminal
+        flavour: "live" or "native" FMUs
 
     Raises:
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
     """
     place = "" if isinstance(scene, Scene) else f"{scene}: "
-    if not isinstance(scene, Scene):
-        scene = scenes.load(scene, set)
-    elif set:
-        scene = scenes.parse(scene.text, scene.name, set, scene.directory)
+    scene = _in_flavour(_read(scene, set), flavour)
     path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
     if not path.name or path.is_dir():
         raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
@@ -77,6 +78,8 @@ def run(
         raise LoomfmuError(f"{place}{error}") from None
     with Master(scene) as master:
         master.initialize()
+        if master.interrupted:
+            raise KeyboardInterrupt("interrupted before the first step")
         writer = _writer(scene, master, path)
         try:
             with _bar(scene, progress) as advance:
@@ -90,8 +93,36 @@ def run(
         except BaseException:
             writer.abandon("failed")
             raise
-        warnings = tuple(master.warnings())
+        warnings = (*scene.notes, *master.warnings())
     return Result(scene, path, _finish(scene, writer), warnings)
+
+
+def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
+    """A scene from its file or its system package, with other values if there are any."""
+    if isinstance(scene, Scene):
+        if not overrides:
+            return scene
+        if scene.package is None:
+            return scenes.parse(scene.text, scene.name, overrides, scene.directory)
+        scene = scene.package
+    if Path(scene).suffix.lower() == ".ssp":
+        return ssp_read.load(scene, overrides)
+    return scenes.load(scene, overrides)
+
+
+def _in_flavour(scene: Scene, flavour: str) -> Scene:
+    """The scene with all FMUs that it does not bring itself of that flavour: they have the same variables."""
+    if flavour == "live":
+        return scene
+    if scene.package is not None:
+        raise LoomfmuError(f"{scene.package}: a system package brings its own FMUs; its flavour is settled")
+    instances = {
+        name: replace(instance, fmu=of_component(instance.fmu.name, flavour))
+        if instance.fmu.built
+        else instance
+        for name, instance in scene.instances.items()
+    }
+    return replace(scene, instances=instances)
 
 
 def _finish(scene: Scene, writer: TraceWriter) -> tuple[Verdict, ...]:
@@ -103,6 +134,8 @@ def _finish(scene: Scene, writer: TraceWriter) -> tuple[Verdict, ...]:
         writer.complete([verdict.as_dict() for verdict in verdicts])
     except OSError as error:
         raise LoomfmuError(f"{writer.path}: cannot be written ({error.strerror or error})") from None
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{error}; the trace is kept in {writer.partial}") from None
     return verdicts
 
 
@@ -112,9 +145,26 @@ def check_claims(scene: Scene) -> None:
         kind = claim.get("kind")
         arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
         check(kind, arguments)
+        for angle in ANGLES.intersection(arguments):
+            if "shaft" not in scene.instances:
+                raise LoomfmuError(f"claim {kind!r}: {angle} is a shaft angle, and the scene has no shaft")
         for signal in signals_of(claim, scene.instances):
             _output(scene, signal, f"claim {kind!r}")
         check_values(str(kind), arguments, lambda signal: _output(scene, signal, "claim").unit)
+        if names_parameter("bound", arguments.get("bound")):
+            _check_parameter(scene, arguments["bound"], arguments["signal"])
+
+
+def _check_parameter(scene: Scene, name: str, signal: str) -> None:
+    """A parameter that bounds a signal is one of the scene, in the signal's unit."""
+    instance, _, variable = name.partition(".")
+    ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
+    known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
+    if name not in known:
+        raise LoomfmuError(f"claim: bound = {name!r} is no parameter{suggestion(name, known)}")
+    wanted, given = _output(scene, signal, "claim").unit, ports[variable].unit
+    if given != wanted:
+        raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
 
 
 def _output(scene: Scene, signal: str, where: str) -> Port:
@@ -134,7 +184,7 @@ def _output(scene: Scene, signal: str, where: str) -> Port:
 def _recorded(scene: Scene) -> list[str]:
     """What the scene records, what its claims need, and the rates of that."""
     wanted = [
-        "shaft.angle",
+        *(["shaft.angle"] if "shaft" in scene.instances else []),
         *scene.record,
         *(f"{drive.instance}.{drive.variable}" for drive in scene.drives),
         *(s for claim in scene.claims for s in signals_of(claim, scene.instances)),
@@ -170,12 +220,16 @@ def _writer(scene: Scene, master: Master, path: Path) -> TraceWriter:
                 first_flag=port.first_choice if port.choices else 0,
             )
         )
-    fmus = {instance.fmu.name: instance.fmu for instance in scene.instances.values()}
+    fmus = _fmus(scene)
     attributes = {
         "title": scene.title,
         "scene": scene.text,
         "software": f"loomfmu {version('loomfmu')}",
-        "steps_per_revolution": str(scene.steps_per_revolution),
+        **(
+            {"steps_per_revolution": str(scene.steps_per_revolution)}
+            if scene.step is None
+            else {"step": f"{scene.step!r} s"}
+        ),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
     }
@@ -193,14 +247,26 @@ def _writer(scene: Scene, master: Master, path: Path) -> TraceWriter:
         raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error})") from None
 
 
+def _fmus(scene: Scene) -> dict[str, Fmu]:
+    """The FMUs of a scene by their names; two that bear one name are told apart by an instance's."""
+    found: dict[str, Fmu] = {}
+    for name, instance in scene.instances.items():
+        fmu = instance.fmu
+        same = found.setdefault(fmu.name, fmu)
+        if same.sha256 != fmu.sha256:
+            found[f"{fmu.name}_{name}"] = fmu
+    return found
+
+
 def _recorder(
     scene: Scene, master: Master, writer: TraceWriter
 ) -> Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]], None]:
     """What takes the master's blocks to the trace."""
-    _kind, angle = master.slots["shaft", "angle"]
+    _kind, column = master.slots.get(("shaft", "angle"), ("", -1))
 
     def write(times: NDArray[np.float64], reals: NDArray[np.float64], integers: NDArray[np.int32]) -> None:
-        writer.append(times, reals[:, angle], reals, integers)
+        angle = reals[:, column] if column >= 0 else np.zeros(len(times))  # a scene without shaft
+        writer.append(times, angle, reals, integers)
 
     return write
 

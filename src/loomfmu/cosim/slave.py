@@ -28,7 +28,7 @@ from ..errors import LoomfmuError
 from .fmus import Fmu, Value
 
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
-STATUS = {DISCARD: "fmi2Discard", ERROR: "fmi2Error", FATAL: "fmi2Fatal"}
+STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 
 Call = tuple[Callable[..., int], tuple[Any, ...]]
 
@@ -36,33 +36,40 @@ Call = tuple[Callable[..., int], tuple[Any, ...]]
 class Slave:
     """One instance of an FMU. `messages` holds what it logged as (status, text)."""
 
+    standard = "fmi2"  # what its functions begin with
+    pooled = True  # whether it can be reset for another run
+
     def __init__(self, fmu: Fmu, name: str):
         self.fmu = fmu
         self.name = name
         self.messages: list[tuple[int, str]] = []
         self.fatal = False
         self.started = False
+        try:
+            self._slave = self._open()
+        except Exception as error:
+            raise LoomfmuError(f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}") from None
+        self._library: Any = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+        self._component = ctypes.c_void_p(self._slave.component)
+
+    def _open(self) -> Any:
+        """fmpy's slave, instantiated."""
+        slave = FMU2Slave(
+            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            instanceName=self.name,
+        )  # fmt: skip
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        try:
-            self._slave = FMU2Slave(
-                guid=fmu.guid, unzipDirectory=str(fmu.directory), modelIdentifier=fmu.identifier,
-                instanceName=name,
-            )  # fmt: skip
-            self._instantiate()
-        except Exception as error:
-            raise LoomfmuError(f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}") from None
-        self._library = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
-        self._component = ctypes.c_void_p(self._slave.component)
+        self._instantiate(slave)
+        return slave
 
-    def _instantiate(self) -> None:
+    def _instantiate(self, slave: FMU2Slave) -> None:
         """As fmpy's own method, but with a plain resource location.
 
         pythonfmu's wrapper knows no escape but %20 and crashes where it finds no resources.
         """
-        slave = self._slave
         slave.callbacks = self._callbacks
         resources = unquote((self.fmu.directory.absolute() / "resources").as_uri())
         slave.component = slave.fmi2Instantiate(
@@ -131,7 +138,8 @@ class Slave:
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
         """What to raise for a status that is not OK."""
         self.fatal = self.fatal or status == FATAL
-        kind = STATUS.get(status, f"status {status}")
+        kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
+        action = action.replace("fmi2", self.standard)
         return LoomfmuError(f"{self.name} at {time:.9g} s: {action} gave {kind}: {self._reason()}")
 
     # ---- end
@@ -142,7 +150,7 @@ class Slave:
             if self.started and not self.fatal:
                 self._slave.terminate()
             self.started = False
-            if not self.fatal:
+            if self.pooled and not self.fatal:
                 self._slave.reset()
                 self.messages.clear()
                 return True
@@ -163,7 +171,20 @@ _resting: dict[tuple[str, str], list[Slave]] = {}
 def borrow(fmu: Fmu, name: str) -> Slave:
     """An instance: one that rests from an earlier run, or a new one."""
     resting = _resting.get((fmu.sha256, name))
-    return resting.pop() if resting else Slave(fmu, name)
+    return resting.pop() if resting else _opened(fmu, name)
+
+
+def _opened(fmu: Fmu, name: str) -> Slave:
+    """A new instance, of the class that knows its version and what its maker may have left out."""
+    if fmu.fmi == 3:
+        from .fmi3_slave import Fmi3Slave
+
+        return Fmi3Slave(fmu, name)
+    if not fmu.ours:
+        from .foreign_slave import ForeignSlave
+
+        return ForeignSlave(fmu, name)
+    return Slave(fmu, name)
 
 
 def give_back(slave: Slave) -> None:

@@ -1,0 +1,210 @@
+"""The instances of a scene: which FMU each is, and the values it starts with."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from .. import machines
+from ..errors import LoomfmuError, suggestion
+from . import fmus, standard_loom
+from .fmus import Fmu, Port, Value
+from .graph import Wire
+
+KEYS = (
+    "title",
+    "description",
+    "revolutions",
+    "steps_per_revolution",
+    "duration",
+    "step",
+    "record",
+    "loom",
+    "wires",
+    "inputs",
+    "claims",
+)
+TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
+PARAMETER_SETS = ("machine", "head", "pattern", "component")
+FILES = ("fmu", "units")
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
+
+
+@dataclass
+class Instance:
+    """One FMU of a scene with the values that are set at its start (SI)."""
+
+    name: str
+    fmu: Fmu
+    values: dict[str, Value] = field(default_factory=dict)
+
+    def set(self, key: str, given: Any) -> None:
+        """Set a parameter, or the start of an input. Raises LoomfmuError for what cannot be set."""
+        name = self.fmu.name_of(key)
+        if name not in self.fmu.ports:
+            settable = [port.name for port in self.fmu.ports.values() if _can_be_set(port)]
+            extra = PARAMETER_SETS if self.fmu.built else FILES
+            raise LoomfmuError(f"{self.name}.{key} is unknown{suggestion(key, [*settable, *extra])}")
+        port = self.fmu.ports[name]
+        if not _can_be_set(port):
+            kind = "an output" if port.causality == "output" else "a state"
+            raise LoomfmuError(f"{self.name}.{key} is {kind} of {self.fmu.name} and cannot be set")
+        self.values[name] = port.value(given, f"{self.name}.{key}")
+
+    def settle(self) -> None:
+        """What our FMUs are told of our master: it works in dependency order."""
+        if self.fmu.ours and "inputs_at_step_end" in self.fmu.ports:
+            self.values.setdefault("inputs_at_step_end", True)
+
+    def follow(self, wire: Wire) -> None:
+        """A mechanism whose shaft angle is wired follows it, and a frame the lift of its dobby."""
+        switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
+        if self.fmu.ours and switch in self.fmu.ports:
+            self.values.setdefault(switch, True)
+
+
+def _can_be_set(port: Port) -> bool:
+    return port.causality in ("parameter", "input")
+
+
+def check_name(name: str) -> None:
+    """Refuse what cannot be the name of an instance."""
+    if not NAME.fullmatch(name):
+        raise LoomfmuError(f"instance name {name!r} is not letters, digits and _, a letter first")
+    if name in TAKEN:
+        raise LoomfmuError(f"instance name {name!r} is taken: a trace has its own {name}")
+
+
+def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+    """The table of each instance: the standard loom's, then what the scene says of each."""
+    given = _loom(tables, directory)
+    groups: list[str] = []
+    for key, table in tables.items():
+        if key in KEYS:
+            continue
+        if not isinstance(table, dict):
+            raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
+        siblings = [] if "component" in table else [name for name in tables if name != key]
+        if key not in given and members(key, [*given, *siblings]):
+            groups.append(key)
+            continue
+        known = standard_loom.COMPONENT_OF
+        named = "component" in table or "fmu" in table
+        if key not in given and not named and standard_loom.stem(key) not in known:
+            hint = suggestion(key, dict.fromkeys([*KEYS, *given, *known]))
+            raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
+        check_name(key)
+        given[key] = given.get(key, {}) | table
+    for key in groups:  # a table for all members says less than a member's own
+        for member in members(key, given):
+            given[member] = given[member] | tables[key] | tables.get(member, {})
+    return given
+
+
+def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+    """The instances that a scene need not spell out. One that runs by seconds needs no shaft."""
+    loom = tables.get("loom")
+    if loom is None:
+        return {} if "duration" in tables or "step" in tables else {"shaft": {}}
+    if not isinstance(loom, dict):
+        raise LoomfmuError(f"loom = {loom!r} is no table")
+    return standard_loom.loom(loom, directory)
+
+
+def members(key: str, given: Iterable[str]) -> list[str]:
+    """The numbered instances that a name without number stands for."""
+    if key in given:
+        return []
+    return [name for name in given if standard_loom.stem(name) == key]
+
+
+def override(tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any) -> None:
+    """Let one value of the scene be another."""
+    for member, variable in overridden(given, key):
+        if member:
+            given[member] = given[member] | {variable: value}
+        else:
+            tables[variable] = value
+
+
+def overridden(given: Iterable[str], key: str) -> list[tuple[str, str]]:
+    """What a key of `--set` stands for, as (instance, variable); no instance for the scene's own keys."""
+    instance, dot, variable = key.partition(".")
+    if not dot:
+        if key not in TIMES:
+            known = [*TIMES, *(f"{name}." for name in given)]
+            raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
+        return [("", key)]
+    found = [instance] if instance in given else members(instance, given)
+    if not found:
+        raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, given)}")
+    return [(member, variable) for member in found]
+
+
+def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
+    """An instance with its values checked and in SI."""
+    for key in ("component", "machine", "head", "fmu"):
+        if not isinstance(table.get(key, ""), str):
+            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
+    fmu = _fmu(name, table, directory)
+    found = Instance(name, fmu)
+    if fmu.ours:  # another maker's FMU knows no machine that a loom has
+        published = machines.parameters(fmu.name, machine=table.get("machine"), head=table.get("head"))
+        for key in published:
+            fmu.port(key, name)  # an FMU of another version may lack it
+        found.values |= published
+        if "pattern" in table:
+            found.values |= standard_loom.pattern(table["pattern"], f"{name}.pattern")
+    for key, given in table.items():
+        if key == "pattern" and fmu.ours and fmu.name != "HealdFrame":
+            raise LoomfmuError(f"{name}.pattern: only a HealdFrame has a pattern")
+        if key not in PARAMETER_SETS and (key not in FILES or fmu.built):
+            found.set(key, given)
+    found.settle()
+    return found
+
+
+def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
+    """The FMU that a table names: a file, or one of our components."""
+    component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
+    if "fmu" not in table:
+        fmu = fmus.of_component(str(component))
+        if name == "shaft" and fmu.name != "MainShaft":
+            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene is a MainShaft")
+        return fmu
+    if "component" in table:
+        raise LoomfmuError(f"{name} has both a component and an fmu; it is one of them")
+    try:
+        fmu = with_units(fmus.load(directory / table["fmu"]), table.get("units", {}), name)
+    except LoomfmuError as error:
+        raise LoomfmuError(
+            str(error) if str(error).startswith(f"{name}.") else f"{name}.fmu: {error}"
+        ) from None
+    return as_shaft(fmu) if name == "shaft" else fmu
+
+
+def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
+    """An FMU with the units that a scene says its variables have, where it says none itself."""
+    if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
+        raise LoomfmuError(f'{name}.units = {stated!r} is no table of variable = "unit"')
+    ports = dict(fmu.ports)
+    for key, unit in stated.items():
+        port = fmu.port(fmu.name_of(key), f"{name}.units")
+        ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
+    return replace(fmu, ports=ports)
+
+
+def as_shaft(fmu: Fmu) -> Fmu:
+    """An FMU in the place of the main shaft: it tells the angle, and its other outputs are its rates."""
+    ports = dict(fmu.ports)
+    for variable, (unit, rate) in SHAFT.items():
+        port = ports.get(variable)
+        fits = port is not None and port.causality == "output" and port.unit == unit
+        if port is not None and fits:
+            ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
+        elif variable == "angle":
+            raise LoomfmuError(f"{fmu.path}: the shaft of a scene has an output angle in rad")
+    return replace(fmu, ports=ports)

@@ -1,0 +1,178 @@
+"""Variables of FMUs: their names, types, units and limits, and which of them may be wired."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .. import units
+from ..errors import LoomfmuError, suggestion
+
+Value = float | int | bool
+BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+
+@dataclass(frozen=True)
+class Definition:
+    """What an FMU says that a unit is: the exponents of `BASES`, and what leads to them."""
+
+    exponents: tuple[int, ...]
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def agrees(self, other: "Definition") -> bool:
+        """Whether both mean the same; factors are printed with ten digits or more."""
+        near = math.isclose(self.factor, other.factor, rel_tol=1e-9)
+        return self.exponents == other.exponents and near and self.offset == other.offset
+
+    def without_rad(self) -> "Definition":
+        """The same with radians taken as 1."""
+        return replace(self, exponents=(*self.exponents[:-1], 0))
+
+
+def own_definition(name: str) -> Definition:
+    """The definition of one of our own units."""
+    known = units.unit(name)
+    return Definition((known.kg, known.m, known.s, 0, 0, 0, 0, known.rad), known.factor)
+
+
+def own_name(name: str, definition: Definition | None) -> str:
+    """What we call a unit of an FMU, or nothing if we do not know it.
+
+    >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("V", None)
+    ('m/s2', 'rev/min', '')
+    """
+    usual = units.ALIASES.get(name, name)
+    if usual in units.UNITS:
+        own = own_definition(usual)
+        # rad is 1 in SI: many tools leave it out of rad/s
+        if definition is None or own.agrees(definition) or own.without_rad().agrees(definition.without_rad()):
+            return usual
+    if definition is not None:
+        for candidate in units.UNITS:
+            if own_definition(candidate).agrees(definition):
+                return candidate
+    return ""
+
+
+def shown_in(name: str, display: str = "") -> str:
+    """The unit to show values of a unit in; "1", the plain number, for one that is not SI or not ours."""
+    known = units.UNITS.get(name)
+    if known is None or known.factor != 1.0:
+        return "1"
+    wanted = units.UNITS.get(display)
+    return display if wanted is not None and wanted.dimension == known.dimension else name
+
+
+@dataclass(frozen=True)
+class Port:
+    """A variable of an FMU as its model description tells it.
+
+    `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
+    `base_type` its type there.
+    """
+
+    name: str
+    kind: str  # Real, Integer, Boolean
+    reference: int
+    causality: str
+    unit: str
+    display: str
+    minimum: float | None
+    maximum: float | None
+    start: Value | None
+    description: str
+    choices: tuple[str, ...] = ()
+    first_choice: int = 1
+    rate: str | None = None
+    own: str = ""
+    base_type: str = ""
+    has_unit: bool = True
+    definition: Definition | None = None
+
+    def value(self, given: Any, where: str) -> Value:
+        """A value as people write it, in the port's own type and unit, within its limits.
+
+        Raises LoomfmuError with the name, the value and the limits.
+        """
+        if self.kind == "Boolean":
+            if str(given).lower() not in ("true", "false"):
+                raise LoomfmuError(f"{where} = {given!r} is neither true nor false")
+            return str(given).lower() == "true"
+        if self.choices and isinstance(given, str) and not given.isdigit():
+            choice = given.replace("-", "_").replace(" ", "_")
+            if choice not in self.choices:
+                raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(choice, self.choices)}")
+            return self.choices.index(choice) + self.first_choice
+        try:
+            value = self._quantity(given)
+        except units.UnitError as error:
+            raise LoomfmuError(f"{where}: {error}") from None
+        return self._within(value, where)
+
+    def _quantity(self, given: Any) -> float:
+        if self.unit in units.UNITS:
+            return units.parse(given, self.unit)
+        if isinstance(given, str):  # a unit that is the FMU's alone can only be repeated
+            given = given.strip().removesuffix(self.unit)
+        return units.parse(given, "1")
+
+    def _within(self, value: float, where: str) -> Value:
+        low = -float("inf") if self.minimum is None else self.minimum
+        high = float("inf") if self.maximum is None else self.maximum
+        if not low <= value <= high or abs(value) == float("inf"):
+            factor = units.unit(self.display).factor
+            shown = self.unit if self.display == "1" else self.display
+            label = "" if shown == "1" else f" {shown}"
+            raise LoomfmuError(
+                f"{where} = {value / factor:.7g}{label} is outside"
+                f" [{low / factor:.7g}, {high / factor:.7g}]{label}"
+            )
+        if self.kind == "Integer":
+            if value != int(value):
+                raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
+            return int(value)
+        return value
+
+    def with_unit(self, unit: str, definition: Definition | None, where: str) -> "Port":
+        """The port with the unit that a scene says it has. Raises LoomfmuError where the FMU says another."""
+        name = own_name(unit, definition) or unit
+        if not name or self.kind != "Real":
+            raise LoomfmuError(f"{where} = {unit!r}: {self.name} is no real variable that could have a unit")
+        if definition is None and name in units.UNITS:
+            definition = own_definition(name)
+        stated = replace(self, unit=name, display=shown_in(name), has_unit=True, definition=definition)
+        if self.has_unit and _differ(self, stated):
+            raise LoomfmuError(f"{where} = {unit!r}: the FMU itself says {self.unit}")
+        return self if self.has_unit else stated
+
+
+def _differ(one: Port, other: Port) -> bool:
+    if one.definition is not None and other.definition is not None:
+        return not one.definition.agrees(other.definition)
+    return one.unit != other.unit
+
+
+def mismatch(source: str, origin: Port, sink: str, to: Port) -> str:
+    """Why the units of two ports do not let them be wired; nothing if they do.
+
+    A wire converts nothing, and a unit that is not stated is not guessed.
+    """
+    if not origin.has_unit and not to.has_unit:
+        return ""
+    if not (origin.has_unit and to.has_unit):
+        lacking, port = (source, origin) if to.has_unit else (sink, to)
+        other, unit = (sink, to.unit) if to.has_unit else (source, origin.unit)
+        instance = lacking.split(".")[0]
+        return (
+            f"{lacking} has no unit, {other} is in {unit};"
+            f' say what it is: [{instance}] units = {{{port.name} = "..."}}'
+        )
+    if not _differ(origin, to):
+        return ""
+    reason = f"{source} is in {origin.unit}, {sink} in {to.unit}"
+    if origin.unit == to.unit:
+        return f"{reason}, and the two FMUs define that unit differently"
+    if origin.definition and to.definition and origin.definition.exponents == to.definition.exponents:
+        factor = origin.definition.factor / to.definition.factor
+        reason += f": 1 {origin.unit} is {factor:.9g} {to.unit}, and a wire converts nothing"
+    return reason

@@ -1,0 +1,260 @@
+"""A scene as a system package (SSP 1.0) for other tools.
+
+It holds the FMUs, the wiring with units and a diagram, the values of each instance as a parameter set, the
+step in the annotation that the Open Simulation Platform reads, and the text of the scene in one of our own.
+"""
+
+import math
+from importlib.util import find_spec
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement
+
+from ..errors import LoomfmuError
+from ..fmi import builder, native_builder
+from . import fmus
+from .fmus import Fmu, Port, Value
+from .instances import Instance
+from .ports import Definition
+from .scene import Scene
+from .ssp_layout import Box, bends, layout
+from .ssp_xml import FMU, OSP, OURS, PARAMETER_SET, SSD_FILE, root, text_of, write_units
+
+SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
+
+Files = dict[str, bytes]
+
+
+def export(
+    scene: Scene, path: Path, flavour: str | None = None, platforms: tuple[str, ...] | None = None
+) -> list[str]:
+    """Write a scene as a system package; what other tools will do differently is returned.
+
+    `flavour` is "live" or "native", native by default if such FMUs can be built; `platforms` are those of
+    native ones, all by default. The same scene gives the same bytes.
+
+    Raises:
+        LoomfmuError: an FMU cannot be built, or the scene is a package itself
+        OSError: the file cannot be written
+    """
+    if scene.package is not None:
+        raise LoomfmuError(f"{scene.package} is a system package already")
+    content = builder.zipped(contents(scene, flavour or default_flavour(), platforms))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f"{path.name}.partial")
+    temporary.write_bytes(content)
+    temporary.replace(path)
+    return [*_driven(scene), *_enumerated(scene)]
+
+
+def _driven(scene: Scene) -> list[str]:
+    return [
+        f"{drive.instance}.{drive.variable} is driven along a table, which a system package cannot hold:"
+        " other tools keep it at its first value"
+        for drive in scene.drives
+    ]
+
+
+def _enumerated(scene: Scene) -> list[str]:
+    """Choices that the masters of libcosim and ecos do not set, since they know no enumerations."""
+    found = []
+    for name, instance in scene.instances.items():
+        for variable, value in instance.values.items():
+            port = instance.fmu.ports[variable]
+            if port.base_type == "Enumeration" and value != port.start:
+                found.append(
+                    f"{name}.{variable} is an enumeration: libcosim and ecos leave it at its default"
+                )
+    return found
+
+
+def default_flavour() -> str:
+    """Native where the tools that build such FMUs are installed."""
+    return "native" if find_spec("pyccel") and find_spec("ziglang") else "live"
+
+
+def contents(scene: Scene, flavour: str, platforms: tuple[str, ...] | None = None) -> Files:
+    """All files of the package by their names in it."""
+    files: Files = {}
+    sources: dict[str, str] = {}
+    for name, instance in scene.instances.items():
+        file = _file(instance.fmu, flavour, platforms or tuple(native_builder.PLATFORMS))
+        sources[name] = _place(files, file)
+        values = _values(scene, instance)
+        if values:
+            files[f"resources/{name}.ssv"] = text_of(_parameter_set(instance, values))
+    files[SSD_FILE] = text_of(_structure(scene, sources, files))
+    return files
+
+
+def _file(fmu: Fmu, flavour: str, platforms: tuple[str, ...]) -> Path:
+    """The file of an FMU: built in that flavour, or the one that the scene names."""
+    return fmus.file_of(fmu.name, flavour, platforms) if fmu.built else fmu.path
+
+
+def _place(files: Files, file: Path) -> str:
+    """Put an FMU into the package, once, and return its name there."""
+    content, number = file.read_bytes(), 1
+    source = f"resources/{file.stem}.fmu"
+    while files.get(source, content) != content:  # another FMU has that name
+        number += 1
+        source = f"resources/{file.stem}_{number}.fmu"
+    files[source] = content
+    return source
+
+
+# ---- parameters
+
+
+def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
+    """What is set at the start, an input driven along a table to its first value.
+
+    `inputs_at_step_end` tells of the master, not of the loom: other tools hand over values of the step's
+    start, which is what it says by default. So it is left out, unless the scene itself says so.
+    """
+    driven = {d.variable: d.at(0.0) for d in scene.drives if d.instance == instance.name}
+    values = instance.values | driven
+    return {
+        name: value for name, value in values.items() if not (name == "inputs_at_step_end" and value is True)
+    }
+
+
+def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
+    """The values of an instance. Enumerations are written as integers: libcosim reads no other."""
+    document = root(
+        "ssv:ParameterSet", "ssv", "ssc", version="1.0", name=SET_NAME,
+        generationTool=f"loomfmu {builder.version()}",
+    )  # fmt: skip
+    listed = SubElement(document, "ssv:Parameters")
+    units: dict[str, Definition] = {}
+    for name, value in values.items():
+        port = instance.fmu.ports[name]
+        parameter = SubElement(listed, "ssv:Parameter", name=port.own)
+        attributes = {"value": str(value).lower() if port.kind == "Boolean" else repr(value)}
+        if port.kind == "Real" and port.has_unit and port.definition is not None:
+            attributes["unit"] = port.unit
+            units[port.unit] = port.definition
+        SubElement(parameter, f"ssv:{port.kind}", attributes)
+    write_units(document, "ssv:Units", units)
+    return document
+
+
+# ---- structure
+
+
+def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
+    prefixes = ("ssd", "ssc", "osp", "loomfmu")
+    document = root(
+        "ssd:SystemStructureDescription", *prefixes, version="1.0", name=scene.name,
+        description=scene.title, generationTool=f"loomfmu {builder.version()}",
+    )  # fmt: skip
+    system = SubElement(document, "ssd:System", name=scene.name, description=scene.title)
+    ports = {name: _connectors(scene, instance) for name, instance in scene.instances.items()}
+    boxes = layout(
+        list(scene.instances), scene.wires,
+        {name: ([p.name for p in ins], [p.name for p in outs]) for name, (ins, outs) in ports.items()},
+    )  # fmt: skip
+    elements = SubElement(system, "ssd:Elements")
+    for name in scene.instances:
+        bound = f"resources/{name}.ssv" if f"resources/{name}.ssv" in files else None
+        _component(elements, name, sources[name], ports[name], boxes[name], bound)
+    _connections(system, scene, boxes)
+    SubElement(
+        system, "ssd:SystemGeometry",
+        x1=repr(min(box.left for box in boxes.values())), y1=repr(min(box.bottom for box in boxes.values())),
+        x2=repr(max(box.right for box in boxes.values())), y2=repr(max(box.top for box in boxes.values())),
+    )  # fmt: skip
+    every = [port for ins, outs in ports.values() for port in (*ins, *outs)]
+    used = {p.unit: p.definition for p in every if p.kind == "Real" and p.has_unit and p.definition}
+    write_units(document, "ssd:Units", used)
+    _experiment(document, scene)
+    return document
+
+
+def _connectors(scene: Scene, instance: Instance) -> tuple[list[Port], list[Port]]:
+    """Inputs and outputs that are shown.
+
+    Inputs are those that are wired: fmpy wires one that is left open to the source it has last met.
+    Enumerations are shown where they are wired, as integers, since libcosim knows no enumeration.
+    """
+    ports = instance.fmu.ports
+    inputs = [wire.sink[1] for wire in scene.wires if wire.sink[0] == instance.name]
+    wired = {wire.source[1] for wire in scene.wires if wire.source[0] == instance.name}
+    outputs = [port for port in ports.values() if port.causality == "output"]
+    shown = [port for port in outputs if port.base_type != "Enumeration" or port.name in wired]
+    return [ports[name] for name in inputs], shown
+
+
+def _component(
+    elements: Element, name: str, source: str, ports: tuple[list[Port], list[Port]], box: Box,
+    bound: str | None,
+) -> None:  # fmt: skip
+    component = SubElement(
+        elements, "ssd:Component", name=name, type=FMU, source=source, implementation="CoSimulation"
+    )
+    if any(ports):
+        listed = SubElement(component, "ssd:Connectors")
+        for kind, x, chosen, heights in (
+            ("input", "0", ports[0], box.inputs),
+            ("output", "1", ports[1], box.outputs),
+        ):
+            for port in chosen:
+                connector = SubElement(listed, "ssd:Connector", name=port.own, kind=kind)
+                stated = port.kind == "Real" and port.has_unit and port.definition is not None
+                SubElement(connector, f"ssc:{port.kind}", {"unit": port.unit} if stated else {})
+                SubElement(connector, "ssd:ConnectorGeometry", x=x, y=repr(round(heights[port.name], 6)))
+    SubElement(
+        component, "ssd:ElementGeometry", x1=repr(box.left), y1=repr(box.bottom), x2=repr(box.right),
+        y2=repr(box.top),
+    )  # fmt: skip
+    if bound is not None:
+        bindings = SubElement(component, "ssd:ParameterBindings")
+        SubElement(bindings, "ssd:ParameterBinding", type=PARAMETER_SET, source=bound)
+
+
+def _connections(system: Element, scene: Scene, boxes: dict[str, Box]) -> None:
+    if not scene.wires:
+        return
+    listed = SubElement(system, "ssd:Connections")
+    for wire in scene.wires:
+        (source, output), (sink, entry) = wire.source, wire.sink
+        connection = SubElement(
+            listed, "ssd:Connection", startElement=source,
+            startConnector=scene.instances[source].fmu.ports[output].own, endElement=sink,
+            endConnector=scene.instances[sink].fmu.ports[entry].own,
+        )  # fmt: skip
+        points = bends(wire, boxes)
+        SubElement(
+            connection, "ssd:ConnectionGeometry", pointsX=" ".join(map(repr, points[0])),
+            pointsY=" ".join(map(repr, points[1])),
+        )  # fmt: skip
+
+
+def _experiment(document: Element, scene: Scene) -> None:
+    """Start, stop and step, and the text of the scene."""
+    experiment = SubElement(
+        document, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(scene.steps * scene.step_size)
+    )
+    algorithm = SubElement(_annotation(experiment, OSP), "osp:Algorithm")
+    SubElement(algorithm, "osp:FixedStepAlgorithm", baseStepSize=repr(_whole_nanoseconds(scene.step_size)))
+    if scene.step is None:
+        times = {
+            "revolutions": repr(scene.revolutions), "steps_per_revolution": repr(scene.steps_per_revolution)
+        }  # fmt: skip
+    else:
+        times = {"duration": repr(scene.revolutions), "step": repr(scene.step)}
+    SubElement(_annotation(document, OURS), "loomfmu:Scene", times).text = scene.text
+
+
+def _whole_nanoseconds(step_size: float) -> float:
+    """The step as libcosim counts it, in whole nanoseconds: it cuts off what a rounded product lacks.
+
+    >>> _whole_nanoseconds(9.999999999999999e-05)
+    0.0001
+    """
+    count = max(1, round(step_size * 1e9))
+    nearest = count * 1e-9
+    return nearest if int(nearest * 1e9) == count else math.nextafter(nearest, math.inf)
+
+
+def _annotation(parent: Element, kind: str) -> Element:
+    return SubElement(SubElement(parent, "ssd:Annotations"), "ssc:Annotation", type=kind)

@@ -1,0 +1,125 @@
+"""The demonstration loom in the masters of other makers. Each returns the real outputs along the steps."""
+
+import contextlib
+import ctypes
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from loomfmu.cosim import scene as scenes
+from loomfmu.cosim import ssp
+from loomfmu.cosim.run import run
+from loomfmu.cosim.scene import Scene
+from loomfmu.fmi.native_builder import host_platform
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+Signals = dict[str, NDArray[np.float64]]
+Master = Callable[[Scene, Path], Signals]
+
+
+def demo(steps: int, **changed: Any) -> Scene:
+    """One revolution of the demonstration in 0.1 s: a step is a whole number of nanoseconds."""
+    overrides = {key.replace("__", "."): value for key, value in changed.items()}
+    return scenes.load(DEMO, {"revolutions": 1, "steps_per_revolution": steps} | overrides)
+
+
+def ours(scene: Scene, directory: Path) -> Signals:
+    """The same by our master, which has no delay on any wire of this loom."""
+    trace = run(scene, output=directory / "ours.h5", flavour="native").trace
+    return {signal: trace[signal] for signal in reals(scene)}
+
+
+def reals(scene: Scene) -> list[str]:
+    """All real outputs."""
+    return [
+        f"{name}.{port.name}"
+        for name, instance in scene.instances.items()
+        for port in instance.fmu.ports.values()
+        if port.causality == "output" and port.kind == "Real"
+    ]
+
+
+def packed(scene: Scene, directory: Path) -> Path:
+    """The scene as a system package with native FMUs."""
+    path = directory / f"{scene.name}.ssp"
+    ssp.export(scene, path, "native", (host_platform(),))
+    return path
+
+
+# ---- the masters
+
+
+def libcosim(scene: Scene, directory: Path) -> Signals:
+    """libcosim reads the package and the step in it."""
+    pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimObserver import CosimObserver
+
+    log_output_level(CosimLogLevel.ERROR)
+    execution = CosimExecution.from_ssp_file(str(packed(scene, directory)))
+    observer = CosimObserver.create_last_value()
+    assert execution.add_observer(observer)
+    indices = {info.name.decode(): info.index for info in execution.slave_infos()}
+    ports = {name: instance.fmu.ports for name, instance in scene.instances.items()}
+    rows = {signal: [] for signal in reals(scene)}
+    for _ in range(scene.steps):
+        assert execution.step(1)
+        for signal, values in rows.items():
+            name, variable = signal.split(".")
+            values += observer.last_real_values(indices[name], [ports[name][variable].reference])
+    return {signal: np.array(values) for signal, values in rows.items()}
+
+
+@cache
+def tbb() -> None:
+    """ecos is linked to a library that `pip install tbb` puts where the loader does not look."""
+    with contextlib.suppress(OSError):
+        ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libtbb.so.12"), ctypes.RTLD_GLOBAL)
+
+
+def ecos(scene: Scene, directory: Path) -> Signals:
+    """ecos reads the package, and takes the parameter sets of one name."""
+    tbb()
+    try:
+        from ecospy import EcosSimulation
+        from ecospy.lib import EcosLib
+    except (ImportError, OSError) as error:
+        pytest.skip(f"ecospy cannot be loaded: {error}")
+    EcosLib.set_log_level("off")
+    rows = {signal: [] for signal in reals(scene)}
+    with EcosSimulation(step_size=scene.step_size, ssp_path=str(packed(scene, directory))) as simulation:
+        assert simulation.init(parameter_set=ssp.SET_NAME)
+        for _ in range(scene.steps):
+            simulation.step(1)
+            for signal, values in rows.items():
+                values.append(simulation.get_real(signal.replace(".", "::")))
+        simulation.terminate()
+    return {signal: np.array(values) for signal, values in rows.items()}
+
+
+def fmpy(scene: Scene, directory: Path) -> Signals:
+    """fmpy reads the package but not its parameters, and stamps a row with the time before its step."""
+    from fmpy.ssp.simulation import simulate_ssp
+    from fmpy.ssp.ssd import Parameter, ParameterSet
+
+    values = [
+        Parameter(name=f"{name}.{variable}", type="Real", value=float(value))
+        for name, instance in scene.instances.items()
+        for variable, value in instance.values.items()
+        if variable != "inputs_at_step_end"
+    ]
+    rows = simulate_ssp(
+        str(packed(scene, directory)), stop_time=(scene.steps - 0.5) * scene.step_size,
+        step_size=scene.step_size, parameter_set=ParameterSet(parameters=values),
+    )  # fmt: skip
+    return {signal: rows[signal] for signal in reals(scene)}
+
+
+MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy}
