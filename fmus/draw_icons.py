@@ -9,6 +9,7 @@ from matplotlib.patches import FancyBboxPatch
 from loomfmu.components import BeltMonitor, DobbyDrive, HealdDamper, HealdFrame, MainShaft, WeftInsertion
 from loomfmu.components.belt_wrap import BeltWrap
 from loomfmu.components.detaching_roller import DetachingRoller
+from loomfmu.components.driven_shaft import DrivenShaft
 from loomfmu.components.pattern_lock import PatternLock
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
@@ -68,10 +69,30 @@ def wrapped_load(diameter: float, clearance: float) -> float:
     return belt.restraint_load
 
 
+def braked(turns: int) -> tuple[list[float], list[float]]:
+    """Shaft revolutions and velocity of a shaft that feels the weft insertion it drives."""
+    shaft, weft = DrivenShaft(), WeftInsertion(follow_shaft=True, inputs_at_step_end=True)
+    h = 2 * pi / shaft.speed / 720
+    assert shaft.initialize(0.0) == weft.initialize(0.0) == 0
+    rows = []
+    for step in range(720 * (turns + 3)):
+        weft.shaft_angle, weft.shaft_velocity = shaft.angle, shaft.velocity
+        weft.shaft_acceleration = shaft.acceleration
+        assert weft.step(step * h, 0.0) == 0
+        shaft.torque_1 = weft.shaft_torque
+        assert shaft.step(step * h, h) == 0
+        rows.append((step / 720, shaft.velocity))
+    time, velocity = zip(*rows[3 * 720 :], strict=True)
+    return list(time), list(velocity)
+
+
 def main() -> None:
     """Draw all of them."""
     time, velocity = trace([MainShaft(ramp_duration=0.2, ripple_amplitude=0.06)], 2, "velocity")
     draw("main_shaft", (time, velocity, BLUE), levels=(0.0,))
+
+    time, velocity = braked(2)
+    draw("driven_shaft", (time, velocity, BLUE), levels=(DrivenShaft().speed,), level_colour=RED)
 
     time, travel = trace([WeftInsertion()], 1, "travel")
     draw("weft_insertion", (time, travel, BLUE), levels=(0.0,))

@@ -212,7 +212,7 @@ CASES: dict[str, tuple[str, str]] = {
     "component no name": (HEAD + "[mine]\ncomponent = 5\n", "mine.component = 5 is not a name in quotes"),
     "no shaft": (
         HEAD + '[shaft]\ncomponent = "HealdFrame"\n',
-        "shaft.component = 'HealdFrame': the shaft of a scene is a MainShaft",
+        "shaft.component = 'HealdFrame': the shaft of a scene is a MainShaft or a DrivenShaft",
     ),
     "bad TOML": ("a = = 5", "not valid TOML: Invalid value (at line 1, column 5)"),
     "zero steps": (

@@ -4,21 +4,37 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .cosim.claims import judge
-    from .cosim.run import Result, run
+    from .cosim.run import Evaluation, Result, evaluate, run
     from .cosim.verdict import Verdict
     from .errors import LoomfmuError
+    from .sweeps.run import Sweep, sweep
     from .traces import Trace
 
 _HOMES = {
+    "Evaluation": "cosim.run",
     "LoomfmuError": "errors",
     "Result": "cosim.run",
+    "Sweep": "sweeps.run",
     "Trace": "traces",
     "Verdict": "cosim.verdict",
+    "evaluate": "cosim.run",
     "judge": "cosim.claims",
     "run": "cosim.run",
+    "sweep": "sweeps.run",
 }
 
-__all__ = ["LoomfmuError", "Result", "Trace", "Verdict", "judge", "run"]
+__all__ = [
+    "Evaluation",
+    "LoomfmuError",
+    "Result",
+    "Sweep",
+    "Trace",
+    "Verdict",
+    "evaluate",
+    "judge",
+    "run",
+    "sweep",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -46,8 +46,12 @@ def _parser() -> argparse.ArgumentParser:
     _add_set(run)
     run.add_argument("--output", metavar="FILE.h5", help="the trace; results/SCENE.h5 by default")
     run.add_argument("--native", action="store_true", help="with native FMUs instead of live ones")
+    run.add_argument(
+        "--explain", action="store_true", help="tell what was left out, and why, and what that saved"
+    )
     run.set_defaults(command=_run)
     _add_export(commands)
+    _add_sweep(commands)
 
     build = commands.add_parser("build", help="build FMUs")
     build.add_argument("names", nargs="*", metavar="NAME", help="all by default")
@@ -100,6 +104,20 @@ def _add_export(commands: Any) -> None:
     export.set_defaults(command=_export)
 
 
+def _add_sweep(commands: Any) -> None:
+    sweep = commands.add_parser("sweep", help="run a scene with many combinations of values, as one table")
+    sweep.add_argument("sweep", metavar="SWEEP.toml")
+    sweep.add_argument("--output", metavar="DIR", help="of the results; results/SWEEP by default")
+    sweep.add_argument(
+        "--processes", type=int, metavar="N", help="worker processes of this machine; all cores by default"
+    )
+    sweep.add_argument("--scheduler", metavar="ADDRESS", help="of a dask scheduler, such as tcp://host:8786")
+    sweep.add_argument(
+        "--restart", action="store_true", help="throw away what DIR has of this or another sweep"
+    )
+    sweep.set_defaults(command=_sweep)
+
+
 def _overrides(options: argparse.Namespace) -> dict[str, Any]:
     overrides: dict[str, Any] = {}
     for text in options.overrides:
@@ -139,12 +157,27 @@ def _run(options: argparse.Namespace) -> int:
         )
     else:
         print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")
+    if options.explain:
+        print("left out:", *(f"  {line}" for line in result.skipped), sep="\n")
     _print_verdicts([verdict.as_dict() for verdict in result.claims])
     if scene.description:
         print(f"{scene.description}\n")
     command = sys.argv[0] if Path(sys.argv[0]).name == "loomfmu" else "loomfmu"
     print(f"trace: {result.path}    summary: {command} show {result.path}")
     return 0 if result.holds else 1
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from .sweeps.run import sweep
+
+    found = sweep(
+        options.sweep, processes=options.processes, output=options.output, scheduler=options.scheduler,
+        restart=options.restart, progress=True,
+    )  # fmt: skip
+    from .sweeps.report import show
+
+    show(found)
+    return 0 if found.holds else 1
 
 
 def _build(options: argparse.Namespace) -> int:

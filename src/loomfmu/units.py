@@ -63,6 +63,7 @@ UNITS = {
     "N.s/m": Unit(kg=1, s=-1),
     "N.m": Unit(kg=1, m=2, s=-2),
     "N.m2": Unit(kg=1, m=3, s=-2),
+    "N.m.s/rad": Unit(kg=1, m=2, s=-1, rad=-1),
     "W": Unit(kg=1, m=2, s=-3),
     "kg.m2": Unit(kg=1, m=2),
 }

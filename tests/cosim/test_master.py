@@ -184,13 +184,13 @@ def test_a_loop_that_does_not_settle_is_told(tmp_path: Path) -> None:
 [belt]
 yarn_tension = "5 N"
 [damper_1]
-carrier_mass = 0.1
+carrier_mass = 0.1105 # the head's own: the belt's force is 5 N more than what it would have to be
 [wires]
 "belt.acceleration" = "damper_1.carrier_acceleration"
 "damper_1.warp_force" = "belt.axial_force"
 """
     result = run(small(2, revolutions=0.5, rest=rest), output=tmp_path / "loop.h5")
-    assert "loop: the values at the start have not settled after 100 exchanges" in result.warnings
+    assert "loop: the values at the start have not settled after 50 exchanges" in result.warnings
 
 
 # ---- instances are reused, and given back
@@ -221,7 +221,7 @@ def test_a_second_run_makes_no_new_instances_and_gives_the_same_bits(
 ) -> None:
     scene = small(90)
     first = all_of(traced(scene, tmp_path))
-    assert sorted(counted) == sorted(scene.instances)
+    assert sorted(counted) == sorted(set(scene.instances) - {"shaft"})  # its speed is constant
     counted.clear()
     again = all_of(traced(scene, tmp_path))
     assert counted == []
@@ -240,7 +240,7 @@ def test_a_run_with_other_values_leaves_no_trace_in_the_next(tmp_path: Path, cou
     after = all_of(traced(scene, tmp_path))
     for signal, values in before.items():
         np.testing.assert_array_equal(after[signal], values)
-    assert len(counted) == len(scene.instances)
+    assert len(counted) == len(scene.instances) - 1  # but the shaft, whose speed is constant
 
 
 def test_two_instances_of_one_fmu_are_two(tmp_path: Path) -> None:
@@ -305,7 +305,7 @@ def test_an_exception_in_a_component_is_told_in_one_line(tmp_path: Path, counted
     made = [name for name in counted if not name.startswith("-")]
     with pytest.raises(LoomfmuError):
         traced(odd_scene("Raising"), tmp_path)
-    assert counted == made == ["shaft", "odd"]
+    assert counted == made == ["odd"]
 
 
 @pytest.mark.usefixtures("odd")

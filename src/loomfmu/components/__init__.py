@@ -4,6 +4,7 @@ from .belt_monitor import BeltMonitor
 from .belt_wrap import BeltWrap
 from .detaching_roller import DetachingRoller
 from .dobby_drive import DobbyDrive
+from .driven_shaft import DrivenShaft
 from .heald_damper import HealdDamper
 from .heald_frame import HealdFrame
 from .main_shaft import MainShaft
@@ -16,6 +17,7 @@ COMPONENTS = {
     component.__name__: component
     for component in (
         MainShaft,
+        DrivenShaft,
         WeftInsertion,
         BeltMonitor,
         DobbyDrive,

@@ -19,13 +19,13 @@ import numpy as np
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
-from ..traces import Trace
+from ..traces import Signals
 from . import curves
 from .loom_claims import locks_in_time, rapier_in_open_shed, reed_clear_of_rapier
 from .verdict import Verdict, verdict
 
 
-def judge(trace: Trace, *, kind: str, name: str = "", **arguments: Any) -> Verdict:
+def judge(trace: Signals, *, kind: str, name: str = "", **arguments: Any) -> Verdict:
     """Judge one claim on a trace; arguments are those of the claim's function, with units or in SI.
 
     `name` is what the verdict calls the claim, if not by its kind.
@@ -99,6 +99,7 @@ def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
     return signals
 
 
+TOLERANCE = 0.015  # of the stroke: within it a frame dwells, if nothing else is said
 PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")
 
 # arguments that are quantities, and their units; a bound's is that of its signal
@@ -129,7 +130,9 @@ NEEDS: dict[str, tuple[str, tuple[str, ...]]] = {
 # ---- the claims
 
 
-def above(trace: Trace, signal: str, bound: float | str, window: list[float | str] | None = None) -> Verdict:
+def above(
+    trace: Signals, signal: str, bound: float | str, window: list[float | str] | None = None
+) -> Verdict:
     """A signal stays at or above a bound: over the whole run, or in a window of shaft angles.
 
     The bound is a quantity, or the name of a parameter of the run, such as "shaft.speed".
@@ -137,12 +140,14 @@ def above(trace: Trace, signal: str, bound: float | str, window: list[float | st
     return _bounded(trace, signal, bound, window, 1.0)
 
 
-def below(trace: Trace, signal: str, bound: float | str, window: list[float | str] | None = None) -> Verdict:
+def below(
+    trace: Signals, signal: str, bound: float | str, window: list[float | str] | None = None
+) -> Verdict:
     """A signal stays at or below a bound; see `above`."""
     return _bounded(trace, signal, bound, window, -1.0)
 
 
-def lowest_margin(trace: Trace, bound: float | str, belt: str = "belt") -> Verdict:
+def lowest_margin(trace: Signals, bound: float | str, belt: str = "belt") -> Verdict:
     """The belt's margin against buckling never falls below a bound, on the continuous curve."""
     limit = units.parse(bound, "1")
     worst = float(trace[f"{belt}.lowest_margin"][-1])
@@ -153,7 +158,7 @@ def lowest_margin(trace: Trace, bound: float | str, belt: str = "belt") -> Verdi
     )  # fmt: skip
 
 
-def peak_load(trace: Trace, damper: str, at_most: float | str) -> Verdict:
+def peak_load(trace: Signals, damper: str, at_most: float | str) -> Verdict:
     """The force that a damper's carrier puts on its frame never exceeds a bound, on the continuous curve."""
     limit = units.parse(at_most, "N")
     worst = float(trace[f"{damper}.peak_load"][-1])
@@ -164,7 +169,7 @@ def peak_load(trace: Trace, damper: str, at_most: float | str) -> Verdict:
     )  # fmt: skip
 
 
-def stop_contacts(trace: Trace, damper: str, at_most: float | str) -> Verdict:
+def stop_contacts(trace: Signals, damper: str, at_most: float | str) -> Verdict:
     """A damper's carrier touches its stops no more often than that."""
     limit = units.parse(at_most, "1")
     counted = trace[f"{damper}.stop_contacts"]
@@ -174,7 +179,7 @@ def stop_contacts(trace: Trace, damper: str, at_most: float | str) -> Verdict:
     return verdict(trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, "1", time)
 
 
-def dwell(trace: Trace, heald: str, at_least: float | str, tolerance: float | str = 0.015) -> Verdict:
+def dwell(trace: Signals, heald: str, at_least: float | str, tolerance: float | str = TOLERANCE) -> Verdict:
     """Every whole dwell of a frame, within a share of its stroke from an end, lasts that shaft angle."""
     share = units.parse(tolerance, "1")
     stroke = trace.parameter(f"{heald}.stroke")
@@ -183,7 +188,7 @@ def dwell(trace: Trace, heald: str, at_least: float | str, tolerance: float | st
     return _shortest(trace, f"dwell within {100 * share:g} % of the stroke", f"{heald}.lift", spans, at_least)
 
 
-def clear_shed(trace: Trace, heald: str, clearance: float | str, at_least: float | str) -> Verdict:
+def clear_shed(trace: Signals, heald: str, clearance: float | str, at_least: float | str) -> Verdict:
     """Every whole time that a frame's warp is beyond a height, either way, lasts that shaft angle."""
     height = units.parse(clearance, "m")
     stroke = trace.parameter(f"{heald}.stroke")
@@ -199,7 +204,7 @@ def clear_shed(trace: Trace, heald: str, clearance: float | str, at_least: float
 
 
 def dwell_contains(
-    trace: Trace, heald: str, angles: list[float | str], tolerance: float | str = 0.015
+    trace: Signals, heald: str, angles: list[float | str], tolerance: float | str = TOLERANCE
 ) -> Verdict:
     """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
     limit = units.parse(tolerance, "1")
@@ -243,7 +248,7 @@ KINDS: dict[str, Callable[..., Verdict]] = {
 
 
 def _bounded(
-    trace: Trace, signal: str, bound: float | str, window: list[float | str] | None, sign: float
+    trace: Signals, signal: str, bound: float | str, window: list[float | str] | None, sign: float
 ) -> Verdict:
     if names_parameter("bound", bound):
         limit = trace.parameter(str(bound))
@@ -264,7 +269,7 @@ def _bounded(
 
 
 def _shortest(
-    trace: Trace, claim: str, signal: str, spans: list[tuple[float, float]], at_least: float | str
+    trace: Signals, claim: str, signal: str, spans: list[tuple[float, float]], at_least: float | str
 ) -> Verdict:
     """The shortest of some spans of time, by the angle that the shaft turns meanwhile."""
     limit = units.parse(at_least, "rad")

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
-from ..traces import Trace
+from ..traces import Signals
 
 Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
@@ -15,11 +15,11 @@ TURN = 2.0 * math.pi
 class Motion:
     """A signal with its first and second rate: on each interval the quintic that joins the samples."""
 
-    def __init__(self, trace: Trace, signal: str):
+    def __init__(self, trace: Signals, signal: str):
         rate = trace.rate(signal)
         second = trace.rate(rate) if rate else None
         if rate is None or second is None:
-            raise LoomfmuError(f"{trace.path.name}: {signal} is not recorded with its rate and second rate")
+            raise LoomfmuError(f"{trace.name}: {signal} is not recorded with its rate and second rate")
         self.time = trace.time
         self.values = [np.asarray(trace[name]) for name in (signal, rate, second)]
 
@@ -87,7 +87,7 @@ def spans_within(lift: Motion, distance: float, stroke: float) -> list[tuple[flo
     return sorted(spans)
 
 
-def times_at(trace: Trace, angle: float) -> list[float]:
+def times_at(trace: Signals, angle: float) -> list[float]:
     """All times at which the shaft stands at an angle of its revolution."""
     shaft = Motion(trace, "shaft.angle")
     low, high = sorted((float(shaft.values[0][0]), float(shaft.values[0][-1])))
@@ -104,7 +104,7 @@ def times_at(trace: Trace, angle: float) -> list[float]:
 
 
 def lowest(
-    trace: Trace, signal: str, sign: float, window: tuple[float, float] | None
+    trace: Signals, signal: str, sign: float, window: tuple[float, float] | None
 ) -> tuple[float, float, bool]:
     """Lowest value of `sign` times a signal, its time, and whether values between samples were counted.
 

@@ -1,11 +1,15 @@
 """Inputs that a scene drives along a table: wear that grows, a tension that changes."""
 
-from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import LoomfmuError, suggestion
 from .fmus import Port
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -17,20 +21,22 @@ class Drive:
     revolutions: tuple[float, ...]
     values: tuple[float, ...]
 
-    def at(self, revolution: float) -> float:
-        """Value at a number of revolutions since the start.
+    def along(self, revolutions: Floats) -> Floats:
+        """Values at numbers of revolutions since the start.
 
-        >>> Drive("belt", "guide_clearance", (0.0, 2.0), (1.0, 3.0)).at(0.5)
-        1.5
+        >>> Drive("belt", "guide_clearance", (0.0, 2.0), (1.0, 3.0)).along(np.array([-1.0, 0.5, 9.0]))
+        array([1. , 1.5, 3. ])
         """
-        place = bisect_right(self.revolutions, revolution)
-        if place == 0:
-            return self.values[0]
-        if place == len(self.values):
-            return self.values[-1]
-        start, end = self.revolutions[place - 1 : place + 1]
-        low, high = self.values[place - 1 : place + 1]
-        return low + (high - low) * (revolution - start) / (end - start)
+        places, values = np.array(self.revolutions), np.array(self.values)
+        if len(places) == 1:
+            return np.full(len(revolutions), values[0])
+        after = np.clip(np.searchsorted(places, revolutions, side="right"), 1, len(places) - 1)
+        start, end = places[after - 1], places[after]
+        low, high = values[after - 1], values[after]
+        # held outside the table; a share of exactly 1 need not give the end exactly
+        inside = np.clip(revolutions, places[0], places[-1])
+        found = low + (high - low) * (inside - start) / (end - start)
+        return np.asarray(np.where(revolutions >= places[-1], values[-1], found))
 
 
 def drive(name: str, port: Port, table: Any) -> Drive:

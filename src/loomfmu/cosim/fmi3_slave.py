@@ -34,13 +34,14 @@ def _in_vector(base_type: str) -> Any:
 
 
 def _one_by_one(calls: list[Call]) -> int:
-    return max(function(*arguments) for function, arguments in calls)
+    return max(call.function(*call.arguments) for call in calls)
 
 
 class Fmi3Slave(Slave):
     """One instance of an FMI 3.0 co-simulation FMU."""
 
     standard = "fmi3"
+    _state_word = "State"
 
     def __init__(self, fmu: Fmu, name: str):
         super().__init__(fmu, name)
@@ -96,7 +97,7 @@ class Fmi3Slave(Slave):
                 size = ctypes.sizeof(_in_vector(base_type))
                 calls.append(self._typed(action, base_type, references[start:end], address + start * size))
                 start = end
-        return calls[0] if len(calls) == 1 else (_one_by_one, (calls,))
+        return calls[0] if len(calls) == 1 else Call(_one_by_one, (calls,), kind, plain=False)
 
     def _typed(self, action: str, base_type: str, references: Sequence[int], address: int) -> Call:
         """One FMI call; where the types differ in width, by way of an array of the FMU's own type."""
@@ -105,7 +106,8 @@ class Fmi3Slave(Slave):
         function = self._library[f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}"]
         array, size = (ctypes.c_uint32 * count)(*references), ctypes.c_size_t(count)
         if own is masters:
-            return function, (self._component, array, size, ctypes.c_void_p(address), size)
+            arguments = (self._component, array, size, ctypes.c_void_p(address), size)
+            return Call(function, arguments, base_type, plain=False)
         between = (own * count)()
         values = (masters * count).from_address(address)
 
@@ -120,7 +122,7 @@ class Fmi3Slave(Slave):
                 values[:] = between[:]
             return status
 
-        return converted, (self._component, array, size, between, size)
+        return Call(converted, (self._component, array, size, between, size), base_type, plain=False)
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation has not stepped."""
@@ -136,4 +138,4 @@ class Fmi3Slave(Slave):
                 return max(status, DISCARD)
             return status
 
-        return stepped, (self._component, time, step_size, ctypes.c_bool(True), *told)
+        return Call(stepped, (self._component, time, step_size, ctypes.c_bool(True), *told), plain=False)

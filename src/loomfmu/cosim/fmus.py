@@ -1,11 +1,13 @@
-"""FMUs as files: built if need be, unpacked once, their descriptions read."""
+"""FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
 import os
 import shutil
 import tempfile
-from dataclasses import dataclass, replace
-from functools import cache
+import zipfile
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -23,25 +25,74 @@ __all__ = ["FLAVOURS", "Fmu", "Port", "Value", "cache_directory", "file_of", "lo
 
 
 @dataclass(frozen=True)
-class Fmu:
-    """An FMU ready to be instantiated.
+class Unpacked:
+    """The file of an FMU: where its content lies, and what tells it from others."""
 
-    `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
-    a process may have one instance of, `built` one that was built for a scene and not given as a file.
-    """
-
-    name: str
     path: Path
     sha256: str
     directory: Path
     guid: str
     identifier: str
     version: str
+
+
+@dataclass(frozen=True)
+class Fmu:
+    """An FMU that can be instantiated.
+
+    `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
+    a process may have one instance of. `flavour` is that of one which is built when its file is first
+    needed, and empty for one that was given as a file. `fixed_step` is one that takes equal steps only.
+    """
+
+    name: str
     ports: dict[str, Port]
     fmi: int = 2
     ours: bool = True
     single: bool = False
-    built: bool = False
+    fixed_step: bool = False
+    flavour: str = ""
+    given: Unpacked | None = field(default=None, repr=False)
+
+    @property
+    def built(self) -> bool:
+        """Whether it is built for a scene and not given as a file."""
+        return bool(self.flavour)
+
+    @cached_property
+    def file(self) -> Unpacked:
+        """Its file, built and unpacked at the first call."""
+        return self.given or _built(self.name, self.flavour)
+
+    @property
+    def path(self) -> Path:
+        """Path of the file."""
+        return self.file.path
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the file."""
+        return self.file.sha256
+
+    @property
+    def directory(self) -> Path:
+        """Where the file is unpacked."""
+        return self.file.directory
+
+    @property
+    def guid(self) -> str:
+        """Its GUID, or in FMI 3 its instantiation token."""
+        return self.file.guid
+
+    @property
+    def identifier(self) -> str:
+        """What its functions and its library are named after."""
+        return self.file.identifier
+
+    @property
+    def version(self) -> str:
+        """Its maker's version of it."""
+        return self.file.version
 
     def name_of(self, variable: str) -> str:
         """What scenes call a variable, given that name or the FMU's own."""
@@ -65,16 +116,29 @@ def cache_directory() -> Path:
 
 @cache
 def of_component(name: str, flavour: str = "live") -> Fmu:
-    """The FMU of one of our components, live or native, built unless the same one was built before."""
-    return replace(load(file_of(name, flavour, (native_builder.host_platform(),))), built=True)
+    """The FMU of one of our components, live or native. It is built only when its file is needed."""
+    _check(name, flavour)
+    description = BytesIO()
+    with zipfile.ZipFile(description, "w") as archive:
+        archive.writestr("modelDescription.xml", builder.description(COMPONENTS[name]))
+    read = fmpy.read_model_description(description, validate=False)
+    return Fmu(name=name, ports=ports_of(read), flavour=flavour)
 
 
-def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
-    """The file of one of our components, built unless the same one was; a live one is for all platforms."""
+def _built(name: str, flavour: str) -> Unpacked:
+    return load(file_of(name, flavour, (native_builder.host_platform(),))).file
+
+
+def _check(name: str, flavour: str) -> None:
     if name not in COMPONENTS:
         raise LoomfmuError(f"there is no component {name!r}{suggestion(name, COMPONENTS)}")
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
+
+
+def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
+    """The file of one of our components, built unless the same one was; a live one is for all platforms."""
+    _check(name, flavour)
     native, component = flavour == "native", COMPONENTS[name]
     identity = native_builder.identity(component, platforms) if native else builder.guid(component)
     built = cache_directory() / "fmus" / identity
@@ -106,10 +170,12 @@ def load(path: Path) -> Fmu:
     _check_runnable(path, description)
     kind = description.coSimulation
     return Fmu(
-        name=description.modelName, path=path, sha256=sha256, directory=directory, guid=description.guid,
-        identifier=kind.modelIdentifier, version=description.version or "", ports=ports,
-        fmi=int(description.fmiVersion[0]), ours=is_ours(description),
-        single=kind.canBeInstantiatedOnlyOncePerProcess,
+        name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
+        ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
+        fixed_step=not kind.canHandleVariableCommunicationStepSize,
+        given=Unpacked(
+            path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
+        ),
     )  # fmt: skip
 
 

@@ -12,6 +12,8 @@ from . import fmus, standard_loom
 from .fmus import Fmu, Port, Value
 from .graph import Wire
 
+COARSE = "coarse_steps_per_revolution"
+WHOLE = ("grid", COARSE, "coupling")  # keys of the scene itself that can be set beside its times
 KEYS = (
     "title",
     "description",
@@ -19,6 +21,7 @@ KEYS = (
     "steps_per_revolution",
     "duration",
     "step",
+    *WHOLE,
     "record",
     "loom",
     "wires",
@@ -30,6 +33,7 @@ PARAMETER_SETS = ("machine", "head", "pattern", "component")
 FILES = ("fmu", "units")
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+SHAFTS = ("MainShaft", "DrivenShaft")
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
 
@@ -134,8 +138,8 @@ def overridden(given: Iterable[str], key: str) -> list[tuple[str, str]]:
     """What a key of `--set` stands for, as (instance, variable); no instance for the scene's own keys."""
     instance, dot, variable = key.partition(".")
     if not dot:
-        if key not in TIMES:
-            known = [*TIMES, *(f"{name}." for name in given)]
+        if key not in (*TIMES, *WHOLE):
+            known = [*TIMES, *WHOLE, *(f"{name}." for name in given)]
             raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
         return [("", key)]
     found = [instance] if instance in given else members(instance, given)
@@ -172,8 +176,10 @@ def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
     if "fmu" not in table:
         fmu = fmus.of_component(str(component))
-        if name == "shaft" and fmu.name != "MainShaft":
-            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene is a MainShaft")
+        if name == "shaft" and fmu.name not in SHAFTS:
+            raise LoomfmuError(
+                f"shaft.component = {component!r}: the shaft of a scene is a {' or a '.join(SHAFTS)}"
+            )
         return fmu
     if "component" in table:
         raise LoomfmuError(f"{name} has both a component and an fmu; it is one of them")

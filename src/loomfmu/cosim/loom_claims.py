@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..errors import LoomfmuError
-from ..traces import Trace
+from ..traces import Signals
 from . import curves
 from .verdict import Verdict, verdict
 
 
 def rapier_in_open_shed(
-    trace: Trace,
+    trace: Signals,
     head_height: float | str,
     weft: str = "weft",
     belt: str = "belt",
@@ -52,7 +52,7 @@ def rapier_in_open_shed(
 
 
 def reed_clear_of_rapier(
-    trace: Trace, clearance: float | str, reed: str = "reed", weft: str = "weft", belt: str = "belt"
+    trace: Signals, clearance: float | str, reed: str = "reed", weft: str = "weft", belt: str = "belt"
 ) -> Verdict:
     """While the rapier head is in the shed, the reed stays that far behind its front limit."""
     limit = units.parse(clearance, "m")
@@ -76,7 +76,7 @@ def reed_clear_of_rapier(
     )  # fmt: skip
 
 
-def locks_in_time(trace: Trace, lock: str = "lock") -> Verdict:
+def locks_in_time(trace: Signals, lock: str = "lock") -> Verdict:
     """The pattern locks follow their law and let go within the time that they have, at every sample."""
     in_time = np.asarray(trace[f"{lock}.in_time"], dtype=bool)
     margin = np.asarray(trace[f"{lock}.torque_margin"])
@@ -88,7 +88,7 @@ def locks_in_time(trace: Trace, lock: str = "lock") -> Verdict:
     )  # fmt: skip
 
 
-def _in_shed(trace: Trace, weft: str, belt: str) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _in_shed(trace: Signals, weft: str, belt: str) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Samples at which the head is in the shed, and the times at which it enters or leaves it."""
     edge = trace.parameter(f"{belt}.idle_travel")
     travel = curves.Motion(trace, f"{weft}.travel")

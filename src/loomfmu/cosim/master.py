@@ -2,15 +2,16 @@
 
 Within a step every source is stepped before its sinks and hands over the values it has at the end of
 the step, so that a system without loops has no coupling error. Wires that close a loop carry the values
-of the step before. Steps are counted as integers, `t = n h`: nothing drifts.
+of the step before, or are iterated until both ends agree (`coupling = "iterated"`).
 """
 
 import ctypes
 import math
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -18,13 +19,20 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
 from .graph import step_order
-from .scene import Scene
-from .slave import Call, Slave, borrow, give_back
+from .grid import Grid, Span, uniform
+from .lean import ConstantShaft
+from .loops import MOST_EXCHANGES, Broyden, Iteration, Swing
+from .scene import ITERATED, Scene
+from .slave import Slave, borrow, give_back
+from .steppers import Action, Memory, Stepper, perform, stepper
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}
-INITIAL_PASSES = 100  # of an exchange around a loop that does not settle
+PATIENCE = 0.05  # s between looks for Ctrl-C
 
-Block = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]], None]
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int32]
+Block = Callable[[Reals, Reals, Integers], None]
+Slot = tuple[str, int]
 
 
 class Interrupted(Exception):
@@ -34,47 +42,72 @@ class Interrupted(Exception):
 class Master:
     """The instances of a scene, coupled. Use it in a `with` statement: it gives them back.
 
-    Within that statement Ctrl-C does not raise, it fills `interrupted`.
+    `fetched` are the outputs that are read from the FMUs, all by default; `shafts` the main shafts that
+    need no FMU; `compiled` tells whether the steps are taken in C: where that can be had, by default. Within
+    the `with` statement Ctrl-C does not raise, it fills `interrupted`.
     """
 
-    def __init__(self, scene: Scene):
+    def __init__(
+        self,
+        scene: Scene,
+        grid: Grid | None = None,
+        fetched: Collection[tuple[str, str]] | None = None,
+        shafts: Mapping[str, ConstantShaft] | None = None,
+        compiled: bool | None = None,
+    ):
         self.scene = scene
+        self.grid = grid or uniform(scene)
+        self.shafts = dict(shafts or {})
         self.order, self.lagged = step_order(scene.instances, scene.wires)
-        self.slots = self._slots()
+        self.slots = self._slots(fetched)
         self.reals = np.zeros(max(1, sum(1 for kind, _ in self.slots.values() if kind == "Real")))
         self.integers = np.zeros(
             max(1, sum(1 for kind, _ in self.slots.values() if kind != "Real")), dtype=np.int32
         )
         self.slaves: dict[str, Slave] = {}
-        self.unsettled = False
-        self._time = ctypes.c_double(0.0)
-        self._calls: list[tuple[Slave, str, Call]] = []
+        self.interrupted = ctypes.c_int32(0)
+        self._compiled = compiled
+        self.settled = True
+        self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
+        self._swing = Swing(self.lagged, self._lagged_slots())
 
-    def _slots(self) -> dict[tuple[str, str], tuple[str, int]]:
+    def _slots(self, fetched: Collection[tuple[str, str]] | None) -> dict[tuple[str, str], Slot]:
         """Where the value of each output stands: reals in one vector, integers and booleans in another.
 
         Outputs of one instance and type stand side by side in the order of their value references.
         """
-        slots: dict[tuple[str, str], tuple[str, int]] = {}
+        slots: dict[tuple[str, str], Slot] = {}
         taken = {"Real": 0, "Integer": 0}
+
+        def take(instance: str, variable: str, kind: str) -> None:
+            vector = "Real" if kind == "Real" else "Integer"
+            slots[instance, variable] = (kind, taken[vector])
+            taken[vector] += 1
+
         for name in self.order:
             ports = self.scene.instances[name].fmu.ports.values()
             for kind in SIZES:
                 for port in ports:
-                    if port.causality == "output" and port.kind == kind:
-                        vector = "Real" if kind == "Real" else "Integer"
-                        slots[name, port.name] = (kind, taken[vector])
-                        taken[vector] += 1
+                    wanted = fetched is None or (name, port.name) in fetched
+                    if port.causality == "output" and port.kind == kind and wanted:
+                        take(name, port.name, kind)
         for drive in self.scene.drives:
-            slots[drive.instance, drive.variable] = ("Real", taken["Real"])
-            taken["Real"] += 1
+            take(drive.instance, drive.variable, "Real")
+        for name in self.shafts:
+            for variable in ("angle", "velocity", "acceleration"):
+                take(name, variable, "Real")
         return slots
+
+    def _lagged_slots(self) -> list[int]:
+        """Where the real values of the wires stand that close a loop."""
+        slots = dict.fromkeys(self.slots[wire.source] for wire in self.lagged)
+        return [slot for kind, slot in slots if kind == "Real"]
 
     # ---- life cycle
 
     def __enter__(self) -> "Master":
         self._interrupts = ExitStack()
-        self.interrupted = self._interrupts.enter_context(_interrupt_flag())
+        self._interrupts.enter_context(_interrupt_fills(self.interrupted))
         try:
             for name in self.order:
                 self.slaves[name] = borrow(self.scene.instances[name].fmu, name)
@@ -91,47 +124,60 @@ class Master:
 
     def initialize(self) -> None:
         """Set all values, exchange the outputs at the start until they settle, prepare the calls."""
-        stop_time = self.scene.steps * self.scene.step_size
         for name in self.order:
-            self.slaves[name].start(self.scene.instances[name].values, stop_time)
-        self._drive(0)
-        for _ in range(INITIAL_PASSES if self.lagged else 1):
-            before = self.reals.copy(), self.integers.copy()
-            for name in self.order:
-                self._run_calls(self._inputs(name) + self._outputs(name))
-            if np.array_equal(before[0], self.reals) and np.array_equal(before[1], self.integers):
-                break
-        else:
-            self.unsettled = bool(self.lagged)
+            self.slaves[name].start(self.scene.instances[name].values, self.grid.stop_time)
+        for drive in self.scene.drives:
+            self.reals[self.slots[drive.instance, drive.variable][1]] = drive.along(np.zeros(1))[0]
+        self._turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
+        self._exchange_at_start()
         for name in self.order:
             self.slaves[name].finish_initialization()
-        step_size = ctypes.c_double(self.scene.step_size)
-        self._calls = []
-        for name in self.order:
-            step = self.slaves[name].step_call(self._time, step_size)
-            self._calls += [
+        self._stepper = self._make_stepper()
+
+    def _exchange_at_start(self) -> None:
+        """Hand all outputs on until loops agree with themselves; where they cannot, hand them on once."""
+        exchange = [action for name in self.order for action in (*self._inputs(name), *self._outputs(name))]
+        perform(exchange, 0.0)
+        if not self.lagged:
+            return
+        first = self.reals.copy(), self.integers.copy()
+        told = {name: len(slave.messages) for name, slave in self.slaves.items()}
+        solver = Broyden(self.reals, self.integers, self._lagged_slots())
+        self.settled = solver.settle(lambda: perform(exchange, 0.0))
+        if not self.settled:
+            self.reals[:], self.integers[:] = first
+            perform(exchange, 0.0)
+            for name, slave in self.slaves.items():
+                del slave.messages[told[name] :]  # of values that were only tried
+
+    def _make_stepper(self) -> Stepper:
+        """What takes the steps: the calls of all instances in their order."""
+        actions = {
+            name: [
                 *self._inputs(name),
-                (self.slaves[name], "fmi2DoStep", step),
+                Action(self.slaves[name], "fmi2DoStep", self.slaves[name].step_call(self._time, self._size)),
                 *self._outputs(name),
             ]
+            for name in self.order
+        }
+        driven = [self.slots[drive.instance, drive.variable][1] for drive in self.scene.drives]
+        memory = Memory(self.reals, self.integers, driven, self.interrupted)
+        if self.lagged and self.scene.coupling == ITERATED:
+            return Iteration(actions, self.lagged, self._lagged_slots(), memory, self._time, self._size)
+        in_order = [action for name in self.order for action in actions[name]]
+        return stepper(in_order, memory, self._time, self._size, self._compiled)
 
-    def _run_calls(self, calls: list[tuple[Slave, str, Call]]) -> None:
-        for slave, action, (function, arguments) in calls:
-            status = function(*arguments)
-            if status > 1:
-                raise slave.failed(status, action, self._time.value)
-
-    def _drive(self, steps: int) -> None:
-        """Set the driven inputs to what they are after a number of steps."""
-        revolution = steps / self.scene.steps_per_revolution
-        for drive in self.scene.drives:
-            self.reals[self.slots[drive.instance, drive.variable][1]] = drive.at(revolution)
+    def _turn_shafts(self, times: Reals, rows: Reals) -> None:
+        """Write where the shafts that need no FMU stand at these times."""
+        for name, shaft in self.shafts.items():
+            for variable in ("angle", "velocity", "acceleration"):
+                rows[:, self.slots[name, variable][1]] = shaft.values(variable, times)
 
     def _address(self, kind: str, slot: int) -> int:
         vector: NDArray[Any] = self.reals if kind == "Real" else self.integers
         return int(vector.ctypes.data) + slot * SIZES[kind]
 
-    def _inputs(self, name: str) -> list[tuple[Slave, str, Call]]:
+    def _inputs(self, name: str) -> list[Action]:
         """Calls that hand over an instance's wired inputs, straight from where their sources wrote them.
 
         Sources that stand side by side go in one call.
@@ -153,27 +199,27 @@ class Master:
             else:
                 runs.append((kind, slot, [reference]))
         return [
-            (slave, f"fmi2Set{kind}", slave.value_call("Set", kind, references, self._address(kind, slot)))
+            Action(
+                slave, f"fmi2Set{kind}", slave.value_call("Set", kind, references, self._address(kind, slot))
+            )
             for kind, slot, references in runs
         ]
 
-    def _outputs(self, name: str) -> list[tuple[Slave, str, Call]]:
+    def _outputs(self, name: str) -> list[Action]:
         """Calls that fetch an instance's outputs, one for each type."""
-        slave = self.slaves[name]
-        calls = []
+        slave, ports = self.slaves[name], self.scene.instances[name].fmu.ports
+        actions = []
         for kind in SIZES:
             mine = [
-                (slot, self.scene.instances[name].fmu.ports[variable].reference)
+                (slot, ports[variable].reference)
                 for (instance, variable), (its_kind, slot) in self.slots.items()
-                if instance == name
-                and its_kind == kind
-                and self.scene.instances[name].fmu.ports[variable].causality == "output"
+                if instance == name and its_kind == kind and ports[variable].causality == "output"
             ]
             if mine:
                 address = self._address(kind, mine[0][0])
                 call = slave.value_call("Get", kind, [reference for _, reference in mine], address)
-                calls.append((slave, f"fmi2Get{kind}", call))
-        return calls
+                actions.append(Action(slave, f"fmi2Get{kind}", call))
+        return actions
 
     # ---- stepping
 
@@ -181,52 +227,53 @@ class Master:
         """Step to the end; hand over every `rows` samples, and what there is when it ends early.
 
         Raises:
-            LoomfmuError: an FMU failed, or gave a value that is not finite
+            LoomfmuError: an FMU failed, or gave a value that is not finite, or a loop swings up
             Interrupted: Ctrl-C, after the step under way
         """
         times = np.empty(rows)
         reals = np.empty((rows, len(self.reals)))
         integers = np.empty((rows, len(self.integers)), dtype=np.int32)
         times[0], reals[0], integers[0] = 0.0, self.reals, self.integers
-        filled = 1
-
-        def flush() -> None:
-            self._check_finite(times[:filled], reals[:filled])
-            write(times[:filled], reals[:filled], integers[:filled])
-
-        calls = [(function, arguments) for _slave, _action, (function, arguments) in self._calls]
-        step_size, time = self.scene.step_size, self._time
-        driven = bool(self.scene.drives)
-        interrupted = self.interrupted
+        filled, step, part = 1, 0, 1
+        failure: LoomfmuError | None = None
         try:
-            for step in range(self.scene.steps):
+            while step < self.grid.steps and not failure:
                 if filled == rows:
-                    flush()
+                    self._hand_over(times, reals, integers, write)
                     filled = 0
                     progress(step)
-                time.value = step * step_size
-                if driven:
-                    self._drive(step + 1)
-                for function, arguments in calls:
-                    if (status := function(*arguments)) > 1:
-                        raise self._failure(arguments, status)
-                times[filled] = (step + 1) * step_size
-                reals[filled] = self.reals
-                integers[filled] = self.integers
-                filled += 1
-                if interrupted:
+                span = self.grid.span(step, min(rows - filled, self.grid.steps - step, part))
+                before = perf_counter()
+                taken, failure = self._advance(span, reals[filled:], integers[filled:])
+                part = max(1, int(part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))))
+                times[filled : filled + taken] = span.ends[:taken]
+                filled += taken
+                step += taken
+                if self.interrupted.value:
                     raise Interrupted
         finally:
             if filled:
-                flush()
-        progress(self.scene.steps)
+                self._hand_over(times[:filled], reals[:filled], integers[:filled], write)
+        if failure:
+            raise failure
+        progress(self.grid.steps)
 
-    def _failure(self, arguments: tuple[Any, ...], status: int) -> LoomfmuError:
-        """What to raise for the call with these arguments."""
-        slave, action, _call = next(call for call in self._calls if call[2][1] is arguments)
-        return slave.failed(status, action, self._time.value)
+    def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
+        """Take the steps of a span, write a row for each; how many were taken, and why not all."""
+        driven = np.empty((len(span), len(self.scene.drives)))
+        for column, drive in enumerate(self.scene.drives):
+            driven[:, column] = drive.along(span.turns)
+        taken, failure = self._stepper.advance(span, driven, reals, integers)
+        self._turn_shafts((span.starts + span.sizes)[:taken], reals[:taken])
+        return taken, failure
 
-    def _check_finite(self, times: NDArray[np.float64], reals: NDArray[np.float64]) -> None:
+    def _hand_over(self, times: Reals, reals: Reals, integers: Integers, write: Block) -> None:
+        """Check a block and pass it on."""
+        self._swing.check(times, reals)
+        self._check_finite(times, reals)
+        write(times, reals, integers)
+
+    def _check_finite(self, times: Reals, reals: Reals) -> None:
         """No NaN or infinity may pass for a result."""
         with np.errstate(over="ignore", invalid="ignore"):
             if math.isfinite(float(reals.sum())):
@@ -241,6 +288,7 @@ class Master:
 
     def warnings(self) -> list[str]:
         """What the FMUs warned of."""
+        lagged = [] if self.scene.coupling == ITERATED else self.lagged
         return (
             [
                 f"{slave.name}: {text}"
@@ -248,21 +296,24 @@ class Master:
                 for status, text in slave.messages
                 if status == 1
             ]
-            + [f"loop: {wire} carries the value of the step before" for wire in self.lagged]
-            + [f"loop: the values at the start have not settled after {INITIAL_PASSES} exchanges"]
-            * self.unsettled
+            + [f"loop: {wire} carries the value of the step before" for wire in lagged]
+            + [f"loop: the values at the start have not settled after {MOST_EXCHANGES} exchanges"]
+            * (not self.settled)
         )
 
 
 @contextmanager
-def _interrupt_flag() -> Iterator[list[int]]:
-    """Ctrl-C fills a list instead of raising: an exception inside a live FMU would be fatal to it."""
-    interrupted: list[int] = []
+def _interrupt_fills(flag: ctypes.c_int32) -> Iterator[None]:
+    """Ctrl-C sets a flag instead of raising: an exception inside a live FMU would be fatal to it."""
     if threading.current_thread() is not threading.main_thread():
-        yield interrupted
+        yield
         return
-    previous = signal.signal(signal.SIGINT, lambda number, _frame: interrupted.append(number))
+
+    def fill(_number: int, _frame: Any) -> None:
+        flag.value = 1
+
+    previous = signal.signal(signal.SIGINT, fill)
     try:
-        yield interrupted
+        yield
     finally:
         signal.signal(signal.SIGINT, previous)

@@ -1,7 +1,7 @@
 """Running a scene: co-simulate, record, judge."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -9,41 +9,59 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..errors import LoomfmuError, suggestion
-from ..traces import ROWS, Channel, Trace, TraceWriter
+from ..errors import LoomfmuError
+from ..traces import Recording, Trace, TraceWriter
 from . import scene as scenes
 from . import ssp_read
-from .claims import check, check_values, judge, names_parameter, signals_of
-from .fmus import Fmu, Port, of_component
+from .asked import check_claims, judged_by, parameters, recorded, shaft_angle, with_rates
+from .claims import judge
+from .fmus import Fmu, of_component
+from .grid import Grid, uniform
+from .lean import lean
 from .master import Interrupted, Master
-from .scene import Scene
+from .play import Plan, channels, play, remembered
+from .scene import WINDOWS, Scene
 from .verdict import Verdict
+from .windows import window_grid
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
-ANGLES = frozenset(("window", "angles", "at_least"))  # arguments of claims that need a shaft
 
 
 @dataclass(frozen=True)
-class Result:
-    """A finished run: its trace, the verdicts on its claims, and what the FMUs warned of."""
+class _Judged:
+    """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
+
+    `skipped` are lines that say what was not run or not read and why, and what that saved.
+    """
 
     scene: Scene
-    path: Path
     claims: tuple[Verdict, ...]
     warnings: tuple[str, ...]
+    skipped: tuple[str, ...]
 
     @property
     def holds(self) -> bool:
         """Whether every claim holds."""
         return all(self.claims)
 
+
+@dataclass(frozen=True)
+class Result(_Judged):
+    """A finished run with its trace on disk."""
+
+    path: Path
+
     @cached_property
     def trace(self) -> Trace:
         """The recorded trace: `result.trace["belt.margin"]` are the signal's values in SI."""
         return Trace(self.path)
+
+
+@dataclass(frozen=True)
+class Evaluation(_Judged):
+    """A finished run whose trace is in memory: `trace["belt.margin"]` are the signal's values in SI."""
+
+    trace: Recording
 
 
 def run(
@@ -67,23 +85,19 @@ def run(
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
     """
-    place = "" if isinstance(scene, Scene) else f"{scene}: "
-    scene = _in_flavour(_read(scene, set), flavour)
+    scene = _checked(scene, set, flavour)
     path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
     if not path.name or path.is_dir():
         raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
-    try:
-        check_claims(scene)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{place}{error}") from None
-    with Master(scene) as master:
+    plan = Plan(scene, lean(scene, recorded(scene)), _grid(scene))
+    with plan.master() as master:
         master.initialize()
-        if master.interrupted:
+        if master.interrupted.value:
             raise KeyboardInterrupt("interrupted before the first step")
-        writer = _writer(scene, master, path)
+        writer = _writer(plan, master, path)
         try:
-            with _bar(scene, progress) as advance:
-                master.run(ROWS, _recorder(scene, master, writer), advance)
+            with _bar(plan, progress) as advance:
+                play(master, writer, advance)
         except Interrupted:
             kept = writer.abandon("interrupted")
             raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
@@ -94,7 +108,62 @@ def run(
             writer.abandon("failed")
             raise
         warnings = (*scene.notes, *master.warnings())
-    return Result(scene, path, _finish(scene, writer), warnings)
+    return Result(scene, _finish(scene, writer), warnings, explained(plan), path)
+
+
+def evaluate(
+    scene: str | Path | Scene,
+    *,
+    set: dict[str, Any] | None = None,
+    flavour: str = "live",
+    values: Sequence[str] = (),
+) -> Evaluation:
+    """Co-simulate what the claims of a scene need, and judge them; nothing is written.
+
+    Args:
+        scene, set, flavour: as for `run`; what the scene would record is left out
+        values: further signals to keep
+
+    Raises:
+        LoomfmuError: bad input, or an FMU that failed; one line that names what and where
+        KeyboardInterrupt: Ctrl-C
+    """
+    scene = _checked(scene, set, flavour)
+    wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
+    grid = _grid(scene)
+    recording, needed, warnings = remembered(scene, wanted, grid)
+    verdicts = tuple(judge(recording, **claim) for claim in scene.claims)
+    skipped = explained(Plan(scene, needed, grid))
+    return Evaluation(scene, verdicts, (*scene.notes, *warnings), skipped, recording)
+
+
+def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
+    """A scene that is ready to be run. Raises LoomfmuError naming the file and what is wrong."""
+    place = "" if isinstance(scene, Scene) else f"{scene}: "
+    scene = _in_flavour(_read(scene, overrides), flavour)
+    try:
+        check_claims(scene)
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{place}{error}") from None
+    return scene
+
+
+def _grid(scene: Scene) -> Grid:
+    return window_grid(scene) if scene.grid == WINDOWS else uniform(scene)
+
+
+def explained(plan: Plan) -> tuple[str, ...]:
+    """What a run leaves out and why, and what that saves."""
+    kept, whole = len(plan.lean.scene.instances), len(plan.scene.instances)
+    taken, usual = plan.grid.steps, plan.scene.steps
+    lines = [*plan.lean.skipped, *plan.grid.notes]
+    done, full = kept * taken + plan.grid.scouted, whole * usual
+    saved = f"{full / done:.3g} times fewer" if done else "none left"
+    return (
+        *lines,
+        f"{kept} of {whole} FMUs, {taken} steps where equal ones would be {usual}:"
+        f" {done} steps of FMUs instead of {full}, {saved}",
+    )
 
 
 def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
@@ -139,88 +208,9 @@ def _finish(scene: Scene, writer: TraceWriter) -> tuple[Verdict, ...]:
     return verdicts
 
 
-def check_claims(scene: Scene) -> None:
-    """Refuse a claim that cannot be judged before the run, not after it."""
-    for claim in scene.claims:
-        kind = claim.get("kind")
-        arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
-        check(kind, arguments)
-        for angle in ANGLES.intersection(arguments):
-            if "shaft" not in scene.instances:
-                raise LoomfmuError(f"claim {kind!r}: {angle} is a shaft angle, and the scene has no shaft")
-        for signal in signals_of(claim, scene.instances):
-            _output(scene, signal, f"claim {kind!r}")
-        check_values(str(kind), arguments, lambda signal: _output(scene, signal, "claim").unit)
-        if names_parameter("bound", arguments.get("bound")):
-            _check_parameter(scene, arguments["bound"], arguments["signal"])
-
-
-def _check_parameter(scene: Scene, name: str, signal: str) -> None:
-    """A parameter that bounds a signal is one of the scene, in the signal's unit."""
-    instance, _, variable = name.partition(".")
-    ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
-    known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
-    if name not in known:
-        raise LoomfmuError(f"claim: bound = {name!r} is no parameter{suggestion(name, known)}")
-    wanted, given = _output(scene, signal, "claim").unit, ports[variable].unit
-    if given != wanted:
-        raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
-
-
-def _output(scene: Scene, signal: str, where: str) -> Port:
-    """The output, or the input driven by the scene, that a signal names."""
-    instance, _, variable = signal.partition(".")
-    if instance not in scene.instances:
-        hint = suggestion(instance, scene.instances)
-        raise LoomfmuError(f"{where}: there is no instance {instance!r}{hint}")
-    ports = scene.instances[instance].fmu.ports
-    outputs = [port.name for port in ports.values() if port.causality == "output"]
-    outputs += [drive.variable for drive in scene.drives if drive.instance == instance]
-    if variable not in outputs:
-        raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
-    return ports[variable]
-
-
-def _recorded(scene: Scene) -> list[str]:
-    """What the scene records, what its claims need, and the rates of that."""
-    wanted = [
-        *(["shaft.angle"] if "shaft" in scene.instances else []),
-        *scene.record,
-        *(f"{drive.instance}.{drive.variable}" for drive in scene.drives),
-        *(s for claim in scene.claims for s in signals_of(claim, scene.instances)),
-    ]
-    names: dict[str, None] = {}
-    for signal in wanted:
-        while signal and signal not in names:
-            names[signal] = None
-            port = _output(scene, signal, "record")
-            rate = port.rate if port.causality == "output" else None
-            signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
-    return list(names)
-
-
-def _writer(scene: Scene, master: Master, path: Path) -> TraceWriter:
-    channels = []
-    for signal in _recorded(scene):
-        port = _output(scene, signal, "record")
-        instance, variable = signal.split(".")
-        kind, slot = master.slots[instance, variable]
-        meanings = ("no", "yes") if kind == "Boolean" else port.choices
-        channels.append(
-            Channel(
-                instance=instance,
-                variable=variable,
-                unit=port.unit,
-                display=port.display,
-                description=port.description,
-                column=slot,
-                real=kind == "Real",
-                rate=port.rate,
-                meanings=meanings,
-                first_flag=port.first_choice if port.choices else 0,
-            )
-        )
-    fmus = _fmus(scene)
+def _writer(plan: Plan, master: Master, path: Path) -> TraceWriter:
+    scene = plan.scene
+    fmus = _fmus(plan.lean.scene)
     attributes = {
         "title": scene.title,
         "scene": scene.text,
@@ -230,19 +220,12 @@ def _writer(scene: Scene, master: Master, path: Path) -> TraceWriter:
             if scene.step is None
             else {"step": f"{scene.step!r} s"}
         ),
+        "grid": scene.grid,
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
     }
-    parameters = {
-        name: {
-            port.name: instance.values.get(port.name, port.start or 0)
-            for port in instance.fmu.ports.values()
-            if port.causality == "parameter"
-        }
-        for name, instance in scene.instances.items()
-    }
     try:
-        return TraceWriter(path, attributes, channels, parameters)
+        return TraceWriter(path, attributes, channels(plan, master), parameters(scene))
     except OSError as error:
         raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error})") from None
 
@@ -258,28 +241,15 @@ def _fmus(scene: Scene) -> dict[str, Fmu]:
     return found
 
 
-def _recorder(
-    scene: Scene, master: Master, writer: TraceWriter
-) -> Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]], None]:
-    """What takes the master's blocks to the trace."""
-    _kind, column = master.slots.get(("shaft", "angle"), ("", -1))
-
-    def write(times: NDArray[np.float64], reals: NDArray[np.float64], integers: NDArray[np.int32]) -> None:
-        angle = reals[:, column] if column >= 0 else np.zeros(len(times))  # a scene without shaft
-        writer.append(times, angle, reals, integers)
-
-    return write
-
-
 @contextmanager
-def _bar(scene: Scene, wanted: bool) -> Iterator[Callable[[int], None]]:
+def _bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
     """A progress bar, where one is wanted, the run is long and somebody is looking."""
-    if not wanted or scene.steps < LONG_RUN or not sys.stderr.isatty():
+    if not wanted or plan.grid.steps < LONG_RUN or not sys.stderr.isatty():
         yield lambda _step: None
         return
     from rich.console import Console
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(scene.name, total=scene.steps)
+        task = bar.add_task(plan.scene.name, total=plan.grid.steps)
         yield lambda step: bar.update(task, completed=step)

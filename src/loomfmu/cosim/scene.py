@@ -13,8 +13,11 @@ from ..errors import LoomfmuError, suggestion
 from . import standard_loom
 from .drives import Drive, drive, split
 from .graph import Wire
-from .instances import TIMES, Instance, instance, instance_tables, override
+from .instances import COARSE, TIMES, Instance, instance, instance_tables, override
 from .ports import mismatch
+
+LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
+UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 
 
 @dataclass
@@ -22,8 +25,9 @@ class Scene:
     """A scene, checked against the FMUs it uses: every name is known, every value in SI and in bounds.
 
     A scene may run by seconds: then `step` is its step, and `revolutions` and `steps_per_revolution` count
-    seconds instead of revolutions. `package` is the system package that it was read from, `notes` what the
-    user is to be warned of.
+    seconds instead of revolutions. `coupling` is how loops are closed, `grid` where the steps are, with
+    `coarse_steps_per_revolution` outside of the windows that the claims look into. `package` is the system
+    package that it was read from, `notes` what the user is to be warned of.
     """
 
     title: str
@@ -39,6 +43,9 @@ class Scene:
     record: list[str]
     claims: list[dict[str, Any]]
     step: float | None = None
+    coupling: str = LAGGED
+    grid: str = UNIFORM
+    coarse_steps_per_revolution: int = 24
     package: Path | None = None
     notes: tuple[str, ...] = ()
 
@@ -131,6 +138,11 @@ def assemble(
         record=_record(instances, tables.get("record", ["*"])),
         claims=_claims(tables.get("claims", [])),
         step=seconds[1] if seconds is not None else None,
+        coupling=_choice(tables, "coupling", COUPLINGS),
+        grid=_choice(tables, "grid", GRIDS),
+        coarse_steps_per_revolution=int(
+            _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
+        ),
     )
     _check_time(scene)
     return scene
@@ -140,7 +152,9 @@ def _check_single(instances: dict[str, Instance]) -> None:
     """Refuse a second instance of what a process can have one of."""
     found: dict[str, str] = {}
     for name, each in instances.items():
-        if each.fmu.single and each.fmu.sha256 in found:
+        if not each.fmu.single:
+            continue
+        if each.fmu.sha256 in found:
             raise LoomfmuError(
                 f"{found[each.fmu.sha256]} and {name}: a process can have one instance only of"
                 f" {each.fmu.path} (canBeInstantiatedOnlyOncePerProcess)"
@@ -252,6 +266,14 @@ def _drives(instances: dict[str, Instance], wires: list[Wire], table: Any) -> li
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
         drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
     return drives
+
+
+def _choice(tables: dict[str, Any], key: str, known: tuple[str, ...]) -> str:
+    """One of some words; the first one by default."""
+    given = tables.get(key, known[0])
+    if given not in known:
+        raise LoomfmuError(f"{key} = {given!r} is unknown{suggestion(str(given), known)}")
+    return str(given)
 
 
 def _number(given: Any, where: str, low: float, high: float, whole: bool = False) -> float:

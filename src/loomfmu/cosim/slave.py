@@ -8,7 +8,7 @@ the cost of fmpy's public methods, and the same calls.
 import atexit
 import ctypes
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import unquote
 
 from fmpy import calloc, free
@@ -30,7 +30,15 @@ from .fmus import Fmu, Value
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 
-Call = tuple[Callable[..., int], tuple[Any, ...]]
+
+class Call(NamedTuple):
+    """A prepared call. `kind` is the type of the values it moves, empty for a step; `plain` one that is the
+    FMU's own function."""
+
+    function: Callable[..., int]
+    arguments: tuple[Any, ...]
+    kind: str = ""
+    plain: bool = True
 
 
 class Slave:
@@ -38,6 +46,7 @@ class Slave:
 
     standard = "fmi2"  # what its functions begin with
     pooled = True  # whether it can be reset for another run
+    _state_word = "state"
 
     def __init__(self, fmu: Fmu, name: str):
         self.fmu = fmu
@@ -45,6 +54,7 @@ class Slave:
         self.messages: list[tuple[int, str]] = []
         self.fatal = False
         self.started = False
+        self._saved: int | None = None
         try:
             self._slave = self._open()
         except Exception as error:
@@ -129,11 +139,35 @@ class Slave:
         """`fmi2GetReal` and its kin, moving values between the FMU and the memory at an address."""
         function = self._library[f"fmi2{action}{kind}"]
         array = (ctypes.c_uint * len(references))(*references)
-        return function, (self._component, array, ctypes.c_size_t(len(references)), ctypes.c_void_p(address))
+        size, values = ctypes.c_size_t(len(references)), ctypes.c_void_p(address)
+        return Call(function, (self._component, array, size, values), kind)
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
-        """`fmi2DoStep` from the time that `time` holds when it is called."""
-        return self._library["fmi2DoStep"], (self._component, time, step_size, ctypes.c_int(1))
+        """`fmi2DoStep` over the step that `time` and `step_size` hold when it is called."""
+        return Call(self._library["fmi2DoStep"], (self._component, time, step_size, ctypes.c_int(1)))
+
+    # ---- rollback
+
+    def save(self) -> None:
+        """Keep the state as it is for `restore`. Raises LoomfmuError where the FMU cannot."""
+        state = ctypes.c_void_p(self._saved)
+        function = self._library[f"{self.standard}GetFMU{self._state_word}"]
+        if function(self._component, ctypes.byref(state)) > WARNING:
+            raise LoomfmuError(f"{self.name}: its state cannot be kept: {self._reason()}")
+        self._saved = state.value
+
+    def restore(self) -> None:
+        """Go back to the state that was kept last."""
+        function = self._library[f"{self.standard}SetFMU{self._state_word}"]
+        if function(self._component, ctypes.c_void_p(self._saved)) > WARNING:
+            raise LoomfmuError(f"{self.name}: it cannot go back to a state of its own: {self._reason()}")
+
+    def forget(self) -> None:
+        """Free the state that was kept."""
+        if self._saved is not None and not self.fatal:
+            state = ctypes.c_void_p(self._saved)
+            self._library[f"{self.standard}FreeFMU{self._state_word}"](self._component, ctypes.byref(state))
+        self._saved = None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
         """What to raise for a status that is not OK."""
@@ -147,6 +181,7 @@ class Slave:
     def rest(self) -> bool:
         """Terminate and reset for another run; whether it can be used again."""
         try:
+            self.forget()
             if self.started and not self.fatal:
                 self._slave.terminate()
             self.started = False

@@ -111,7 +111,7 @@ def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
     `inputs_at_step_end` tells of the master, not of the loom: other tools hand over values of the step's
     start, which is what it says by default. So it is left out, unless the scene itself says so.
     """
-    driven = {d.variable: d.at(0.0) for d in scene.drives if d.instance == instance.name}
+    driven = {d.variable: d.values[0] for d in scene.drives if d.instance == instance.name}
     values = instance.values | driven
     return {
         name: value for name, value in values.items() if not (name == "inputs_at_step_end" and value is True)

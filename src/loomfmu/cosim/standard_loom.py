@@ -21,14 +21,17 @@ COMPONENT_OF = {
     "roller": "DetachingRoller",
 }
 
-_SHAFT = {
-    "shaft_angle": "shaft.angle",
-    "shaft_velocity": "shaft.velocity",
-    "shaft_acceleration": "shaft.acceleration",
+# input of a mechanism on the shaft -> output of the shaft that it follows
+FOLLOWED = {
+    "shaft_angle": "angle",
+    "shaft_velocity": "velocity",
+    "shaft_acceleration": "acceleration",
 }
+_SHAFT = {sink: f"shaft.{variable}" for sink, variable in FOLLOWED.items()}
 
 # component -> input -> output it is wired to if that instance is there; # is the instance's own number
 WIRES = {
+    "DrivenShaft": {"torque_1": "weft.shaft_torque", "torque_2": "reed.shaft_torque"},
     "WeftInsertion": _SHAFT,
     "DobbyDrive": _SHAFT,
     "BeltMonitor": _SHAFT

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import units
-from ..traces import Trace
+from ..traces import Signals
 
 TURN = 2.0 * math.pi
 
@@ -51,7 +51,7 @@ class Verdict:
 
 
 def verdict(
-    trace: Trace, claim: str, signal: str, holds: bool, bound: float, worst: float, unit: str, time: float,
+    trace: Signals, claim: str, signal: str, holds: bool, bound: float, worst: float, unit: str, time: float,
     note: str = "",
 ) -> Verdict:  # fmt: skip
     """A verdict with the place on the shaft that belongs to its time."""

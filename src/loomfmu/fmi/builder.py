@@ -84,9 +84,14 @@ def write_readmes() -> None:
         readme.write_text(text, encoding="utf-8")
 
 
+def description(component: type[Component]) -> bytes:
+    """The model description of an FMU that is not built yet: without its identity."""
+    return model_description(component, "", version())
+
+
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of its model description, its source and the slave that runs it."""
-    digest = hashlib.sha256(model_description(component, "", version()))
+    digest = hashlib.sha256(description(component))
     for part in (_rows(component), flatten(component), _slave_source()):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))

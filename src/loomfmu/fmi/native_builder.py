@@ -1,6 +1,7 @@
 """Builds native FMUs: a component translated to C, in a C shell, compiled for all platforms from any."""
 
 import hashlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -214,28 +215,45 @@ def binaries(
 
 
 def _compiled(name: str, fmi: int, target: str, directory: Path) -> bytes:
-    """One shared library. Paths are relative, so that none gets into it."""
+    """One shared library of an FMU."""
     platform = next(each for each in PLATFORMS.values() if target in each.targets)
     output = Path(target) / f"{name}{platform.suffix}"
     (directory / target).mkdir()
-    call = [
-        sys.executable,
-        "-m",
-        "ziglang",
-        "cc",
-        "-target",
-        target,
-        *FLAGS,
-        "-o",
-        str(output),
-        f"fmi{fmi}.c",
-    ]
-    call += [option.format(name=name) for option in platform.options]
-    run = subprocess.run(call, cwd=directory, capture_output=True, text=True, check=False)
+    _compile(f"fmi{fmi}.c", output, target, directory)
+    return (directory / output).read_bytes()
+
+
+def _compile(source: str, output: Path, target: str, directory: Path) -> None:
+    """Compile a file into a shared library. Paths are relative, so that none gets into it."""
+    platform = next(each for each in PLATFORMS.values() if target in each.targets)
+    options = [option.format(name=output.stem) for option in platform.options]
+    call = [sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-o", str(output), source]
+    run = subprocess.run([*call, *options], cwd=directory, capture_output=True, text=True, check=False)
     if run.returncode != 0:
         reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
-        raise LoomfmuError(f"{name} cannot be compiled for {target}: {reason}")
-    return (directory / output).read_bytes()
+        raise LoomfmuError(f"{output.stem} cannot be compiled for {target}: {reason}")
+
+
+def library_identity(source: Path) -> str:
+    """What a shared library of this source depends on, as a name for a cache. Raises as `build_library`."""
+    _compiler()
+    return hashlib.sha256(source.read_bytes() + metadata.version("ziglang").encode()).hexdigest()
+
+
+def build_library(source: Path, output: Path, platform: str) -> None:
+    """Compile one C file into a shared library for the first processor of a platform, whole or not at all.
+
+    Raises:
+        LoomfmuError: there is no compiler, or it does not compile
+        OSError: the file cannot be written
+    """
+    _compiler()
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent) as directory:
+        shutil.copy(source, directory)
+        made = Path(output.name)
+        _compile(source.name, made, next(iter(PLATFORMS[platform].targets)), Path(directory))
+        (Path(directory) / made).replace(output)
 
 
 @cache

@@ -1,0 +1,95 @@
+"""What is asked of a scene: the signals that it records and that its claims need, checked before the run."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..errors import LoomfmuError, suggestion
+from .claims import check, check_values, names_parameter, signals_of
+from .fmus import Port
+from .scene import Scene
+
+ANGLES = frozenset(("window", "angles", "at_least"))  # arguments of claims that need a shaft
+SHAFT_ANGLE = "shaft.angle"
+
+
+def output_port(scene: Scene, signal: str, where: str) -> Port:
+    """The output, or the input driven by the scene, that a signal names."""
+    instance, _, variable = signal.partition(".")
+    if instance not in scene.instances:
+        hint = suggestion(instance, scene.instances)
+        raise LoomfmuError(f"{where}: there is no instance {instance!r}{hint}")
+    ports = scene.instances[instance].fmu.ports
+    outputs = [port.name for port in ports.values() if port.causality == "output"]
+    outputs += [drive.variable for drive in scene.drives if drive.instance == instance]
+    if variable not in outputs:
+        raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
+    return ports[variable]
+
+
+def check_claims(scene: Scene) -> None:
+    """Refuse a claim that cannot be judged before the run, not after it."""
+    for claim in scene.claims:
+        kind = claim.get("kind")
+        arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
+        check(kind, arguments)
+        for angle in ANGLES.intersection(arguments):
+            if "shaft" not in scene.instances:
+                raise LoomfmuError(f"claim {kind!r}: {angle} is a shaft angle, and the scene has no shaft")
+        for signal in signals_of(claim, scene.instances):
+            output_port(scene, signal, f"claim {kind!r}")
+        check_values(str(kind), arguments, lambda signal: output_port(scene, signal, "claim").unit)
+        if names_parameter("bound", arguments.get("bound")):
+            _check_parameter(scene, arguments["bound"], arguments["signal"])
+
+
+def _check_parameter(scene: Scene, name: str, signal: str) -> None:
+    """A parameter that bounds a signal is one of the scene, in the signal's unit."""
+    instance, _, variable = name.partition(".")
+    ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
+    known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
+    if name not in known:
+        raise LoomfmuError(f"claim: bound = {name!r} is no parameter{suggestion(name, known)}")
+    wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
+    if given != wanted:
+        raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
+
+
+def judged_by(scene: Scene) -> list[str]:
+    """The signals that the scene's claims need, and the rates of these."""
+    return with_rates(scene, [s for claim in scene.claims for s in signals_of(claim, scene.instances)])
+
+
+def shaft_angle(scene: Scene) -> list[str]:
+    """The signal of the shaft's angle, along which everything is told; none in a scene without a shaft."""
+    return [SHAFT_ANGLE] if "shaft" in scene.instances else []
+
+
+def recorded(scene: Scene) -> list[str]:
+    """What the scene records, what its claims need, and the rates of that."""
+    driven = [f"{drive.instance}.{drive.variable}" for drive in scene.drives]
+    wanted = with_rates(scene, [*shaft_angle(scene), *scene.record, *driven])
+    return list(dict.fromkeys([*wanted, *judged_by(scene)]))
+
+
+def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
+    """Signals, each followed by its rate, if it has one that is an output, and so on."""
+    names: dict[str, None] = {}
+    for signal in wanted:
+        while signal and signal not in names:
+            names[signal] = None
+            port = output_port(scene, signal, "record")
+            rate = port.rate if port.causality == "output" else None
+            signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
+    return list(names)
+
+
+def parameters(scene: Scene) -> dict[str, dict[str, Any]]:
+    """The parameters of each instance as they are set."""
+    return {
+        name: {
+            port.name: instance.values.get(port.name, port.start or 0)
+            for port in instance.fmu.ports.values()
+            if port.causality == "parameter"
+        }
+        for name, instance in scene.instances.items()
+    }

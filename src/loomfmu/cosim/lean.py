@@ -1,0 +1,138 @@
+"""What a run can leave out, found backwards from what is asked of it.
+
+An instance that nothing asked for depends on is not run, an output that nobody reads is not fetched, and a
+main shaft of constant speed needs no FMU: its angle is a product, and what follows it can turn by itself.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .graph import Wire
+from .instances import Instance
+from .scene import Scene
+from .standard_loom import FOLLOWED
+
+Floats = NDArray[np.float64]
+VARYING = ("ramp_duration", "ripple_amplitude")  # parameters of a shaft whose speed is not constant
+
+
+@dataclass(frozen=True)
+class ConstantShaft:
+    """A main shaft that needs no FMU. Its values are those that `MainShaft` gives, to the last bit."""
+
+    speed: float
+    start_angle: float
+
+    def values(self, variable: str, time: Floats) -> Floats:
+        """An output of the shaft along times [s]."""
+        if variable == "angle":
+            return self.start_angle + self.speed * time
+        return np.full(len(time), self.speed if variable == "velocity" else 0.0)
+
+
+@dataclass(frozen=True)
+class Lean:
+    """A scene with only what some signals need.
+
+    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need none, `skipped` lines
+    that say what was left out and why.
+    """
+
+    scene: Scene
+    signals: tuple[str, ...]
+    fetched: frozenset[tuple[str, str]]
+    shafts: dict[str, ConstantShaft]
+    skipped: tuple[str, ...]
+
+
+def lean(scene: Scene, signals: Iterable[str]) -> Lean:
+    """The scene with only what these signals need."""
+    signals = tuple(signals)
+    shafts = {name: _constant(each) for name, each in scene.instances.items() if _is_constant(scene, name)}
+    wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
+    needed = _upstream({signal.split(".")[0] for signal in signals} - set(shafts), wires)
+    wires = [wire for wire in wires if wire.sink[0] in needed]
+    instances = {name: _turning(scene, name, shafts) for name in scene.instances if name in needed}
+    fetched = {wire.source for wire in wires}
+    for signal in signals:
+        instance, _, variable = signal.partition(".")
+        if instance in instances and instances[instance].fmu.ports[variable].causality == "output":
+            fetched.add((instance, variable))
+    drives = [drive for drive in scene.drives if drive.instance in needed]
+    return Lean(
+        scene=replace(scene, instances=instances, wires=wires, drives=drives),
+        signals=signals,
+        fetched=frozenset(fetched),
+        shafts=shafts,
+        skipped=tuple(_told(scene, instances, fetched, shafts)),
+    )
+
+
+def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
+    """Instances and all that they are fed by, near or far."""
+    needed, waiting = set(wanted), list(wanted)
+    while waiting:
+        sink = waiting.pop()
+        for wire in wires:
+            if wire.sink[0] == sink and wire.source[0] not in needed:
+                needed.add(wire.source[0])
+                waiting.append(wire.source[0])
+    return needed
+
+
+def _is_constant(scene: Scene, name: str) -> bool:
+    """Whether an instance is a main shaft of constant speed that only mechanisms follow."""
+    shaft = scene.instances[name]
+    if not shaft.fmu.ours or shaft.fmu.name != "MainShaft":
+        return False
+    if any(shaft.values.get(variable, 0.0) != 0.0 for variable in VARYING):
+        return False
+    return all(
+        _follows(scene, sink, name) for sink in {w.sink[0] for w in scene.wires if w.source[0] == name}
+    )
+
+
+def _follows(scene: Scene, name: str, shaft: str) -> bool:
+    """Whether an instance takes nothing from the shaft but the motion that it follows."""
+    follower = scene.instances[name]
+    taken = {wire.sink[1]: wire.source for wire in scene.wires if wire.sink[0] == name}
+    wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}
+    from_shaft = {sink: source for sink, source in taken.items() if source[0] == shaft}
+    return follower.fmu.ours and follower.values.get("follow_shaft") is True and from_shaft == wanted
+
+
+def _constant(shaft: Instance) -> ConstantShaft:
+    values = {name: shaft.values.get(name, shaft.fmu.ports[name].start) for name in ("speed", "start_angle")}
+    return ConstantShaft(**{name: float(value or 0.0) for name, value in values.items()})
+
+
+def _turning(scene: Scene, name: str, shafts: dict[str, ConstantShaft]) -> Instance:
+    """An instance that turns by itself, if it would follow a shaft that is left out."""
+    instance = scene.instances[name]
+    shaft = {wire.source[0] for wire in scene.wires if wire.sink[0] == name} & set(shafts)
+    if not shaft:
+        return instance
+    constant = shafts[shaft.pop()]
+    own = {"follow_shaft": False, "speed": constant.speed, "start_angle": constant.start_angle}
+    return replace(instance, values=instance.values | own)
+
+
+def _told(
+    scene: Scene, kept: dict[str, Instance], fetched: set[tuple[str, str]], shafts: dict[str, ConstantShaft]
+) -> Iterable[str]:
+    """What was left out, and why."""
+    for name, instance in scene.instances.items():
+        kind = instance.fmu.name
+        if name in shafts:
+            yield f"{name} ({kind}): its speed is constant, what follows it turns by itself"
+        elif name not in kept:
+            yield f"{name} ({kind}): nothing that is recorded or claimed depends on it"
+        else:
+            outputs = [port.name for port in instance.fmu.ports.values() if port.causality == "output"]
+            unread = [variable for variable in outputs if (name, variable) not in fetched]
+            if unread:
+                share = f"{len(unread)} of {len(outputs)} outputs"
+                yield f"{name}: {share}, which nobody reads: {', '.join(unread)}"

@@ -1,0 +1,87 @@
+"""Stepping a scene with only what some signals need, and keeping these."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..traces import ROWS, Channel, Recording
+from .asked import output_port, parameters
+from .grid import Grid
+from .lean import Lean, lean
+from .master import Integers, Master, Reals
+from .scene import Scene
+
+
+class Keeper(Protocol):
+    """What takes the blocks of a run."""
+
+    def append(self, time: Reals, angle: Reals, reals: Reals, integers: Integers) -> None:
+        """Keep a block: values along the rows, signals along the columns."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How a scene is stepped: with what, and where."""
+
+    scene: Scene
+    lean: Lean
+    grid: Grid
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """What is kept."""
+        return self.lean.signals
+
+    def master(self) -> Master:
+        """The master of the run."""
+        return Master(self.lean.scene, self.grid, self.lean.fetched, self.lean.shafts)
+
+
+def channels(plan: Plan, master: Master) -> list[Channel]:
+    """What is kept, where the master has it, and what is said of it."""
+    found = []
+    for signal in plan.signals:
+        port = output_port(plan.scene, signal, "record")
+        instance, variable = signal.split(".")
+        kind, slot = master.slots[instance, variable]
+        meanings = ("no", "yes") if kind == "Boolean" else port.choices
+        found.append(
+            Channel(
+                instance=instance,
+                variable=variable,
+                unit=port.unit,
+                display=port.display,
+                description=port.description,
+                column=slot,
+                real=kind == "Real",
+                rate=port.rate,
+                meanings=meanings,
+                first_flag=port.first_choice if port.choices else 0,
+            )
+        )
+    return found
+
+
+def play(master: Master, keeper: Keeper, progress: Callable[[int], None]) -> None:
+    """Step an initialized master to the end."""
+    _kind, column = master.slots.get(("shaft", "angle"), ("", -1))
+
+    def write(times: Reals, reals: Reals, integers: Integers) -> None:
+        angle = reals[:, column] if column >= 0 else np.zeros(len(times))  # a scene without shaft
+        keeper.append(times, angle, reals, integers)
+
+    master.run(ROWS, write, progress)
+
+
+def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> tuple[Recording, Lean, list[str]]:
+    """A run that is kept in memory, what was needed for it, and what its FMUs warned of."""
+    plan = Plan(scene, lean(scene, signals), grid)
+    with plan.master() as master:
+        master.initialize()
+        recording = Recording(scene.name, channels(plan, master), parameters(scene))
+        play(master, recording, lambda _step: None)
+        if master.interrupted.value:
+            raise KeyboardInterrupt("interrupted")
+        return recording, plan.lean, master.warnings()

@@ -1,0 +1,213 @@
+"""What makes the prepared calls of a master, step after step: in Python, or in C at its speed.
+
+Both make the same calls in the same order on the same memory, so their results are equal to the last bit. The
+compiled one is used where its library is there or can be built; the other one is the reference, and takes
+FMUs whose values must be converted on their way.
+"""
+
+import ctypes
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LoomfmuError
+from ..fmi import native_builder
+from .fmus import cache_directory
+from .grid import Span
+from .slave import WARNING, Call, Slave
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int32]
+SOURCE = Path(__file__).with_name("native") / "stepper.c"
+
+
+@dataclass(frozen=True)
+class Action:
+    """A prepared call with whom it goes to and what it is called."""
+
+    slave: Slave
+    name: str
+    call: Call
+
+
+Advanced = tuple[int, LoomfmuError | None]
+
+
+class Stepper(Protocol):
+    """Takes steps and writes all values after each."""
+
+    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+        """Take the steps of a span; `driven` are the driven inputs, `reals` and `integers` rows to fill.
+
+        Returns:
+            the number of steps taken, fewer when interrupted, and what an FMU failed with, if one did
+        """
+
+
+def perform(actions: Iterable[Action], time: float) -> None:
+    """Make some calls. Raises LoomfmuError for the first that an FMU refuses."""
+    for action in actions:
+        if (status := action.call.function(*action.call.arguments)) > WARNING:
+            raise action.slave.failed(status, action.name, time)
+
+
+@dataclass
+class Memory:
+    """What a master shares with its stepper: values of all outputs, where driven inputs stand, the flag."""
+
+    reals: Floats
+    integers: Integers
+    driven: Sequence[int]
+    interrupted: ctypes.c_int32
+
+
+class PythonStepper:
+    """Makes the calls one by one through ctypes."""
+
+    def __init__(
+        self, actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double
+    ):
+        self._actions = actions
+        self._calls = [(action.call.function, action.call.arguments) for action in actions]
+        self._memory = memory
+        self._time, self._size = time, size
+
+    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+        """See `Stepper`."""
+        memory, time, size = self._memory, self._time, self._size
+        slots = list(memory.driven)
+        for step in range(len(span)):
+            if memory.interrupted.value:
+                return step, None
+            time.value, size.value = span.starts[step], span.sizes[step]
+            if slots:
+                memory.reals[slots] = driven[step]
+            for function, arguments in self._calls:
+                if (status := function(*arguments)) > WARNING:
+                    action = next(each for each in self._actions if each.call.arguments is arguments)
+                    return step, action.slave.failed(status, action.name, time.value)
+            reals[step] = memory.reals
+            integers[step] = memory.integers
+        return len(span), None
+
+
+class _Call(ctypes.Structure):
+    _fields_ = (
+        ("kind", ctypes.c_int64),
+        ("function", ctypes.c_void_p),
+        ("instance", ctypes.c_void_p),
+        ("references", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("values", ctypes.c_void_p),
+    )
+
+
+class _Plan(ctypes.Structure):
+    _fields_ = (
+        ("calls", ctypes.c_void_p),
+        ("call_count", ctypes.c_size_t),
+        ("reals", ctypes.c_void_p),
+        ("real_count", ctypes.c_size_t),
+        ("integers", ctypes.c_void_p),
+        ("integer_count", ctypes.c_size_t),
+        ("driven", ctypes.c_void_p),
+        ("driven_count", ctypes.c_size_t),
+        ("interrupted", ctypes.c_void_p),
+    )
+
+
+class _Outcome(ctypes.Structure):
+    _fields_ = (("call", ctypes.c_int64), ("status", ctypes.c_int64))
+
+
+class CompiledStepper:
+    """Makes the same calls in C."""
+
+    def __init__(self, library: Path, actions: Sequence[Action], memory: Memory):
+        # Python's lock is kept, unless an FMU of another maker may have threads that log
+        ours = all(action.slave.fmu.ours for action in actions)
+        self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
+        self._advance.restype = ctypes.c_int64
+        self._actions = actions
+        self._memory = memory
+        self._driven = np.array(memory.driven, dtype=np.int64)
+        self._calls = (_Call * len(actions))(*(_prepared(action.call) for action in actions))
+        self._plan = _Plan(
+            ctypes.addressof(self._calls), len(actions),
+            memory.reals.ctypes.data, len(memory.reals),
+            memory.integers.ctypes.data, len(memory.integers),
+            self._driven.ctypes.data, len(self._driven),
+            ctypes.addressof(memory.interrupted),
+        )  # fmt: skip
+        self._outcome = _Outcome()
+
+    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+        """See `Stepper`."""
+        self._outcome.status = 0
+        arrays = (span.starts, span.sizes, driven, reals, integers)
+        assert all(array.flags.c_contiguous for array in arrays)
+        taken = int(
+            self._advance(
+                ctypes.byref(self._plan),
+                ctypes.c_int64(len(span)),
+                *(ctypes.c_void_p(array.ctypes.data) for array in arrays),
+                ctypes.byref(self._outcome),
+            )
+        )
+        if not self._outcome.status:
+            return taken, None
+        action = self._actions[self._outcome.call]
+        start = float(span.starts[taken])
+        return taken, action.slave.failed(self._outcome.status, action.name, start)
+
+
+KINDS = {"Real": 0, "Integer": 1, "Boolean": 1, "": 2}  # as stepper.c numbers them
+
+
+def _prepared(call: Call) -> _Call:
+    instance, *moved = call.arguments
+    function = ctypes.cast(cast(Any, call.function), ctypes.c_void_p)
+    if not call.kind:
+        return _Call(KINDS[""], function, instance, None, 0, None)
+    references, count, values = moved
+    return _Call(KINDS[call.kind], function, instance, ctypes.addressof(references), count, values)
+
+
+def stepper(
+    actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double,
+    compiled: bool | None = None,
+) -> Stepper:  # fmt: skip
+    """The compiled stepper where it can be had and the FMUs let it, unless told which one to take.
+
+    Raises LoomfmuError where the compiled one is wanted and cannot be had.
+    """
+    plain = all(action.call.plain for action in actions)
+    library = _library() if compiled or (compiled is None and plain) else None
+    if compiled and (library is None or not plain):
+        raise LoomfmuError("the compiled stepper is not to be had: pip install 'loomfmu[native]'")
+    return (
+        CompiledStepper(library, actions, memory) if library else PythonStepper(actions, memory, time, size)
+    )
+
+
+@cache
+def _library() -> Path | None:
+    """The compiled stepper: it comes with the package, or is built once where a compiler is installed."""
+    platform = native_builder.host_platform()
+    file = f"stepper{native_builder.PLATFORMS[platform].suffix}"
+    shipped = SOURCE.with_name(platform) / file
+    if shipped.exists():
+        return shipped
+    try:
+        identity = native_builder.library_identity(SOURCE)
+        kept = cache_directory() / "stepper" / identity / file
+        if not kept.exists():
+            native_builder.build_library(SOURCE, kept, platform)
+    except (LoomfmuError, OSError):  # no compiler, or no place to keep what it makes
+        return None
+    return kept

@@ -1,0 +1,254 @@
+"""The window grid: steps where the claims look, landing on what they look for; coarse ones elsewhere.
+
+A coarse run of what the claims need tells about where that is: the edges of the belt's window of risk and
+its lowest point, the edges of a dwell, the angles that a claim names. A second one, with points in the
+windows of risk, tells it so well that steps can land on it. A sample has no error of interpolation, and
+close to one it is small: so few steps do for what takes many equal ones.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import units
+from ..errors import LoomfmuError
+from ..traces import Recording
+from . import claims, curves
+from .asked import shaft_angle, with_rates
+from .grid import Grid, chosen, period, uniform
+from .play import remembered
+from .scene import Scene
+
+Floats = NDArray[np.float64]
+Look = Callable[..., None]
+
+SCOUTS = 2  # runs that look for the windows: the second one sees the lowest points
+INSIDE = 6  # points within a window of risk, for the second scout
+REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
+APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
+DAMPED = 48  # least steps in a revolution for a damper: 4e-9 of its peak in the demonstration, 5e-7 with 24
+BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit"}  # latched output -> what it follows
+
+
+@dataclass
+class Places:
+    """Where claims look, [s]: points to land on, points about them, and the longest step anywhere."""
+
+    period: float
+    most: float
+    points: list[float] = field(default_factory=list)
+    about: list[float] = field(default_factory=list)
+
+    def bracket(self, time: float, reach: float) -> None:
+        """Land on a point that is known to within a reach, and on both of its sides."""
+        if any(abs(time - point) < 0.5 * reach for point in self.points):
+            return  # two claims look for the same
+        self.points.append(time)
+        self.about += [time - reach, time + reach]
+
+
+def window_grid(scene: Scene) -> Grid:
+    """The communication points of a scene whose `grid` is "windows".
+
+    Raises:
+        LoomfmuError: the scene has no shaft or no claim to look for, or an FMU takes equal steps only
+    """
+    _check(scene)
+    fine = period(scene) / scene.steps_per_revolution
+    coarse = period(scene) / scene.coarse_steps_per_revolution
+    points, scouted = _equal(scene, coarse), 0
+    for _ in range(SCOUTS):
+        recording, needed, _warnings = remembered(scene, _watched(scene), chosen(scene, points))
+        scouted += len(needed.scene.instances) * (len(points) - 1)
+        places = Places(period(scene), coarse)
+        for claim in scene.claims:
+            arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
+            LOOKS.get(claim["kind"], _everywhere)(places, recording, fine, **arguments)
+        points = _merged(_equal(scene, coarse), places, APART * period(scene))
+    points = _merged(_equal(scene, places.most), places, APART * period(scene))
+    notes = (
+        f"steps: {period(scene) / places.most:.0f} in a revolution, and landings where the claims look;"
+        f" {scouted} steps of FMUs to find these",
+    )
+    return chosen(scene, points, notes, scouted)
+
+
+def _check(scene: Scene) -> None:
+    where = 'grid = "windows"'
+    if not scene.claims:
+        raise LoomfmuError(f"{where}: the scene has no claims, whose windows these could be")
+    if "shaft" not in scene.instances:
+        raise LoomfmuError(f"{where}: the scene has no shaft, along which the claims look")
+    if scene.coarse_steps_per_revolution > scene.steps_per_revolution:
+        raise LoomfmuError(
+            f"coarse_steps_per_revolution = {scene.coarse_steps_per_revolution} is outside"
+            f" [1, {scene.steps_per_revolution}], the fine steps_per_revolution"
+        )
+    for name, instance in scene.instances.items():
+        if instance.fmu.fixed_step:
+            raise LoomfmuError(
+                f"{where}: {name} takes equal steps only ({instance.fmu.name} has"
+                " canHandleVariableCommunicationStepSize = false)"
+            )
+
+
+def _equal(scene: Scene, longest: float) -> Floats:
+    """Equal steps no longer than that."""
+    end = uniform(scene).stop_time
+    return np.linspace(0.0, end, max(1, math.ceil(end / longest - 1e-9)) + 1)
+
+
+def _watched(scene: Scene) -> list[str]:
+    """The signals that tell where the claims look."""
+    wanted = list(shaft_angle(scene))
+    for claim in scene.claims:
+        signals = claims.signals_of(claim, scene.instances)
+        wanted += signals if LOOKS.get(claim["kind"]) not in (None, _carrier) else []
+        for belt in _belts(scene, signals):
+            wanted += [f"{belt}.{name}" for name in ("free_length", "axial_force", *BELT.values())]
+    return with_rates(scene, wanted)
+
+
+def _belts(scene: Scene, signals: Iterable[str]) -> list[str]:
+    """The belt monitors among the instances of some signals."""
+    owners = dict.fromkeys(signal.split(".")[0] for signal in signals)
+    return [name for name in owners if scene.instances[name].fmu.name == "BeltMonitor"]
+
+
+def _merged(equal: Floats, places: Places, apart: float) -> Floats:
+    """All points in order. Of two that are too close the one that a claim looks for stays."""
+    kept = np.empty(0)
+    for points in (equal[[0, -1]], np.array(places.points), np.array(places.about), equal):
+        points = np.sort(points[(points >= equal[0]) & (points <= equal[-1])])
+        points = points[np.diff(points, prepend=-math.inf) > apart]
+        if len(kept):
+            after = np.clip(np.searchsorted(kept, points), 1, len(kept) - 1)
+            away = np.minimum(np.abs(points - kept[after - 1]), np.abs(kept[after] - points))
+            points = points[away > apart]
+        kept = np.sort(np.concatenate([kept, points]))
+    return kept
+
+
+# ---- where the claims of each kind look
+
+
+def _risk(places: Places, trace: Recording, fine: float, belt: str, followed: str) -> None:
+    """The edges of each window of risk, its lowest point once samples show it, else points within."""
+    for low, high in _risk_windows(trace, belt):
+        places.points += [low, high]
+        inside = np.flatnonzero((trace.time > low) & (trace.time < high))
+        if len(inside) < INSIDE:
+            places.about += list(np.linspace(low, high, INSIDE + 2)[1:-1])
+            continue
+        seen = slice(inside[0], inside[-1] + 1)
+        spacing = (high - low) / (INSIDE + 1)
+        values = trace[f"{belt}.{followed}"][seen]
+        if followed == "speed_limit":
+            values = -(values**-2.0)  # it has poles at the edges, the load that it stands for has none
+        for time in _lowest_points(trace.time[seen], values):
+            places.bracket(time, REACH * spacing)
+
+
+def _risk_windows(trace: Recording, belt: str) -> list[tuple[float, float]]:
+    """Where the belt is outside its guide and compressed: the spline through the samples tells the edges."""
+    from scipy.interpolate import CubicSpline
+
+    length, force = (
+        CubicSpline(trace.time, trace[f"{belt}.{name}"]) for name in ("free_length", "axial_force")
+    )
+    ends = trace.time[[0, -1]]
+    edges = np.unique([*ends, *length.roots(extrapolate=False), *force.roots(extrapolate=False)])
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    at_risk = (length(middles) > 0.0) & (force(middles) > 0.0)
+    return [(float(edges[place]), float(edges[place + 1])) for place in np.flatnonzero(at_risk)]
+
+
+def _lowest_points(time: Floats, values: Floats) -> list[float]:
+    """Times of the local minima inside, on the spline through the samples."""
+    from scipy.interpolate import CubicSpline
+
+    curve = CubicSpline(time, values)
+    turns = curve.derivative().roots(extrapolate=False)
+    return [float(turn) for turn in turns[curve(turns, 2) > 0.0]]
+
+
+def _bounded(sign: float) -> Look:
+    """Looks of a claim that a signal stays on one side: its extremes, and the edges of the claim's window."""
+
+    def look(
+        places: Places, trace: Recording, fine: float, signal: str, bound: object,
+        window: Sequence[float | str] | None = None,
+    ) -> None:  # fmt: skip
+        instance, _, variable = signal.partition(".")
+        followed = BELT.get(variable, variable)
+        for edge in window or ():
+            places.points += curves.times_at(trace, units.parse(edge, "rad"))
+        if f"{instance}.speed_limit" in trace and followed in BELT.values():
+            _risk(places, trace, fine, instance, followed)
+        elif trace.rate(signal) is None:
+            _everywhere(places, trace, fine)
+        else:
+            for time in _lowest_points(trace.time, sign * trace[signal]):
+                place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
+                places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
+
+    return look
+
+
+def _lowest_margin(places: Places, trace: Recording, fine: float, bound: object, belt: str = "belt") -> None:
+    _risk(places, trace, fine, belt, "margin")
+
+
+def _dwell(
+    places: Places, trace: Recording, fine: float, heald: str, at_least: object,
+    tolerance: float | str = claims.TOLERANCE,
+) -> None:  # fmt: skip
+    stroke = trace.parameter(f"{heald}.stroke")
+    _levels(places, trace, heald, units.parse(tolerance, "1") * stroke)
+
+
+def _clear_shed(
+    places: Places, trace: Recording, fine: float, heald: str, clearance: float | str, at_least: object
+) -> None:
+    stroke, ratio = (trace.parameter(f"{heald}.{name}") for name in ("stroke", "warp_ratio"))
+    _levels(places, trace, heald, 0.5 * stroke - units.parse(clearance, "m") / ratio)
+
+
+def _levels(places: Places, trace: Recording, heald: str, distance: float) -> None:
+    """Where a frame passes a distance from the ends of its stroke."""
+    lift = curves.Motion(trace, f"{heald}.lift")
+    stroke = trace.parameter(f"{heald}.stroke")
+    places.points += lift.crossings(distance) + lift.crossings(stroke - distance)
+
+
+def _dwell_contains(
+    places: Places, trace: Recording, fine: float, heald: str, angles: Sequence[float | str],
+    tolerance: object = None,
+) -> None:  # fmt: skip
+    for angle in angles:
+        places.points += curves.times_at(trace, units.parse(angle, "rad"))
+
+
+def _carrier(places: Places, trace: Recording, fine: float, damper: str, at_most: object) -> None:
+    """A carrier remembers how its frame moved: coarse steps anywhere would be felt later."""
+    places.most = min(places.most, places.period / DAMPED)
+
+
+def _everywhere(places: Places, trace: Recording, fine: float, **_: object) -> None:
+    """A claim that is judged at the samples needs them all."""
+    places.most = min(places.most, fine)
+
+
+LOOKS: dict[str, Look] = {
+    "above": _bounded(1.0),
+    "below": _bounded(-1.0),
+    "lowest_margin": _lowest_margin,
+    "dwell": _dwell,
+    "clear_shed": _clear_shed,
+    "dwell_contains": _dwell_contains,
+    "peak_load": _carrier,
+    "stop_contacts": _carrier,
+}

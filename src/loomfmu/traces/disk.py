@@ -1,0 +1,41 @@
+"""Disk space for HDF5 files, and what their first bytes tell."""
+
+import errno
+import os
+from pathlib import Path
+
+
+def reserve(file: int, size: int) -> None:
+    """Take disk space for a file before HDF5 writes it: HDF5 does not survive a write that fails.
+
+    Raises OSError where there is no space; where a system cannot tell, nothing is reserved.
+    """
+    if hasattr(os, "posix_fallocate"):
+        try:
+            os.posix_fallocate(file, 0, size)
+        except OSError as error:
+            if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL):
+                raise
+
+
+def take(path: Path, mode: str, size: int) -> None:
+    """Reserve disk space for a file that is not open, or leave it as it was."""
+    with path.open(mode) as file:
+        before = os.fstat(file.fileno()).st_size
+        try:
+            reserve(file.fileno(), size)
+        except OSError:
+            file.truncate(before)
+            raise
+
+
+def superblock(path: Path) -> tuple[bool, int]:
+    """Whether an HDF5 file is marked as being written for readers beside the writer, and its length.
+
+    The mark stays when the writer is killed; the length is the one that the file says it has.
+    """
+    with path.open("rb") as file:
+        head = file.read(36)
+    if len(head) < 36 or head[8] != 3:  # the version that our files have
+        return False, 0
+    return bool(head[11] & 4), int.from_bytes(head[28:36], "little")

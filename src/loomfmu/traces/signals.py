@@ -1,0 +1,142 @@
+"""Signals of a run, however they are kept; kept in memory."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LoomfmuError, suggestion
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One recorded signal: where its values are found and what the trace says of it."""
+
+    instance: str
+    variable: str
+    unit: str
+    display: str
+    description: str
+    column: int
+    real: bool = True
+    rate: str | None = None
+    meanings: tuple[str, ...] = ()
+    first_flag: int = 0
+
+
+class Signals(ABC):
+    """Recorded signals of a run: `signals["belt.margin"]` are the signal's values, in SI."""
+
+    name = ""  # what messages call it
+
+    @abstractmethod
+    def __getitem__(self, signal: str) -> NDArray[Any]: ...
+
+    @abstractmethod
+    def __contains__(self, signal: object) -> bool: ...
+
+    @abstractmethod
+    def __iter__(self) -> Iterator[str]: ...
+
+    @property
+    @abstractmethod
+    def time(self) -> Floats:
+        """Time of the samples [s]."""
+
+    @property
+    @abstractmethod
+    def shaft_angle(self) -> Floats:
+        """Shaft angle of the samples, not wrapped [rad]."""
+
+    @abstractmethod
+    def unit(self, signal: str) -> str:
+        """Unit of a signal."""
+
+    @abstractmethod
+    def display(self, signal: str) -> str:
+        """Unit that people read a signal in."""
+
+    @abstractmethod
+    def rate(self, signal: str) -> str | None:
+        """The recorded signal that is this one's time derivative, if there is one."""
+
+    @abstractmethod
+    def parameter(self, signal: str) -> float:
+        """A parameter of an instance as it was set, such as `heald_1.stroke`."""
+
+    def _unknown(self, signal: str) -> LoomfmuError:
+        return LoomfmuError(f"{self.name}: no signal {signal!r} is recorded{suggestion(signal, self)}")
+
+
+class Recording(Signals):
+    """A run that is kept in memory. Takes blocks as a `TraceWriter` does."""
+
+    def __init__(
+        self, name: str, channels: Sequence[Channel], parameters: dict[str, dict[str, float | int | bool]]
+    ):
+        self.name = name
+        self._channels = {f"{channel.instance}.{channel.variable}": channel for channel in channels}
+        self._parameters = parameters
+        self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
+
+    def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
+        """Keep a block: values along the rows, signals along the columns."""
+        self._blocks.append((time.copy(), angle.copy(), reals.copy(), integers.copy()))
+        for kept in ("_joined", "time", "shaft_angle"):
+            self.__dict__.pop(kept, None)
+
+    @cached_property
+    def _joined(self) -> list[NDArray[Any]]:
+        return [np.concatenate(parts) for parts in zip(*self._blocks, strict=True)]
+
+    @cached_property
+    def time(self) -> Floats:
+        """Time of the samples [s]."""
+        return self._joined[0]
+
+    @cached_property
+    def shaft_angle(self) -> Floats:
+        """Shaft angle of the samples, not wrapped [rad]."""
+        return self._joined[1]
+
+    def __getitem__(self, signal: str) -> NDArray[Any]:
+        channel = self._channel(signal)
+        return self._joined[2 if channel.real else 3][:, channel.column]
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self._channels
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def _channel(self, signal: str) -> Channel:
+        if signal not in self._channels:
+            raise self._unknown(signal)
+        return self._channels[signal]
+
+    def unit(self, signal: str) -> str:
+        """Unit of a signal."""
+        return self._channel(signal).unit
+
+    def display(self, signal: str) -> str:
+        """Unit that people read a signal in."""
+        return self._channel(signal).display
+
+    def rate(self, signal: str) -> str | None:
+        """The recorded signal that is this one's time derivative, if there is one."""
+        rate = f"{signal.split('.')[0]}.{self._channel(signal).rate}"
+        return rate if rate in self._channels else None
+
+    def parameter(self, signal: str) -> float:
+        """A parameter of an instance as it was set, such as `heald_1.stroke`."""
+        instance, _, name = signal.partition(".")
+        if name not in self._parameters.get(instance, {}):
+            raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
+        return float(self._parameters[instance][name])

@@ -1,0 +1,133 @@
+"""Traces in HDF5, written block by block while a run goes on.
+
+One group for each instance, one dataset for each variable, all along `/time`. The file bears its final
+name only once it is complete; until then every block written can be read, even after a kill.
+"""
+
+import contextlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from .. import units
+from .disk import reserve, superblock, take
+from .signals import Channel, Floats, Integers
+
+ROWS = 1024  # of a block and of a chunk
+SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
+PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
+
+
+class TraceWriter:
+    """Writes a trace. Complete it with `complete`, or leave what was written with `abandon`."""
+
+    def __init__(
+        self,
+        path: Path,
+        attributes: dict[str, str],
+        channels: Sequence[Channel],
+        parameters: dict[str, dict[str, float | int | bool]],
+    ):
+        self.path = path
+        self.partial = path.with_name(path.name + ".partial")
+        self.channels = channels
+        self.rows = 0
+        self.partial.parent.mkdir(parents=True, exist_ok=True)
+        texts = sum(len(text.encode()) for text in attributes.values())
+        header = SPARE + texts + PER_DATASET * (len(channels) + 2)
+        self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
+        try:
+            take(self.partial, "wb", header)
+        except OSError:
+            self.partial.unlink(missing_ok=True)
+            raise
+        # v110 is the oldest format that can be read while it is written and after a kill
+        # no block is read again: by default HDF5 keeps 8 MB of each dataset in memory
+        self._file = h5py.File(self.partial, "w", libver=("v110", "v110"), rdcc_nbytes=16 * ROWS)
+        try:
+            reserve(self._file.id.get_vfd_handle(), header)
+            self._file.attrs.update({"Conventions": "CF-1.11", **attributes, "status": "running"})
+            self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
+            self._time.make_scale("time")
+            self._angle = self._dataset(
+                "/shaft_angle", "f8", "rad", "shaft angle", "Angle of the main shaft, not wrapped"
+            )
+            self._angle.dims[0].attach_scale(self._time)
+            self._datasets = [self._channel(channel) for channel in channels]
+            for instance, values in parameters.items():
+                self._file.require_group(instance).attrs.update(values)
+            self._file.swmr_mode = True
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _dataset(self, name: str, kind: str, unit: str, long_name: str, comment: str) -> Any:
+        dataset = self._file.create_dataset(
+            name, (0,), kind, maxshape=(None,), chunks=(ROWS,), shuffle=True, compression="gzip",
+            compression_opts=4,
+        )  # fmt: skip
+        dataset.attrs.update(
+            {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
+        )
+        return dataset
+
+    def _channel(self, channel: Channel) -> Any:
+        group = self._file.require_group(channel.instance)
+        if "time" not in group:
+            group["time"] = self._time  # a hard link: without it xarray loses the axis
+        dataset = self._dataset(
+            f"/{channel.instance}/{channel.variable}",
+            "f8" if channel.real else "i4",
+            channel.unit,
+            channel.variable.replace("_", " "),
+            channel.description,
+        )
+        dataset.dims[0].attach_scale(self._time)
+        if channel.display != channel.unit:
+            dataset.attrs["DISPLAY_UNIT"] = channel.display
+        if channel.rate:
+            dataset.attrs["rate"] = channel.rate
+        if channel.meanings:
+            flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
+            dataset.attrs["flag_values"] = np.array(flags, dtype="i4")
+            dataset.attrs["flag_meanings"] = " ".join(channel.meanings)
+        return dataset
+
+    def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
+        """Write a block: values along the rows, signals along the columns."""
+        reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
+        start, self.rows = self.rows, self.rows + len(time)
+        for dataset, values in ((self._time, time), (self._angle, angle)):
+            dataset.resize((self.rows,))
+            dataset[start:] = values
+        for channel, dataset in zip(self.channels, self._datasets, strict=True):
+            dataset.resize((self.rows,))
+            dataset[start:] = (reals if channel.real else integers)[:, channel.column]
+        self._file.flush()
+
+    def seal(self, status: str) -> None:
+        """Close the file under its provisional name, marked with its status."""
+        self._file.close()
+        self._annotate("status", status)
+
+    def complete(self, verdicts: Sequence[dict[str, Any]]) -> Path:
+        """Give the sealed file its verdicts and its final name."""
+        self._annotate("claims", json.dumps(verdicts))
+        self.partial.replace(self.path)
+        return self.path
+
+    def _annotate(self, name: str, text: str) -> None:
+        """Write an attribute of the closed file."""
+        take(self.partial, "r+b", superblock(self.partial)[1] + len(text.encode()) + SPARE)
+        with h5py.File(self.partial, "r+") as file:
+            file.attrs[name] = text
+
+    def abandon(self, status: str) -> Path:
+        """Close what was written so far, marked incomplete; its path."""
+        with contextlib.suppress(OSError):  # a full disk: what was flushed can still be read
+            self.seal(status)
+        return self.partial

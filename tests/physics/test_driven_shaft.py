@@ -1,0 +1,125 @@
+"""Driven shaft: the exact solution in 200 digits, energy, and sums that lose nothing."""
+
+from fractions import Fraction
+from math import fsum
+
+import mpmath
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from loomfmu.physics.driven_shaft import driven_motion, summed
+
+MP = mpmath.mp.clone()
+MP.dps = 200  # the closed form divides by k^2: with k h / J = 1e-18 it cancels 54 digits
+
+torques = st.one_of(st.just(0.0), st.floats(-1e3, -1e-3), st.floats(1e-3, 1e3))
+decades = st.floats(-9.0, 3.0)
+
+
+def solved(net, rise, duration, inertia, slope):
+    """Velocity gained `v` and its integral: the solution of `J v' = N0 - dT t / h - k v`, `v(0) = 0`."""
+    n, s, h, j, k = (MP.mpf(x) for x in (net, rise, duration, inertia, slope))
+    s = s / h  # N m/s
+    if k == 0:
+        return (n * h - s * h**2 / 2) / j, (n * h**2 / 2 - s * h**3 / 6) / j
+    b = -s / k  # v = a (1 - exp(-k t / J)) + b t
+    a = (n - j * b) / k
+    decay = MP.exp(-k * h / j)
+    return a * (1 - decay) + b * h, a * h + b * h**2 / 2 - a * j / k * (1 - decay)
+
+
+def agree(net, rise, duration, inertia, slope):
+    found = driven_motion(net, rise, duration, inertia, slope)
+    wanted = solved(net, rise, duration, inertia, slope)
+    # the motor's and the load's part are each right to rounding; their difference is to that of either
+    parts = [solved(*each, duration, inertia, slope) for each in ((net, 0.0), (0.0, rise))]
+    for value, exact, first, second in zip(found, wanted, *parts, strict=True):
+        # 1e-300 is a step that adds nothing, 3e-15 some ten roundings and those of the moments
+        assert abs(value - exact) <= 3e-15 * (abs(first) + abs(second)) + MP.mpf("1e-300")
+
+
+@given(torques, torques, decades, decades, decades)
+def test_the_solution_is_exact_for_every_step_inertia_and_slope(net, rise, duration, inertia, slope):
+    agree(net, rise, 10.0**duration, 10.0**inertia, 10.0**slope)
+
+
+@given(torques, torques, decades, decades)
+def test_a_shaft_without_motor_coasts_exactly(net, rise, duration, inertia):
+    agree(net, rise, 10.0**duration, 10.0**inertia, 0.0)
+
+
+@pytest.mark.parametrize("decay", [1e-18, 1e-9, 1e-3, 0.5, 2.999999, 3.0, 3.000001, 40.0, 1e3, 1e9, 1e18])
+def test_no_decay_is_special(decay):
+    # a series below 3 and a recursion above meet without a seam; exp(-1e3) is nought
+    for net, rise in ((1.0, 0.0), (0.0, 1.0), (3.0, -2.0), (5.0, 5.0)):
+        agree(net, rise, 0.5, 2.0, 4.0 * decay)
+
+
+def test_a_motor_that_has_all_the_time_gives_way_until_it_balances_the_load():
+    # N = N0 - k (w - w(0)) - dT comes to nothing, but for the load's own rate: w' = -dT / (k h)
+    velocity, _angle = driven_motion(6.0, 4.0, 1e3, 0.01, 2.0)
+    lag = 0.01 * 4.0 / 1e3 / 2.0 / 2.0  # J dT / (k^2 h)
+    assert velocity == pytest.approx((6.0 - 4.0) / 2.0 + lag, rel=1e-15)
+
+
+@given(torques, torques, st.floats(0.0, 50.0), st.floats(-40.0, 40.0))
+def test_work_of_the_motor_is_work_of_the_load_and_kinetic_energy(net, rise, slope, velocity):
+    inertia, duration, load = 2.0, 0.2, 17.0
+
+    def surplus(share):
+        """Power of the motor less that of the load, after a share of the step."""
+        share = float(share)
+        gained, _angle = driven_motion(net, rise * share, duration * share, inertia, slope)
+        motor = net + load - slope * gained
+        return MP.mpf((motor - load - rise * share) * (velocity + gained))
+
+    work = duration * MP.quad(surplus, [0, 1], method="gauss-legendre", maxdegree=4)
+    gained, _angle = driven_motion(net, rise, duration, inertia, slope)
+    kinetic = inertia * gained * (velocity + 0.5 * gained)
+    # rounding of the torques and of the powers; z is 5 at most, and the quadrature of 48 points exact
+    largest = (abs(net) + abs(rise) + load + slope * abs(gained)) * (abs(velocity) + abs(gained) + 100.0)
+    assert abs(work - kinetic) < 1e-15 * duration * largest + 1e-15 * abs(kinetic)
+
+
+@given(torques, torques, st.floats(0.0, 1.0), st.sampled_from([0.0, 0.1, 40.0, 1e4]))
+def test_a_step_is_the_sum_of_its_parts(net, rise, part, slope):
+    inertia, duration = 2.0, 0.1
+    whole = driven_motion(net, rise, duration, inertia, slope)
+    first = driven_motion(net, rise * part, duration * part, inertia, slope)
+    rest = duration * (1.0 - part)
+    second = driven_motion(net - rise * part - slope * first[0], rise * (1.0 - part), rest, inertia, slope)
+    # the balance of motor and load at the joint is rounded: to 1e-16 of either, over J or over k
+    scale = 1e-15 * (abs(net) + 2.0 * abs(rise)) * min(duration / inertia, 1.0 / slope if slope else 1.0)
+    assert abs(first[0] + second[0] - whole[0]) <= 4.0 * scale
+    assert abs(first[1] + first[0] * rest + second[1] - whole[1]) <= 4.0 * scale * duration
+
+
+def test_a_step_of_no_length_moves_nothing():
+    assert driven_motion(5.0, 3.0, 0.0, 2.0, 40.0) == (0.0, 0.0)
+
+
+# Sums
+
+
+@given(st.floats(-1e9, 1e9), st.floats(-1e-7, 1e-7), st.floats(-1e9, 1e9))
+def test_what_a_sum_leaves_over_is_its_rounding(value, rest, change):
+    total, left = summed(value, rest, change)
+    assert Fraction(total) + Fraction(left) == Fraction(value) + Fraction(change + rest)  # exactly
+
+
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=200), st.floats(0.0, 1e6))
+def test_many_sums_are_as_good_as_one(changes, start):
+    value, rest = start, 0.0
+    for change in changes:
+        value, rest = summed(value, rest, change)
+    exact = fsum([start, *changes])
+    # the sum rounded once; what is left over is itself rounded, 200 times to 1e-16 of 1
+    assert value == pytest.approx(exact, rel=2.3e-16, abs=3e-14)
+    assert value + rest == pytest.approx(exact, rel=2.3e-16)
+
+
+@given(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9))
+def test_adding_nothing_changes_nothing(value, change):
+    total = summed(value, 0.0, change)
+    assert summed(*total, 0.0) == total
