@@ -463,7 +463,7 @@ def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
 def test_a_damaged_block_is_named(result: loomfmu.Result, tmp_path: Path) -> None:
     damaged = bytearray(result.path.read_bytes())
     with h5py.File(result.path) as file:
-        chunk = file["belt/margin"].id.get_chunk_info(1)
+        chunk = file["belt/margin"].id.get_chunk_info(0)
     for place in range(chunk.byte_offset, chunk.byte_offset + chunk.size):
         damaged[place] ^= 0xFF
     path = tmp_path / "damaged.h5"

@@ -12,12 +12,13 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import units
+from .chunks import LEVEL, ROWS, packed
 from .disk import reserve, superblock, take
 from .signals import Channel, Floats, Integers
 
-ROWS = 1024  # of a block and of a chunk
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
 
@@ -57,7 +58,9 @@ class TraceWriter:
                 "/shaft_angle", "f8", "rad", "shaft angle", "Angle of the main shaft, not wrapped"
             )
             self._angle.dims[0].attach_scale(self._time)
-            self._datasets = [self._channel(channel) for channel in channels]
+            datasets = [self._channel(channel) for channel in channels]
+            self._reals, self._real_columns = self._chosen(datasets, real=True)
+            self._integers, self._integer_columns = self._chosen(datasets, real=False)
             for instance, values in parameters.items():
                 self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
@@ -65,10 +68,17 @@ class TraceWriter:
             self._file.close()
             raise
 
+    def _chosen(self, datasets: Sequence[Any], real: bool) -> tuple[list[Any], list[int]]:
+        """The datasets of one kind of channels, and the columns that go into them."""
+        pairs = [
+            (each, of.column) for each, of in zip(datasets, self.channels, strict=True) if of.real == real
+        ]
+        return [dataset for dataset, _ in pairs], [column for _, column in pairs]
+
     def _dataset(self, name: str, kind: str, unit: str, long_name: str, comment: str) -> Any:
         dataset = self._file.create_dataset(
             name, (0,), kind, maxshape=(None,), chunks=(ROWS,), shuffle=True, compression="gzip",
-            compression_opts=4,
+            compression_opts=LEVEL,
         )  # fmt: skip
         dataset.attrs.update(
             {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
@@ -101,13 +111,26 @@ class TraceWriter:
         """Write a block: values along the rows, signals along the columns."""
         reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
         start, self.rows = self.rows, self.rows + len(time)
-        for dataset, values in ((self._time, time), (self._angle, angle)):
-            dataset.resize((self.rows,))
-            dataset[start:] = values
-        for channel, dataset in zip(self.channels, self._datasets, strict=True):
-            dataset.resize((self.rows,))
-            dataset[start:] = (reals if channel.real else integers)[:, channel.column]
+        shared = np.stack([time, angle])
+        self._extend([self._time, self._angle], shared, start)
+        for datasets, columns, values in (
+            (self._reals, self._real_columns, reals),
+            (self._integers, self._integer_columns, integers),
+        ):
+            self._extend(datasets, np.ascontiguousarray(values.T[columns]), start)
         self._file.flush()
+
+    def _extend(self, datasets: Sequence[Any], columns: NDArray[Any], start: int) -> None:
+        """Add values, a row for each dataset, from a sample on."""
+        end = start + columns.shape[1]
+        if start % ROWS or end - start > ROWS:  # they begin or end within a chunk: HDF5 knows how
+            for dataset, values in zip(datasets, columns, strict=True):
+                dataset.resize((end,))
+                dataset[start:] = values
+            return
+        for dataset, chunk in zip(datasets, packed(columns), strict=True):
+            dataset.id.set_extent((end,))
+            dataset.id.write_direct_chunk((start,), chunk)
 
     def seal(self, status: str) -> None:
         """Close the file under its provisional name, marked with its status."""
