@@ -239,8 +239,8 @@ class Master:
         try:
             while step < self.grid.steps and not failure:
                 if filled == rows:
+                    filled = 0  # first: what is handed over and found bad is not handed over again
                     self._hand_over(times, reals, integers, write)
-                    filled = 0
                     progress(step)
                 span = self.grid.span(step, min(rows - filled, self.grid.steps - step, part))
                 before = perf_counter()
