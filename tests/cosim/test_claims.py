@@ -96,6 +96,7 @@ def test_above_and_below_tell_the_worst_value_and_its_place(tmp_path: Path) -> N
     assert judge(trace, kind="below", signal="a.x", bound="1 m")
 
 
+@pytest.mark.no_cover
 def test_extremes_between_the_samples_count(loom: Callable[..., Trace]) -> None:
     fine, coarse = loom(5760), loom(45)
     for kind, signal in (("below", "weft.velocity"), ("above", "weft.velocity"), ("below", "weft.travel")):
@@ -216,6 +217,7 @@ def test_dwell_is_the_rotor_laws_own(loom: Callable[..., Trace], steps: int, tol
     assert wider.claim == "dwell within 5 % of the stroke"
 
 
+@pytest.mark.no_cover
 def test_a_frame_that_holds_dwells_a_turn_longer(loom: Callable[..., Trace]) -> None:
     trace = loom(weave="1100/0110", revolutions=9)
     for heald in ("heald_1", "heald_2"):

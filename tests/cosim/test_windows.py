@@ -91,8 +91,10 @@ def test_windows_are_found_wherever_they_are(changed: dict[str, object]) -> None
     found, fine = judged(**changed), judged("uniform", **{"steps_per_revolution": 5760, **changed})
     for verdict, exact in zip(found.claims, fine.claims, strict=True):
         assert verdict.holds == exact.holds, str(verdict)
-        # a margin is 1 where the belt is safe; 5,760 equal steps and the landings agree far better
-        assert verdict.worst == pytest.approx(exact.worst, rel=1e-7, nan_ok=True), str(verdict)
+        # a jump of the law's third derivative within a step of 1/48 of a revolution costs the carrier up to
+        # 3e-7 of its peak (the fifth case); all else agrees far better
+        reach = 1e-6 if verdict.signal == "damper_1.peak_load" else 1e-7
+        assert verdict.worst == pytest.approx(exact.worst, rel=reach, nan_ok=True), str(verdict)
 
 
 def test_a_claim_that_is_judged_at_every_sample_gets_them_all() -> None:

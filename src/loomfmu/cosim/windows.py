@@ -29,7 +29,9 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
-DAMPED = 48  # least steps in a revolution for a damper: 4e-9 of its peak in the demonstration, 5e-7 with 24
+# least steps in a revolution for a damper: good to 2e-9 of its peak in the demonstration and 3e-7 where it
+# starts in the middle of a motion, ten times worse with 24
+DAMPED = 48
 BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit"}  # latched output -> what it follows
 
 
