@@ -23,8 +23,8 @@ MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or thre
 TOLERANCE = 1e-11  # of the largest value on a wire so far: what rounding leaves of a loop with a gain of 1e4
 FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
 HISTORY = 256  # samples over which a swing is followed
-FLIPS = 6  # in a row, each larger than the one before: an extremum of a smooth signal gives one
-GROWTH = 100.0  # from which on a swing is one, and not noise
+FLIPS = 10  # in a row, each larger than the one before: an extremum of a smooth signal gives one
+GROWTH = 30.0  # from which on a swing is one, and not noise
 NOTICED = 1e-6  # share of the largest value from which on a swing is told
 
 
@@ -54,10 +54,11 @@ class Broyden:
             found = self._reals[self._slots]
             if not np.all(np.isfinite(found)):
                 return False
-            self._largest = np.maximum(self._largest, np.abs(found))
             before, residual = residual, found - guess
-            agrees = np.all(np.abs(residual) <= TOLERANCE * self._largest)
+            largest = np.maximum(self._largest, np.abs(found))
+            agrees = np.all(np.abs(residual) <= TOLERANCE * largest)
             if agrees and np.array_equal(others, self._integers):
+                self._largest = largest
                 return True
             if len(change):
                 self._learn(change, residual - before)
