@@ -4,20 +4,28 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test check docs validation clean
+.PHONY: demo test check stress bench docs validation wheel clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu build
 	$(BIN)/loomfmu run sims/wl680_3600.toml
 
 test: .venv/installed-for-tests check
-	$(BIN)/python -m pytest --cov --cov-report=term
+	$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=loadfile --cov --cov-report=term
 
 check: .venv/installed-for-tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# the stress tests, the long ones included
+stress: .venv/installed-for-tests
+	$(BIN)/python -m pytest tests/stress -m "slow or not slow"
+
+# run time against error, side by side with other masters: about half an hour
+bench: .venv/installed-for-tests
+	$(BIN)/python tests/benchmarks
 
 # the tables of variables in the READMEs of the FMUs, and their reference results
 docs: .venv/installed
@@ -28,6 +36,13 @@ docs: .venv/installed
 validation: .venv/installed
 	$(INSTALL) --editable .[plot]
 	$(BIN)/loomfmu validate
+
+# a package that needs no compiler for its stepper, on any platform
+wheel: .venv/installed
+	$(INSTALL) --editable .[native]
+	$(BIN)/python -c "from loomfmu.cosim.steppers import build_all; build_all()"
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
+	rm -r src/loomfmu/cosim/native/*/
 
 .venv/created:
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"

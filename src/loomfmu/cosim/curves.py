@@ -54,22 +54,32 @@ class Motion:
 
     def crossings(self, level: float) -> list[float]:
         """Times at which the motion passes a level, found to rounding on each interval's quintic."""
-        from scipy.optimize import brentq
-
         side = self.values[0] - level
         found = []
         for interval in np.flatnonzero((side[:-1] < 0) != (side[1:] < 0)):
             polynomial = self.coefficients(int(interval))
             polynomial[0] -= level
-            ends = np.polynomial.polynomial.polyval([0.0, 1.0], polynomial)
-            if ends[0] * ends[1] > 0.0:  # an end on the level to rounding
-                share = float(abs(ends[1]) < abs(ends[0]))
-            else:
-                share = brentq(
-                    lambda u, p=polynomial: np.polynomial.polynomial.polyval(u, p), 0.0, 1.0, xtol=1e-15
-                )
+            share = _root(polynomial.tolist())
             found.append(float(self.time[interval] + share * (self.time[interval + 1] - self.time[interval])))
         return found
+
+
+def _root(polynomial: list[float]) -> float:
+    """Where a polynomial that changes its sign between 0 and 1 does so; the constant comes first.
+
+    Halved until nothing is left between: scipy.optimize would take longer to be imported than to do it.
+    """
+    low, high = 0.0, 1.0
+    rises = polynomial[0] < 0.0
+    while low < (middle := 0.5 * (low + high)) < high:
+        value = 0.0
+        for coefficient in reversed(polynomial):
+            value = value * middle + coefficient
+        if (value < 0.0) == rises:
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 def spans_within(lift: Motion, distance: float, stroke: float) -> list[tuple[float, float]]:

@@ -16,6 +16,7 @@ import fmpy
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
 from ..fmi import builder, native_builder
+from ..fmi.model_description import model_description
 from .descriptions import is_ours, ports_of
 from .ports import Port, Value
 
@@ -120,7 +121,7 @@ def of_component(name: str, flavour: str = "live") -> Fmu:
     _check(name, flavour)
     description = BytesIO()
     with zipfile.ZipFile(description, "w") as archive:
-        archive.writestr("modelDescription.xml", builder.description(COMPONENTS[name]))
+        archive.writestr("modelDescription.xml", model_description(COMPONENTS[name], guid="", version=""))
     read = fmpy.read_model_description(description, validate=False)
     return Fmu(name=name, ports=ports_of(read), flavour=flavour)
 

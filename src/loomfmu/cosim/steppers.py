@@ -199,15 +199,25 @@ def stepper(
 def _library() -> Path | None:
     """The compiled stepper: it comes with the package, or is built once where a compiler is installed."""
     platform = native_builder.host_platform()
-    file = f"stepper{native_builder.PLATFORMS[platform].suffix}"
-    shipped = SOURCE.with_name(platform) / file
+    shipped = _shipped(platform)
     if shipped.exists():
         return shipped
     try:
-        identity = native_builder.library_identity(SOURCE)
-        kept = cache_directory() / "stepper" / identity / file
+        kept = cache_directory() / "stepper" / native_builder.library_identity(SOURCE) / shipped.name
         if not kept.exists():
             native_builder.build_library(SOURCE, kept, platform)
     except (LoomfmuError, OSError):  # no compiler, or no place to keep what it makes
         return None
     return kept
+
+
+def _shipped(platform: str) -> Path:
+    """Where the compiled stepper of a platform lies in a package that brings it."""
+    return SOURCE.with_name(platform) / f"stepper{native_builder.PLATFORMS[platform].suffix}"
+
+
+def build_all() -> list[Path]:
+    """Build the stepper for all platforms, for a package that brings it. Raises LoomfmuError, OSError."""
+    for platform in native_builder.PLATFORMS:
+        native_builder.build_library(SOURCE, _shipped(platform), platform)
+    return [_shipped(platform) for platform in native_builder.PLATFORMS]

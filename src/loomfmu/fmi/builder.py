@@ -8,9 +8,8 @@ import tempfile
 import uuid
 import zipfile
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
-
-import pythonfmu
 
 from .. import units
 from ..components import COMPONENTS
@@ -84,14 +83,9 @@ def write_readmes() -> None:
         readme.write_text(text, encoding="utf-8")
 
 
-def description(component: type[Component]) -> bytes:
-    """The model description of an FMU that is not built yet: without its identity."""
-    return model_description(component, "", version())
-
-
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of its model description, its source and the slave that runs it."""
-    digest = hashlib.sha256(description(component))
+    digest = hashlib.sha256(model_description(component, "", version()))
     for part in (_rows(component), flatten(component), _slave_source()):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
@@ -118,10 +112,17 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
         f"resources/{package}/component.py": flatten(component).encode(),
         f"resources/{package}/slave.py": _slave_source().encode(),
     }
-    for binary in sorted((Path(pythonfmu.__file__).parent / "resources" / "binaries").rglob("*")):
+    for binary in sorted((_wrapper() / "resources" / "binaries").rglob("*")):
         if binary.is_file():
             files[f"binaries/{binary.parent.name}/{name}{binary.suffix}"] = binary.read_bytes()
     return files
+
+
+def _wrapper() -> Path:
+    """Where pythonfmu is installed: its compiled wrapper is wanted, not its Python."""
+    found = find_spec("pythonfmu")
+    assert found is not None and found.origin is not None, "pythonfmu is installed with this package"
+    return Path(found.origin).parent
 
 
 def _entry(component: type[Component], package: str, identity: str) -> str:

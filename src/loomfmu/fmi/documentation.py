@@ -4,8 +4,6 @@ import html
 import math
 import re
 
-from markdown_it import MarkdownIt
-
 from .. import units
 from ..variables import Component, Variable, variables_of
 
@@ -76,6 +74,8 @@ def with_table(readme: str, component: type[Component]) -> str:
 
 def page(title: str, markdown: str) -> bytes:
     """Markdown as an HTML page."""
+    from markdown_it import MarkdownIt  # not needed by who runs FMUs that are built
+
     body = MarkdownIt("commonmark").enable("table").render(markdown)
     return PAGE.format(title=html.escape(title), body=body).encode()
 

@@ -241,7 +241,7 @@ def library_identity(source: Path) -> str:
 
 
 def build_library(source: Path, output: Path, platform: str) -> None:
-    """Compile one C file into a shared library for the first processor of a platform, whole or not at all.
+    """Compile one C file into a shared library for all processors of a platform, whole or not at all.
 
     Raises:
         LoomfmuError: there is no compiler, or it does not compile
@@ -249,11 +249,15 @@ def build_library(source: Path, output: Path, platform: str) -> None:
     """
     _compiler()
     output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent) as directory:
+    with tempfile.TemporaryDirectory(dir=output.parent) as name:
+        directory = Path(name)
         shutil.copy(source, directory)
-        made = Path(output.name)
-        _compile(source.name, made, next(iter(PLATFORMS[platform].targets)), Path(directory))
-        (Path(directory) / made).replace(output)
+        parts = []
+        for target in PLATFORMS[platform].targets:
+            _compile(source.name, Path(output.name), target, directory)
+            parts.append((directory / output.name).read_bytes())
+        (directory / output.name).write_bytes(parts[0] if len(parts) == 1 else fat_binary(parts))
+        (directory / output.name).replace(output)
 
 
 @cache
