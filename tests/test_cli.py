@@ -42,7 +42,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     printed = capsys.readouterr()
     assert printed.err == ""
     lines = printed.out.splitlines()
-    assert lines[0] == "Small: 1 revolutions at 400 rev/min, 90 steps each"
+    assert lines[0] == "Small: 1 revolutions at 400 rev/min, 90 steps"
     (row,) = (line for line in lines if "lowest margin" in line)
     assert row.split()[0] == word
     assert "belt.lowest_margin" in row and "0.6558" in row and f" {bound} " in row and " deg " in row

@@ -153,7 +153,7 @@ def _run(options: argparse.Namespace) -> int:
     if scene.step is None:
         print(
             f"{scene.title}: {scene.revolutions:g} revolutions at {units.show(scene.speed, 'rev/min')},"
-            f" {scene.steps_per_revolution} steps each"
+            f" {result.steps} steps"
         )
     else:
         print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")

@@ -235,7 +235,7 @@ def test_export_and_run_by_the_command(
         " other tools keep it at its first value\n"
     )
     assert main(["run", "deep/belt.ssp", "--set", "shaft.speed=500rpm"]) == 0
-    assert ": 2 revolutions at 500 rev/min, 90 steps each" in capsys.readouterr().out
+    assert ": 2 revolutions at 500 rev/min, 180 steps" in capsys.readouterr().out
     with Trace("results/belt.h5") as trace:
         assert trace["belt.guide_clearance"][-1] > 0.3e-3
 

@@ -31,13 +31,15 @@ LONG_RUN = 20_000  # steps from which a progress bar is shown
 class _Judged:
     """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
 
-    `skipped` are lines that say what was not run or not read and why, and what that saved.
+    `skipped` are lines that say what was not run or not read and why, and what that saved; `steps` is the
+    number of communication steps.
     """
 
     scene: Scene
     claims: tuple[Verdict, ...]
     warnings: tuple[str, ...]
     skipped: tuple[str, ...]
+    steps: int
 
     @property
     def holds(self) -> bool:
@@ -108,7 +110,7 @@ def run(
             writer.abandon("failed")
             raise
         warnings = (*scene.notes, *master.warnings())
-    return Result(scene, _finish(scene, writer), warnings, explained(plan), path)
+    return Result(scene, _finish(scene, writer), warnings, explained(plan), plan.grid.steps, path)
 
 
 def evaluate(
@@ -134,7 +136,7 @@ def evaluate(
     recording, needed, warnings = remembered(scene, wanted, grid)
     verdicts = tuple(judge(recording, **claim) for claim in scene.claims)
     skipped = explained(Plan(scene, needed, grid))
-    return Evaluation(scene, verdicts, (*scene.notes, *warnings), skipped, recording)
+    return Evaluation(scene, verdicts, (*scene.notes, *warnings), skipped, grid.steps, recording)
 
 
 def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
@@ -158,7 +160,7 @@ def explained(plan: Plan) -> tuple[str, ...]:
     taken, usual = plan.grid.steps, plan.scene.steps
     lines = [*plan.lean.skipped, *plan.grid.notes]
     done, full = kept * taken + plan.grid.scouted, whole * usual
-    saved = f"{full / done:.3g} times fewer" if done else "none left"
+    saved = "none left" if not done else "all of them" if done == full else f"{full / done:.3g} times fewer"
     return (
         *lines,
         f"{kept} of {whole} FMUs, {taken} steps where equal ones would be {usual}:"
