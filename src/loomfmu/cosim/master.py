@@ -111,16 +111,18 @@ class Master:
         try:
             for name in self.order:
                 self.slaves[name] = borrow(self.scene.instances[name].fmu, name)
-        except BaseException:
-            self.__exit__()
+        except BaseException as error:
+            self.__exit__(type(error))
             raise
         return self
 
-    def __exit__(self, *_: Any) -> None:
+    def __exit__(self, kind: type[BaseException] | None = None, *_: Any) -> None:
         for slave in self.slaves.values():
             give_back(slave)
         self.slaves.clear()
         self._interrupts.close()
+        if kind is None and self.interrupted.value:  # it came when nobody looked any more
+            raise KeyboardInterrupt("interrupted")
 
     def initialize(self) -> None:
         """Set all values, exchange the outputs at the start until they settle, prepare the calls."""

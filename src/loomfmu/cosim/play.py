@@ -10,7 +10,7 @@ from ..traces import ROWS, Channel, Recording
 from .asked import output_port, parameters
 from .grid import Grid
 from .lean import Lean, lean
-from .master import Integers, Master, Reals
+from .master import Integers, Interrupted, Master, Reals
 from .scene import Scene
 
 
@@ -81,7 +81,8 @@ def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> tuple[Record
     with plan.master() as master:
         master.initialize()
         recording = Recording(scene.name, channels(plan, master), parameters(scene))
-        play(master, recording, lambda _step: None)
-        if master.interrupted.value:
-            raise KeyboardInterrupt("interrupted")
+        try:
+            play(master, recording, lambda _step: None)
+        except Interrupted:
+            raise KeyboardInterrupt("interrupted") from None
         return recording, plan.lean, master.warnings()

@@ -100,6 +100,8 @@ def run(
         try:
             with _bar(plan, progress) as advance:
                 play(master, writer, advance)
+            if master.interrupted.value:
+                raise Interrupted
         except Interrupted:
             kept = writer.abandon("interrupted")
             raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None

@@ -6,10 +6,14 @@ instance is freed), so nothing may raise: every complaint is logged, remembered,
 with `fmi2Discard`, the one status that can be returned.
 """
 
+import atexit
 import math
 import operator
+import os
 import struct
+import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 WARNING, DISCARD, ERROR = 1, 2, 3
@@ -72,6 +76,8 @@ class LiveSlave(Fmi2Slave):
         self.stale = True
         self.warned: set[int] = set()
         self.readers: dict[tuple[int, ...], Callable[[Any], Any]] = {}
+        self.writers: dict[tuple[Any, ...], list[tuple[str, float, float]]] = {}
+        _let_go_at_exit(str(kwargs.get("resources", "")), type(self.component).__name__)
 
     # ---- life cycle
 
@@ -172,15 +178,25 @@ class LiveSlave(Fmi2Slave):
         return operator.attrgetter(*names) if names else None
 
     def _set(self, references: list[int], values: list[Any], kind: str) -> None:
-        component, rows = self.component, self.rows
-        for reference, value in zip(references, values, strict=True):
-            if 0 <= reference < len(rows):
-                row = rows[reference]
-                if row.kind == kind and row.low <= value <= row.high and self._settable(row):
-                    setattr(component, row.name, value)
-                    continue
-            self._refuse(reference, value, kind)
+        key = (kind, self.mode, *references)
+        limits = self.writers.get(key)
+        if limits is None:
+            limits = self.writers[key] = [self._limits(reference, kind) for reference in references]
+        component = self.component
+        for reference, (name, low, high), value in zip(references, limits, values, strict=True):
+            if low <= value <= high:
+                setattr(component, name, value)
+            else:
+                self._refuse(reference, value, kind)
         self.stale = True
+
+    def _limits(self, reference: int, kind: str) -> tuple[str, float, float]:
+        """Name and limits of a variable; limits that let nothing pass for one that may not be set now."""
+        if 0 <= reference < len(self.rows):
+            row = self.rows[reference]
+            if row.kind == kind and self._settable(row):
+                return row.name, row.low, row.high
+        return "", math.inf, -math.inf
 
     def _settable(self, row: Row) -> bool:
         return row.causality == "input" or (row.causality == "parameter" and self.mode != STEPPING)
@@ -292,3 +308,31 @@ class LiveSlave(Fmi2Slave):
     @classmethod
     def _unpack(cls, data: bytes) -> Iterator[Any]:
         return iter(struct.unpack_from(cls._format(), data))
+
+
+# ---- the end of the process
+
+_libraries: set[str] = set()  # those that are told to let go
+
+
+def _let_go_at_exit(resources: str, name: str) -> None:
+    """Make pythonfmu's wrapper let go of its `PyState` before the end of the process: it would do so twice.
+
+    In a library that is not unloaded before, `exit` first runs the destructor of the pointer, which frees
+    the state and keeps its address, then `onLibraryUnload`, which counts down in the freed memory. That
+    corrupts the heap wherever the memory has another use by then. Once let go, both find nothing.
+    On Windows they run in the other order. A host that is no Python has its interpreter ended by the state.
+    """
+    library = str(Path(resources).parent / "binaries" / "linux64" / f"{name}.so")
+    if sys.platform == "linux" and sys.orig_argv and library not in _libraries:
+        _libraries.add(library)
+        atexit.register(_let_go, library)
+
+
+def _let_go(library: str) -> None:
+    try:
+        import ctypes
+
+        ctypes.CDLL(library, os.RTLD_NOLOAD).finalizePythonInterpreter()
+    except (ImportError, OSError, AttributeError):  # no ctypes here, or the library was unloaded
+        pass

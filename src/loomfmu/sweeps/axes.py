@@ -1,0 +1,142 @@
+"""Axes of a sweep: the values that a key takes, on a grid or in a Latin hypercube sample."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LoomfmuError, suggestion
+from .varied import Value, Varied
+
+MOST = 10_000_000  # combinations, points of an axis
+RANGE = ("from", "to", "count", "logarithmic")
+TYPES = {"Real": np.float64, "Integer": np.int64, "Boolean": np.bool_, "Text": np.object_}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A key with its values in SI: the points of a grid, or one for each point of a sample."""
+
+    varied: Varied
+    values: NDArray[Any]
+    sampled: bool = False
+    logarithmic: bool = False
+
+    @property
+    def key(self) -> str:
+        """What the sweep file calls it."""
+        return self.varied.key
+
+    @property
+    def numeric(self) -> bool:
+        """Whether its values lie on a line."""
+        return self.varied.kind in ("Real", "Integer")
+
+
+def whole(given: Any, where: str, low: int, high: int = MOST) -> int:
+    """A whole number within bounds. Raises LoomfmuError."""
+    if isinstance(given, bool) or not isinstance(given, int):
+        raise LoomfmuError(f"{where} = {given!r} is not a whole number")
+    if not low <= given <= high:
+        raise LoomfmuError(f"{where} = {given} is outside [{low}, {high}]")
+    return given
+
+
+def flattened(table: Any, where: str, prefix: str = "") -> dict[str, Any]:
+    """A table with its keys joined by dots, quoted or not; a table that is a range stays one."""
+    if not isinstance(table, dict):
+        raise LoomfmuError(f"{where} is no table")
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        nested = isinstance(value, dict) and not set(RANGE) & set(value)
+        found = flattened(value, where, f"{prefix}{key}.") if nested else {prefix + key: value}
+        for name in found:
+            if name in flat:
+                raise LoomfmuError(f"{where}.{name} is there twice")
+        flat |= found
+    return flat
+
+
+def grid_axis(varied: Varied, given: Any) -> Axis:
+    """The axis of a grid from a list of values, or from its ends and their count.
+
+    Raises:
+        LoomfmuError: a value that is out of its bounds, of another unit, or there twice
+    """
+    where = f"grid.{varied.key}"
+    if isinstance(given, dict):
+        low, high, logarithmic = _ends(varied, given, where)
+        count = whole(given.get("count"), f"{where}.count", 2)
+        space = np.geomspace if logarithmic else np.linspace
+        values = [varied.read(float(value)) for value in space(low, high, count)]
+        return Axis(varied, np.array(values, TYPES[varied.kind]), logarithmic=logarithmic)
+    if not isinstance(given, list) or not given:
+        raise LoomfmuError(
+            f'{where} = {given!r} is neither a list of values nor {{ from = "..", to = "..", count = .. }}'
+        )
+    values = [varied.read(value) for value in given]
+    seen: set[Value] = set()
+    for value in values:
+        if value in seen:
+            raise LoomfmuError(f"{where}: {varied.show(value)} is there twice")
+        seen.add(value)
+    return Axis(varied, np.array(values, TYPES[varied.kind]))
+
+
+def sample_axes(ranges: list[tuple[Varied, Any]], count: int, seed: int) -> list[Axis]:
+    """The axes of a Latin hypercube sample: each of the `count` equal shares of a range is met once.
+
+    A logarithmic range is shared equally in the logarithm, a range of whole numbers in the numbers.
+    """
+    if not ranges:
+        return []
+    from scipy.stats import qmc
+
+    ends = [_ends(varied, _as_range(varied, given), f"sample.{varied.key}") for varied, given in ranges]
+    points = qmc.LatinHypercube(len(ranges), rng=seed).random(count)
+    axes = []
+    for (varied, _), (low, high, logarithmic), shares in zip(ranges, ends, points.T, strict=True):
+        if varied.kind == "Integer":
+            values = np.minimum(np.floor(low + shares * (high - low + 1)), high).astype(np.int64)
+        elif logarithmic:
+            values = low * (high / low) ** shares
+        else:
+            values = low + shares * (high - low)
+        axes.append(Axis(varied, values, sampled=True, logarithmic=logarithmic))
+    return axes
+
+
+def _as_range(varied: Varied, given: Any) -> dict[str, Any]:
+    """A range as a table, from one or from `[low, high]`."""
+    where = f"sample.{varied.key}"
+    if isinstance(given, list) and len(given) == 2:
+        given = {"from": given[0], "to": given[1]}
+    if not isinstance(given, dict):
+        raise LoomfmuError(f"{where} = {given!r} is no range [low, high]")
+    if "count" in given:
+        raise LoomfmuError(f"{where}.count: a sample has one count for all, sample.count")
+    return given
+
+
+def _ends(varied: Varied, table: dict[str, Any], where: str) -> tuple[float, float, bool]:
+    """Both ends of a range, and whether it is logarithmic."""
+    for key in table:
+        if key not in RANGE:
+            raise LoomfmuError(f"{where}.{key} is unknown{suggestion(key, RANGE)}")
+    for key in ("from", "to"):
+        if key not in table:
+            raise LoomfmuError(f"{where} has no {key!r}")
+    if varied.kind not in ("Real", "Integer"):
+        raise LoomfmuError(f"{where} is no number and has no range: list its values in [grid]")
+    ends: list[Value] = [varied.read(table[key]) for key in ("from", "to")]
+    low, high = (float(end) for end in ends)
+    if not low < high:
+        raise LoomfmuError(f"{where}: {varied.show(ends[0])} is not below {varied.show(ends[1])}")
+    logarithmic = table.get("logarithmic", False)
+    if not isinstance(logarithmic, bool):
+        raise LoomfmuError(f"{where}.logarithmic = {logarithmic!r} is neither true nor false")
+    if logarithmic and (low <= 0.0 or varied.kind == "Integer" or not math.isfinite(low)):
+        raise LoomfmuError(f"{where}: only a range of real numbers above 0 can be logarithmic")
+    return low, high, logarithmic

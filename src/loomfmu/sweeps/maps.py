@@ -1,0 +1,286 @@
+"""The picture of a sweep: a column over one axis or two, and where a claim's verdict flips."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from numpy.typing import NDArray
+
+from .. import units
+from .axes import Axis
+from .plan import Plan
+from .ranking import distance
+from .tables import labels_of
+
+Floats = NDArray[np.float64]
+
+STYLE: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 11,
+    "text.parse_math": False,
+    "legend.frameon": False,
+}
+NO_RESULT = "#d0d0d0"
+RED = "#D55E00"
+DASHES: Any = ("-", "--", ":", "-.")
+LEVELS = 14
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """An axis of the picture: the place of each row on it, its ticks and its words.
+
+    `places` are the places that there are, in order; names stand at 0, 1, 2, ...
+    """
+
+    label: str
+    at: Floats
+    places: Floats
+    names: list[str] | None
+    logarithmic: bool
+
+    @property
+    def index(self) -> NDArray[np.int64]:
+        """The number of each row's place."""
+        return np.asarray(np.searchsorted(self.places, self.at), np.int64)
+
+    @property
+    def edges(self) -> Floats:
+        """Where the cells around the places meet: half-way, in the logarithm if that is the scale."""
+        places = np.log(self.places) if self.logarithmic else self.places
+        if len(places) == 1:
+            return np.array([self.places[0] - 0.5, self.places[0] + 0.5])
+        middles = (places[1:] + places[:-1]) / 2.0
+        ends = [2.0 * places[0] - middles[0]], [2.0 * places[-1] - middles[-1]]
+        edges = np.concatenate((ends[0], middles, ends[1]))
+        return np.exp(edges) if self.logarithmic else edges
+
+
+def draw(plan: Plan, table: Any, path: Path) -> Path | None:
+    """Draw what a plan asks for; nothing if no row has a value there."""
+    assert plan.map is not None
+    request = plan.map
+    chosen = np.ones(table.num_rows, dtype=bool)
+    for key, value in request.at.items():
+        chosen &= np.array([each == value for each in table[key].to_pylist()])
+    values, label = _values(table, request.value)
+    claims = [each.claim for each in labels_of(table)]
+    distances = [(claim, distance(table, number)[chosen]) for number, claim in enumerate(claims)]
+    picture = _Picture(plan, values[chosen], label, distances)
+    if not np.isfinite(picture.values).any():
+        return None
+    x = _scale(plan, table, request.x, chosen)
+    y = _scale(plan, table, request.y, chosen) if request.y is not None else None
+    drawn = [axis for axis in plan.axes if axis.key in (request.x, request.y)]
+    with matplotlib.rc_context(STYLE):
+        if any(axis.sampled for axis in drawn):
+            picture.scatter(x, y)
+        elif y is not None:
+            picture.field(x, y)
+        else:
+            rest = [axis for axis in plan.axes if axis not in drawn and axis.key not in request.at]
+            picture.lines(x, _scale(plan, table, rest[0].key, chosen) if rest else None)
+        picture.save(path)
+    return path
+
+
+def _values(table: Any, name: str) -> tuple[Floats, str]:
+    """A column as people read it, and its words."""
+    field = table.schema.field(name)
+    about = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+    display = about.get("display_unit", "1")
+    values = table[name].cast("float64").to_numpy() / units.unit(display).factor
+    words = about.get("description", name) if name.startswith("claim_") else name
+    return values, _labelled(words, display, about.get("unit", "1"))
+
+
+def _labelled(words: str, display: str, unit: str) -> str:
+    shown = unit if display == "1" else display  # a unit that is the FMU's alone has no other to be shown in
+    return words if shown == "1" else f"{words} [{shown}]"
+
+
+def _scale(plan: Plan, table: Any, key: str, chosen: NDArray[np.bool_]) -> _Scale:
+    axis: Axis = next(axis for axis in plan.axes if axis.key == key)
+    column = [value for value, wanted in zip(table[key].to_pylist(), chosen, strict=True) if wanted]
+    if axis.numeric:
+        factor = units.unit(axis.varied.display).factor if axis.varied.kind == "Real" else 1.0
+        at = np.array(column, dtype=np.float64) / factor
+        label = _labelled(key, axis.varied.display, axis.varied.unit)
+        return _Scale(label, at, np.unique(at), None, axis.logarithmic)
+    names = list(dict.fromkeys(axis.values.tolist()))
+    at = np.array([names.index(value) for value in column], dtype=np.float64)
+    return _Scale(key, at, np.arange(len(names), dtype=np.float64), [str(name) for name in names], False)
+
+
+class _Picture:
+    """A figure of some rows: their values, and how far each is beyond the bounds of the claims."""
+
+    def __init__(self, plan: Plan, values: Floats, label: str, distances: list[tuple[str, Floats]]):
+        self.values = values
+        self.label = label
+        self.distances = distances
+        self.failing = np.any([each > 0.0 for _claim, each in distances] or [values != values], axis=0)
+        self.figure = Figure(figsize=(8.0, 5.5), dpi=100, layout="constrained")
+        self.axes = self.figure.subplots()
+        self.handles: list[Line2D] = []
+        picked = [
+            f"{axis.key} = {axis.varied.show(plan.map.at[axis.key])}"
+            for axis in plan.axes
+            if plan.map is not None and axis.key in plan.map.at
+        ]
+        self.axes.set_title("\n".join([plan.title, *([", ".join(picked)] if picked else [])]), fontsize=11)
+
+    def save(self, path: Path) -> None:
+        """Write it: whole, or not under that name."""
+        if self.handles:
+            self.figure.legend(handles=self.handles, loc="outside lower center", fontsize=9)
+        temporary = path.with_name(path.name + ".partial")
+        self.figure.savefig(temporary, format="png", metadata={"Software": None})
+        temporary.replace(path)
+
+    # ---- two axes of a grid
+
+    def field(self, x: _Scale, y: _Scale) -> None:
+        """Contours if both axes are numbers, cells if one has names."""
+        grid = self._on_grid(self.values, x, y)
+        shades = np.unique(grid[np.isfinite(grid)])
+        smooth = x.names is None and y.names is None and min(grid.shape) > 1 and len(shades) > 1
+        self.axes.set_facecolor(NO_RESULT)
+        masked = np.ma.masked_invalid(grid)
+        if smooth:
+            drawn: Any = self.axes.contourf(x.places, y.places, masked, levels=LEVELS)
+        else:
+            drawn = self.axes.pcolormesh(x.edges, y.edges, masked)
+        self.figure.colorbar(drawn, ax=self.axes, label=self.label)
+        for number, (claim, distances) in enumerate(self.distances):
+            beyond = self._on_grid(distances, x, y)
+            if np.any(beyond > 0.0) and np.any(beyond <= 0.0):
+                dashes = DASHES[number % len(DASHES)]
+                (self._boundary if smooth else self._edges)(x, y, beyond, dashes)
+                self._legend(f"{claim}: limit", color="black", linestyle=dashes)
+        if np.isnan(grid).any():
+            self._legend("could not be run", color=NO_RESULT, linewidth=8)
+        self._ticks(x, y)
+
+    def _on_grid(self, values: Floats, x: _Scale, y: _Scale) -> Floats:
+        grid = np.full((len(y.places), len(x.places)), np.nan)
+        grid[y.index, x.index] = values
+        return grid
+
+    def _boundary(self, x: _Scale, y: _Scale, beyond: Floats, dashes: Any) -> None:
+        """The line along which a claim's worst value is its bound."""
+        level = np.ma.masked_invalid(_crossing(beyond))
+        self.axes.contour(
+            x.places, y.places, level, levels=[0.0], colors="black", linestyles=dashes, linewidths=1.8
+        )
+
+    def _edges(self, x: _Scale, y: _Scale, beyond: Floats, dashes: Any) -> None:
+        """The edges between cells where a claim holds and cells where it fails."""
+        fails, known = beyond > 0.0, ~np.isnan(beyond)
+        flips = (fails[:, 1:] != fails[:, :-1]) & known[:, 1:] & known[:, :-1]
+        for row, column in np.argwhere(flips):
+            self.axes.vlines(
+                x.edges[column + 1], y.edges[row], y.edges[row + 1], "black", dashes, linewidth=2
+            )
+        flips = (fails[1:] != fails[:-1]) & known[1:] & known[:-1]
+        for row, column in np.argwhere(flips):
+            self.axes.hlines(
+                y.edges[row + 1], x.edges[column], x.edges[column + 1], "black", dashes, linewidth=2
+            )
+
+    # ---- one axis of a grid
+
+    def lines(self, x: _Scale, series: _Scale | None) -> None:
+        """A line for each value of another axis, if there is one."""
+        kinds = series.index if series is not None else np.zeros(len(self.values), np.int64)
+        for kind in np.unique(kinds):
+            rows = np.flatnonzero(kinds == kind)
+            rows = rows[np.argsort(x.at[rows])]
+            (line,) = self.axes.plot(x.at[rows], self.values[rows], marker="o", markersize=4)
+            if series is not None:
+                place = series.places[kind]
+                name = series.names[kind] if series.names is not None else f"{series.label} {place:.6g}"
+                self._legend(name, color=line.get_color())
+            elif x.names is None:
+                self._limits(x.at[rows], rows)
+        self._mark(x.at, self.values)
+        self.axes.set_ylabel(self.label)
+        self.axes.grid(color="#dddddd")
+        self._ticks(x, None)
+
+    def _limits(self, at: Floats, rows: NDArray[np.int64]) -> None:
+        """Lines where a claim's verdict flips between two points."""
+        for number, (claim, distances) in enumerate(self.distances):
+            beyond = _crossing(distances[rows])
+            dashes = DASHES[number % len(DASHES)]
+            places = np.flatnonzero((beyond[1:] > 0.0) != (beyond[:-1] > 0.0))
+            places = places[~np.isnan(beyond[places]) & ~np.isnan(beyond[places + 1])]
+            for place in places:
+                share = beyond[place] / (beyond[place] - beyond[place + 1])
+                where = at[place] + share * (at[place + 1] - at[place])
+                self.axes.axvline(where, color="black", linestyle=dashes)
+            if len(places):
+                self._legend(f"{claim}: limit", color="black", linestyle=dashes)
+
+    def _mark(self, x: Floats, y: Floats) -> None:
+        """Crosses where a claim fails."""
+        if self.failing.any():
+            self.axes.plot(x[self.failing], y[self.failing], "x", color=RED, markersize=7, zorder=3)
+            self._legend("a claim fails", color=RED, marker="x", linestyle="none")
+
+    # ---- a sample
+
+    def scatter(self, x: _Scale, y: _Scale | None) -> None:
+        """A point for each row."""
+        if y is None:
+            self.axes.plot(x.at, self.values, "o", markersize=4)
+            self._mark(x.at, self.values)
+            self.axes.set_ylabel(self.label)
+        else:
+            drawn = self.axes.scatter(x.at, y.at, c=self.values, s=36, plotnonfinite=False)
+            self.figure.colorbar(drawn, ax=self.axes, label=self.label)
+            self._mark(x.at, y.at)
+            lost = np.isnan(self.values)
+            if lost.any():
+                self.axes.plot(x.at[lost], y.at[lost], "s", color=NO_RESULT, markersize=5)
+                self._legend("could not be run", color=NO_RESULT, marker="s", linestyle="none")
+        self._ticks(x, y)
+
+    # ---- what they share
+
+    def _legend(self, label: str, **style: Any) -> None:
+        self.handles.append(Line2D([], [], label=label, **style))
+
+    def _ticks(self, x: _Scale, y: _Scale | None) -> None:
+        for scale, axis, rescale in (
+            (x, self.axes.xaxis, self.axes.set_xscale),
+            (y, self.axes.yaxis, self.axes.set_yscale),
+        ):
+            if scale is None:
+                continue
+            axis.set_label_text(scale.label)
+            if scale.logarithmic:
+                rescale("log")
+                axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+                axis.set_minor_formatter(NullFormatter())
+            if scale.names is not None:
+                axis.set_ticks(scale.places, scale.names)
+        if x.names is not None and sum(map(len, x.names)) > 60:
+            self.axes.tick_params(axis="x", labelrotation=30)
+
+
+def _crossing(beyond: Floats) -> Floats:
+    """Distances that cross 0 where the verdict flips.
+
+    A claim that counts, or that fails without a value, has no such distances: it flips half-way.
+    """
+    holding = beyond[beyond <= 0.0]
+    if np.isinf(beyond).any() or (len(holding) and not holding.any()):
+        return np.where(np.isnan(beyond), np.nan, np.where(beyond > 0.0, 0.5, -0.5))
+    return beyond

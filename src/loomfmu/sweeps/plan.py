@@ -1,0 +1,194 @@
+"""A sweep as its file tells it, checked against its scene: nothing that is misspelt gets as far as a run."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cosim import scene as scenes
+from ..cosim import ssp_read
+from ..cosim.asked import check_claims, output_port
+from ..cosim.fmus import FLAVOURS, Port
+from ..cosim.scene import Scene
+from ..errors import LoomfmuError, suggestion
+from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
+from .request import Map, requested
+from .varied import Varied, varied
+
+KEYS = ("title", "scene", "flavour", "values", "set", "grid", "sample", "traces", "map")
+
+
+@dataclass(frozen=True)
+class Traces:
+    """How many rows are run again with a full trace: of those that fail, and of the others."""
+
+    failures: int = 20
+    sample: int = 5
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a sweep runs. Row numbers count the grid, its last axis fastest, then the points of the sample."""
+
+    title: str
+    name: str
+    text: str
+    path: Path  # of the scene
+    scene: Scene
+    flavour: str
+    fixed: dict[str, Any]
+    grid: tuple[Axis, ...]
+    sample: tuple[Axis, ...]
+    values: tuple[str, ...]
+    traces: Traces
+    map: Map | None
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """All axes, in the order of their columns."""
+        return self.grid + self.sample
+
+    @cached_property
+    def points(self) -> int:
+        """Number of points of the sample, 1 without one."""
+        return len(self.sample[0].values) if self.sample else 1
+
+    @cached_property
+    def rows(self) -> int:
+        """Number of combinations."""
+        return math.prod(len(axis.values) for axis in self.grid) * self.points
+
+    def columns(self, rows: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+        """The values of each axis in rows of these numbers."""
+        number, point = np.divmod(rows, self.points)
+        found: dict[str, NDArray[Any]] = {axis.key: axis.values[point] for axis in self.sample}
+        for axis in reversed(self.grid):
+            number, place = np.divmod(number, len(axis.values))
+            found[axis.key] = axis.values[place]
+        return {axis.key: found[axis.key] for axis in self.axes}
+
+    def settings(self, rows: range) -> list[dict[str, Any]]:
+        """What each of these rows sets in the scene."""
+        columns = self.columns(np.arange(rows.start, rows.stop))
+        sets = [dict(self.fixed) for _ in rows]
+        for axis in self.axes:
+            for each, value in zip(sets, columns[axis.key].tolist(), strict=True):
+                each.update(dict.fromkeys(axis.varied.targets, value))
+        return sets
+
+    def port(self, signal: str) -> Port:
+        """The variable of an output among the values."""
+        return output_port(self.scene, signal, "values")
+
+
+def load(path: str | Path) -> Plan:
+    """Read a sweep file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    try:
+        return _parse(text, path)
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{path}: {error}") from None
+
+
+def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
+    """A scene from its file or its system package."""
+    reader = ssp_read.load if path.suffix.lower() == ".ssp" else scenes.load
+    return reader(path, fixed)
+
+
+def _parse(text: str, path: Path) -> Plan:
+    tables = scenes.toml(text)
+    for key in tables:
+        if key not in KEYS:
+            raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
+    if not isinstance(tables.get("scene"), str):
+        raise LoomfmuError('a sweep names its scene: scene = "loom.toml", relative to the sweep')
+    flavour = tables.get("flavour", "live")
+    if flavour not in FLAVOURS:
+        raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(str(flavour), FLAVOURS)}")
+    scene_path = (path.parent / tables["scene"]).resolve()
+    fixed = flattened(tables.get("set", {}), "set")
+    scene = read_scene(scene_path, fixed)
+    check_claims(scene)
+    grid, sample = _axes(scene, fixed, tables)
+    _check_by_scene(scene_path, fixed, [*grid, *sample])
+    values = _values(scene, tables.get("values", []), [*grid, *sample])
+    columns = [*values, *(f"claim_{number + 1}.worst" for number in range(len(scene.claims)))]
+    request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
+    plan = Plan(
+        title=str(tables.get("title", path.stem)), name=path.stem, text=text, path=scene_path, scene=scene,
+        flavour=flavour, fixed=fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
+        traces=_traces(tables.get("traces", {})), map=request,
+    )  # fmt: skip
+    if plan.rows > MOST:
+        raise LoomfmuError(f"{plan.rows} combinations are more than {MOST}")
+    return plan
+
+
+def _axes(scene: Scene, fixed: dict[str, Any], tables: dict[str, Any]) -> tuple[list[Axis], list[Axis]]:
+    """The axes of the grid and those of the sample. No two set the same, nor what is fixed."""
+    gridded = flattened(tables.get("grid", {}), "grid")
+    ranges = flattened(tables.get("sample", {}), "sample")
+    count, seed = ranges.pop("count", None), ranges.pop("seed", None)
+    taken = {target: "set" for key in fixed for target in varied(scene, key).targets}
+    found: dict[str, Varied] = {}
+    for where, keys in (("grid", gridded), ("sample", ranges)):
+        for key in keys:
+            try:
+                found[f"{where}.{key}"] = varied(scene, key)
+            except LoomfmuError as error:
+                raise LoomfmuError(f"{where}: {error}") from None
+            for target in found[f"{where}.{key}"].targets:
+                if target in taken:
+                    raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} sets already")
+                taken[target] = f"{where}.{key}"
+    if not found:
+        raise LoomfmuError('nothing varies: list values in [grid], such as "shaft.speed" = ["500 rpm"]')
+    if ranges:
+        count, seed = whole(count, "sample.count", 1), whole(seed, "sample.seed", 0, 2**63 - 1)
+    elif (count, seed) != (None, None):
+        raise LoomfmuError('sample has no range, such as "belt.guide_clearance" = ["0.2 mm", "1 mm"]')
+    return (
+        [grid_axis(found[f"grid.{key}"], given) for key, given in gridded.items()],
+        sample_axes([(found[f"sample.{key}"], given) for key, given in ranges.items()], count, seed),
+    )
+
+
+def _check_by_scene(path: Path, fixed: dict[str, Any], axes: list[Axis]) -> None:
+    """Let the scene judge, one by one, the values that nothing else can."""
+    for axis in axes:
+        if axis.varied.needs_scene:
+            values = [axis.values.min(), axis.values.max()] if axis.sampled else axis.values
+            for value in np.asarray(values).tolist():
+                read_scene(path, fixed | dict.fromkeys(axis.varied.targets, value))
+
+
+def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:
+    """The signals whose final values the table has."""
+    if not isinstance(given, list) or not all(isinstance(signal, str) for signal in given):
+        raise LoomfmuError(f'values = {given!r} is no list such as ["belt.lowest_speed_limit"]')
+    taken = [axis.key for axis in axes]
+    for signal in given:
+        output_port(scene, signal, "values")
+        if signal in taken:
+            raise LoomfmuError(f"values: {signal} is a column already")
+        taken.append(signal)
+    return given
+
+
+def _traces(table: Any) -> Traces:
+    if not isinstance(table, dict):
+        raise LoomfmuError("traces is no table")
+    known = ("failures", "sample")
+    for key in table:
+        if key not in known:
+            raise LoomfmuError(f"traces.{key} is unknown{suggestion(key, known)}")
+    return Traces(**{key: whole(value, f"traces.{key}", 0) for key, value in table.items()})

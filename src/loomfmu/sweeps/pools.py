@@ -1,0 +1,206 @@
+"""Where tasks are done: in this process, or in worker processes of this machine.
+
+Workers are spawned, never forked: a live FMU holds the state of the Python that it lives in. A worker has
+one task at a time and nothing else to wait for, so the end of its process says which task was its last.
+"""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any, Protocol
+
+from ..errors import LoomfmuError
+
+PATIENCE = 5.0  # s until a worker that was told to end is ended
+
+
+@dataclass(frozen=True)
+class Task:
+    """A function with arguments, and a key to know it by."""
+
+    key: Any
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+
+class Died(Exception):
+    """The process that had a task has ended."""
+
+
+class Pool(Protocol):
+    """Takes tasks and gives back what became of them: a value, or the exception that it raised."""
+
+    @property
+    def workers(self) -> int:
+        """How many tasks are done at a time."""
+
+    def room(self) -> int:
+        """How many more tasks it wants."""
+
+    def submit(self, task: Task) -> None:
+        """Take a task."""
+
+    def finished(self) -> list[tuple[Any, Any]]:
+        """Keys and outcomes of tasks that are done; waits until there is one."""
+
+    def close(self) -> None:
+        """End it; what is under way is lost."""
+
+
+class Here:
+    """This process: a task is done when it is submitted."""
+
+    workers = 1
+
+    def __init__(self) -> None:
+        self._done: list[tuple[Any, Any]] = []
+
+    def room(self) -> int:
+        """One, if the last task was taken back."""
+        return 1 - len(self._done)
+
+    def submit(self, task: Task) -> None:
+        """Do the task."""
+        self._done.append((task.key, _outcome(task)))
+
+    def finished(self) -> list[tuple[Any, Any]]:
+        """The task that was done."""
+        done, self._done = self._done, []
+        return done
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def _outcome(task: Task) -> Any:
+    try:
+        return task.function(*task.arguments)
+    except Exception as error:
+        return error
+
+
+class _Worker:
+    """A process and the connection to it. It says once that it is ready, then answers each task."""
+
+    def __init__(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        self.connection, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        with _undisturbed():
+            self.process.start()
+        theirs.close()
+        self.ready = False
+        self.task: Task | None = None
+
+    def end(self) -> None:
+        self.connection.close()
+        self.process.terminate()
+        self.process.join(PATIENCE)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+
+
+class Processes:
+    """Worker processes of this machine, started as they are needed."""
+
+    def __init__(self, workers: int):
+        self.workers = workers
+        self._workers: list[_Worker] = []
+
+    def room(self) -> int:
+        """Workers without a task, there or to be started."""
+        return self.workers - sum(worker.task is not None for worker in self._workers)
+
+    def submit(self, task: Task) -> None:
+        """Hand a task to a worker that has none."""
+        idle = next((worker for worker in self._workers if worker.task is None), None)
+        if idle is None:
+            idle = _Worker()
+            self._workers.append(idle)
+        idle.task = task
+        if idle.ready:
+            self._send(idle)
+
+    def _send(self, worker: _Worker) -> None:
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is seen when it is asked
+            worker.connection.send(worker.task)
+
+    def finished(self) -> list[tuple[Any, Any]]:
+        """Keys and outcomes of tasks that are done; `Died` for one whose worker has ended."""
+        done: list[tuple[Any, Any]] = []
+        while not done:
+            waiting = {worker.connection: worker for worker in self._workers if worker.task is not None}
+            for connection in wait(list(waiting)):
+                done += self._receive(waiting[connection])  # type: ignore[index]
+        return done
+
+    def _receive(self, worker: _Worker) -> list[tuple[Any, Any]]:
+        assert worker.task is not None
+        try:
+            outcome = worker.connection.recv()
+        except (EOFError, ConnectionResetError):
+            return [self._bury(worker)]
+        if not worker.ready:
+            worker.ready = True
+            self._send(worker)
+            return []
+        key, worker.task = worker.task.key, None
+        return [(key, outcome)]
+
+    def _bury(self, worker: _Worker) -> tuple[Any, Any]:
+        """Forget a worker that has ended; what it died of."""
+        worker.process.join(PATIENCE)
+        code = worker.process.exitcode or 0
+        self._workers.remove(worker)
+        worker.end()
+        if not worker.ready:
+            raise LoomfmuError(
+                "the worker processes do not start; a script that starts a sweep keeps it below"
+                ' if __name__ == "__main__":, or has processes=1'
+            )
+        assert worker.task is not None
+        how = signal.Signals(-code).name if code < 0 else f"status {code}"
+        return worker.task.key, Died(f"the process that ran it ended with {how}")
+
+    def close(self) -> None:
+        """End all workers."""
+        while self._workers:
+            self._workers.pop().end()
+
+
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """A process that is started here ignores Ctrl-C from its first moment: its end is ours to decide."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def _serve(connection: "Connection[Any, Any]") -> None:
+    """Answer tasks until the other end is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow_parent, daemon=True).start()
+    # a run listens to Ctrl-C by itself; whoever started the sweep hears it too
+    with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):
+        connection.send(None)
+        while True:
+            connection.send(_outcome(connection.recv()))
+
+
+def _follow_parent() -> None:
+    """End this process with the one that started it, which may be killed, and in the midst of a task."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

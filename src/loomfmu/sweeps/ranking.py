@@ -1,0 +1,59 @@
+"""Which rows are the worst, and which are run again with a full trace."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .tables import claim_columns, labels_of
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """How far each row is beyond the bounds of the claims, and of which claim (counted from 0) the furthest.
+
+    Above 0 the claim fails. 1 is the furthest that any row is away from the bound of that claim, on either
+    side; a claim that fails without a value counts as infinitely far, a row that has no result is NaN.
+    """
+
+    distance: NDArray[np.float64]
+    claim: NDArray[np.int64]
+
+
+def beyond(table: Any) -> Beyond:
+    """How far the rows of a sweep's table are beyond the bounds of their claims."""
+    claims = len(labels_of(table))
+    if not claims:
+        return Beyond(np.full(table.num_rows, np.nan), np.zeros(table.num_rows, np.int64))
+    all_of_them = np.array([distance(table, number) for number in range(claims)])
+    furthest = np.argmax(np.where(np.isnan(all_of_them), -np.inf, all_of_them), axis=0)
+    return Beyond(np.take_along_axis(all_of_them, furthest[np.newaxis], 0)[0], furthest)
+
+
+def distance(table: Any, number: int) -> NDArray[np.float64]:
+    """How far the rows are beyond the bound of one claim, counted from 0; see `Beyond`."""
+    holds, worst, bound = (table[name].to_numpy() for name in claim_columns(number))
+    fails = holds == np.False_  # rows without result are None
+    judged = fails | (holds == np.True_)
+    away = np.abs(worst - bound)
+    largest = np.max(away, initial=0.0, where=np.isfinite(away))
+    scaled = away / largest if largest > 0.0 else np.where(np.isnan(away), np.nan, 0.0)
+    signed = np.where(fails, scaled, -scaled)
+    return np.where(judged & np.isnan(signed), np.where(fails, np.inf, -np.inf), signed)
+
+
+def worst_rows(table: Any, count: int) -> list[int]:
+    """The rows furthest beyond their bounds, or if none is beyond, the nearest to them."""
+    distances = beyond(table).distance
+    judged = np.flatnonzero(~np.isnan(distances))
+    return [int(row) for row in judged[np.argsort(-distances[judged], kind="stable")][:count]]
+
+
+def traced_rows(table: Any, failures: int, sample: int) -> list[int]:
+    """The rows to be run again: the worst of those that fail, and others spread evenly."""
+    holds = table["holds"].to_numpy()
+    failing = [row for row in worst_rows(table, table.num_rows) if holds[row] == np.False_][:failures]
+    others = np.setdiff1d(np.flatnonzero(table["error"].is_null()), failing)
+    places = np.linspace(0, len(others) - 1, min(sample, len(others))).round().astype(int)
+    return sorted({*failing, *(int(row) for row in others[places])})

@@ -1,0 +1,219 @@
+"""Running a sweep: batches until all rows are there, then the table, the picture and the traces."""
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import LoomfmuError
+from . import plan as plans
+from .plan import Plan
+from .pools import Here, Pool, Processes, Task
+from .schedule import run_batches
+from .worker import Batch, Job, job_of, run_trace
+
+if TYPE_CHECKING:
+    from .store import Store
+
+NEEDED = {"pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep"}  # package -> extra
+Advance = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A finished sweep; true where all claims hold in all rows.
+
+    `table` is a pyarrow.Table as in the file `path`, `ran` the number of rows that were run now and not
+    before, `map` the picture if one was asked for, `traces` the full traces of single rows.
+    """
+
+    plan: Plan
+    table: Any
+    path: Path
+    ran: int
+    map: Path | None
+    traces: tuple[Path, ...]
+
+    @property
+    def rows(self) -> int:
+        """Number of combinations."""
+        return int(self.table.num_rows)
+
+    @property
+    def holding(self) -> int:
+        """Number of rows in which all claims hold."""
+        return self._count(True)
+
+    @property
+    def failing(self) -> int:
+        """Number of rows in which a claim fails."""
+        return self._count(False)
+
+    @property
+    def errors(self) -> int:
+        """Number of rows that could not be run."""
+        return self.rows - self.holding - self.failing
+
+    @property
+    def holds(self) -> bool:
+        """Whether all rows could be run and all claims hold."""
+        return self.holding == self.rows
+
+    def __bool__(self) -> bool:
+        return self.holds
+
+    def _count(self, holds: bool) -> int:
+        return int(self.table["holds"].to_pylist().count(holds))
+
+
+def sweep(
+    path: str | Path,
+    *,
+    processes: int | None = None,
+    output: str | Path | None = None,
+    scheduler: str | None = None,
+    restart: bool = False,
+    progress: bool = False,
+) -> Sweep:
+    """Run a sweep, or what is left of it, and make its table, picture and traces.
+
+    Args:
+        path: the sweep file
+        processes: worker processes on this machine, all cores by default; 1 runs in this process
+        output: directory of the results; `results/<sweep>` below the current directory by default
+        scheduler: address of a dask scheduler, such as "tcp://host:8786", whose workers run the rows
+        restart: throw away what the directory has of this or another sweep
+        progress: show a progress bar, if standard error is a terminal
+
+    Raises:
+        LoomfmuError: bad input, or a directory that holds another sweep; one line that names what and where
+        KeyboardInterrupt: Ctrl-C; the batches that are finished stay, and the same call goes on from there
+    """
+    if processes is not None and processes < 1:
+        raise LoomfmuError(f"processes = {processes} is not 1 or more")
+    plan = plans.load(path)
+    for package in (
+        "pyarrow",
+        *(["matplotlib"] if plan.map else []),
+        *(["distributed"] if scheduler else []),
+    ):
+        if find_spec(package) is None:
+            raise LoomfmuError(f"{path}: this needs {package}, pip install loomfmu[{NEEDED[package]}]")
+    from .store import opened
+
+    job = job_of(plan)
+    directory = Path(output) if output is not None else Path("results") / plan.name
+    try:
+        with opened(directory, plan, _fingerprint(plan, job), restart) as store, ExitStack() as pools:
+            here = _local(plan.rows, processes)
+            pools.callback(here.close)
+            rows_pool = _cluster(scheduler, pools) if scheduler else here
+            ran = _run_rows(store, job, rows_pool, progress)
+            table = store.finish()
+            picture = _draw(store, table)
+            traces = _run_traces(store, job, table, here, progress)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; what is finished is kept in {directory}, the same command goes on from there"
+        ) from None
+    return Sweep(plan, table, store.table_path, ran, picture, traces)
+
+
+def _fingerprint(plan: Plan, job: Job) -> str:
+    """What tells a sweep from others: its text, its points, and all that its results depend on."""
+    digest = hashlib.sha256(f"{plan.text}\0{job.identity}".encode())
+    for axis in plan.axes:  # a sample may be another with another scipy
+        digest.update(repr(axis.values.tolist()).encode())
+    return digest.hexdigest()
+
+
+def _local(tasks: int, processes: int | None) -> Pool:
+    workers = min(processes or _cores(), tasks)
+    return Processes(workers) if workers > 1 else Here()
+
+
+def _cluster(address: str, pools: ExitStack) -> Pool:
+    from .cluster import Cluster
+
+    cluster = Cluster(address)
+    pools.callback(cluster.close)
+    return cluster
+
+
+def _cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
+    """Run what is not finished yet; how many rows that was."""
+    left = store.left()
+    count = sum(len(rows) for rows in left)
+    with _bar(store.plan.title, store.plan.rows, store.plan.rows - count, progress) as advance:
+
+        def keep(rows: range, batch: Batch) -> None:
+            store.write(rows, batch)
+            advance(len(rows))
+
+        run_batches(store.plan, job, left, pool, keep)
+    return count
+
+
+def _draw(store: "Store", table: Any) -> Path | None:
+    """The picture that the sweep asks for."""
+    if store.plan.map is None:
+        return None
+    from .maps import draw
+
+    return draw(store.plan, table, store.map_path)
+
+
+def _run_traces(store: "Store", job: Job, table: Any, pool: Pool, progress: bool) -> tuple[Path, ...]:
+    """Full traces of the worst rows and of some others, on this machine."""
+    from .ranking import traced_rows
+
+    limits = store.plan.traces
+    paths = {row: store.trace_path(row) for row in traced_rows(table, limits.failures, limits.sample)}
+    left = [row for row, path in paths.items() if not path.exists()]
+    tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
+    with _bar("traces", len(left), 0, progress) as advance:
+        _do(tasks, pool, advance)
+    return tuple(paths.values())
+
+
+def _traced(store: "Store", job: Job, row: int, path: Path) -> tuple[Any, ...]:
+    return job, store.plan.settings(range(row, row + 1))[0], path
+
+
+def _do(tasks: list[Task], pool: Pool, advance: Advance) -> None:
+    """Do tasks that give nothing back."""
+    under_way = 0
+    while tasks or under_way:
+        while tasks and pool.room() > 0:
+            pool.submit(tasks.pop(0))
+            under_way += 1
+        for row, outcome in pool.finished():
+            under_way -= 1
+            if isinstance(outcome, Exception):
+                raise LoomfmuError(f"the trace of row {row}: {outcome}")
+            advance(1)
+
+
+@contextmanager
+def _bar(title: str, total: int, done: int, wanted: bool) -> Iterator[Advance]:
+    """A progress bar with the time that is left, where one is wanted and somebody is looking."""
+    if not wanted or not sys.stderr.isatty():
+        yield lambda _rows: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=2) as bar:
+        task = bar.add_task(title, total=total, completed=done)
+        yield lambda rows: bar.advance(task, rows)

@@ -1,0 +1,106 @@
+"""Which rows run next: batches of a length that keeps all workers busy and the one who asks idle."""
+
+from collections import deque
+from collections.abc import Callable, Iterable
+
+from .plan import Plan
+from .pools import Died, Pool, Task
+from .worker import Batch, Job, failed, run_rows
+
+BATCH = 1.5  # s, what a batch should take: far above the cost of handing it over, little to lose
+SMALLEST = 10  # part of such a batch that the last ones still are
+GROWTH = 4  # of a batch over those before, until the time of a row is known well
+
+
+class Schedule:
+    """The rows that are left, cut into batches by the time that rows were seen to take.
+
+    Each batch that `next` gives out is told of again: it has been `measured`, or its process has `died`.
+    """
+
+    def __init__(self, left: Iterable[range], workers: int):
+        self.running = 0  # batches that were given out
+        self._left = deque(left)
+        self._rows = sum(len(rows) for rows in self._left)
+        self._workers = workers
+        self._size = 1
+        self._suspect: deque[range] = deque()  # parts of batches whose process ended
+        self._alone = False  # one of them is running
+        self._lone_deaths: set[int] = set()
+
+    def next(self) -> range | None:
+        """The next batch, if there is one to be run now.
+
+        Near the end they get smaller, so that all workers end together. A suspect runs when nothing else
+        does: a cluster blames all that a process had.
+        """
+        if self._alone or (self._suspect and self.running):
+            return None
+        if self._suspect:
+            self._alone = True
+            rows = self._suspect.popleft()
+        elif self._left:
+            rows = self._cut()
+        else:
+            return None
+        self.running += 1
+        return rows
+
+    def _cut(self) -> range:
+        rows = self._left.popleft()
+        share = max(self._rows // (2 * self._workers), self._size // SMALLEST)
+        size = max(1, min(self._size, share, len(rows)))
+        if size < len(rows):
+            self._left.appendleft(rows[size:])
+        self._rows -= size
+        return rows[:size]
+
+    def measured(self, rows: range, seconds: float) -> None:
+        """A batch is done; its rows took so long on average [s]."""
+        self.running -= 1
+        self._alone = False
+        fitting = int(BATCH / seconds) if seconds > 0.0 else GROWTH * len(rows)
+        self._size = max(1, min(fitting, GROWTH * max(len(rows), self._size)))
+
+    def died(self, rows: range) -> bool:
+        """The process that had a batch ended; whether that is the fault of its only row for certain.
+
+        If it is not, it is run again in halves. A single row has a second chance: processes are killed from
+        outside too.
+        """
+        self.running -= 1
+        self._alone = False
+        if len(rows) == 1 and rows.start in self._lone_deaths:
+            return True
+        if len(rows) == 1:
+            self._lone_deaths.add(rows.start)
+        middle = max(1, len(rows) // 2)
+        self._suspect.extend(part for part in (rows[:middle], rows[middle:]) if part)
+        return False
+
+
+def run_batches(
+    plan: Plan, job: Job, left: Iterable[range], pool: Pool, store: Callable[[range, Batch], None]
+) -> None:
+    """Run all rows that are left and store each batch as it is done.
+
+    Raises what a worker raised that is no fault of a row.
+    """
+    schedule = Schedule(left, pool.workers)
+    done: list[tuple[range, Batch]] = []
+    while True:
+        while pool.room() > 0 and (rows := schedule.next()) is not None:
+            pool.submit(Task(rows, run_rows, (job, plan.settings(rows))))
+        for rows, batch in done:  # while the workers are busy again
+            store(rows, batch)
+        if not schedule.running:
+            return
+        done = []
+        for rows, outcome in pool.finished():
+            if isinstance(outcome, Batch):
+                schedule.measured(rows, outcome.seconds)
+                done.append((rows, outcome))
+            elif not isinstance(outcome, Died):
+                raise outcome
+            elif schedule.died(rows):
+                done.append((rows, Batch([failed(job, plan.scene, str(outcome))], (), 0.0)))

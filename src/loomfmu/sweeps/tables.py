@@ -1,0 +1,127 @@
+"""The table of a sweep: its columns, and what they and the whole say of themselves.
+
+One row for each combination: its number, the value on each axis, final values of signals, of each claim
+whether it holds, its worst value and its bound, whether all hold, warnings, and why a row could not be run.
+All in SI; a column's metadata has `unit`, `display_unit` and `description`, the table's the texts of sweep
+and scene.
+"""
+
+import json
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from .. import units
+from ..cosim.fmus import Port
+from .axes import Axis
+from .plan import Plan
+from .worker import Batch, Label
+
+TYPES = {"Real": pa.float64(), "Integer": pa.int64(), "Boolean": pa.bool_(), "Text": pa.string()}
+
+
+def claim_columns(number: int) -> tuple[str, str, str]:
+    """Names of the columns of a claim, counted from 0."""
+    return f"claim_{number + 1}.holds", f"claim_{number + 1}.worst", f"claim_{number + 1}.bound"
+
+
+def table_of(plan: Plan, rows: range, batch: Batch) -> Any:
+    """The part of the table that a batch is."""
+    numbers = np.arange(rows.start, rows.stop)
+    columns = [numbers, *plan.columns(numbers).values(), *_transposed(batch.results)]
+    schema = schema_of(plan, batch.labels)
+    arrays = []
+    values: Any
+    for values, field in zip(columns, schema, strict=True):
+        if field.type == pa.bool_():  # a Boolean of an FMU is a number
+            values = [value if value is None else bool(value) for value in values]
+        arrays.append(pa.array(values, type=field.type))
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def _transposed(results: list[list[Any]]) -> list[list[Any]]:
+    return [list(column) for column in zip(*results, strict=True)]
+
+
+def schema_of(plan: Plan, labels: tuple[Label, ...]) -> Any:
+    """Columns with their units, and what the table says of itself; a claim's unit only if it has a label."""
+    fields = [
+        pa.field("row", pa.int64(), metadata={"description": "Number of the combination"}),
+        *(_axis(axis) for axis in plan.axes),
+        *(_value(signal, plan.port(signal)) for signal in plan.values),
+    ]
+    for number in range(len(plan.scene.claims)):
+        fields += _claim(number, labels[number] if labels else None)
+    fields += [
+        pa.field("holds", pa.bool_(), metadata={"description": "Whether all claims hold"}),
+        pa.field("warnings", pa.string(), metadata={"description": "What FMUs and master warned of"}),
+        pa.field("error", pa.string(), metadata={"description": "Why the combination could not be run"}),
+    ]
+    about = {
+        "title": plan.title,
+        "sweep": plan.text,
+        "scene": plan.scene.text,
+        "flavour": plan.flavour,
+        "software": f"loomfmu {version('loomfmu')}",
+        "claims": json.dumps([asdict(label) for label in labels]),
+    }
+    return pa.schema(fields, metadata=about)
+
+
+def labels_of(table: Any) -> tuple[Label, ...]:
+    """What the claims of a table or of a part of it are about."""
+    return tuple(Label(**each) for each in json.loads(table.schema.metadata[b"claims"]))
+
+
+def whole_table(plan: Plan, parts: list[Any]) -> Any:
+    """The parts as one table, sorted by row, the same whatever the parts were."""
+    labels = next((found for part in parts if (found := labels_of(part))), ())
+    schema = schema_of(plan, labels)
+    joined = pa.concat_tables([part.cast(schema) for part in parts])
+    joined = joined.sort_by("row").combine_chunks()
+    return pa.Table.from_arrays(joined.columns, schema=schema)
+
+
+def _axis(axis: Axis) -> Any:
+    varied = axis.varied
+    about = _about(varied.unit, varied.display, varied.description)
+    about["axis"] = "sample" if axis.sampled else "grid"
+    return pa.field(axis.key, TYPES[varied.kind], metadata=about)
+
+
+def _value(signal: str, port: Port) -> Any:
+    about = _about(port.unit, port.display, port.description)
+    if port.choices:
+        about["meanings"] = " ".join(port.choices)
+        about["first_meaning"] = str(port.first_choice)
+    return pa.field(signal, TYPES[port.kind], metadata=about)
+
+
+def _claim(number: int, label: Label | None) -> list[Any]:
+    """The columns of a claim."""
+    about: dict[str, str] = {}
+    if label is not None:
+        about = _about(_si(label.unit), label.unit, label.claim) | {"signal": label.signal}
+    holds, worst, bound = claim_columns(number)
+    return [
+        pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
+        pa.field(worst, pa.float64(), metadata=about),
+        pa.field(bound, pa.float64(), metadata=about),
+    ]
+
+
+def _about(unit: str, display: str, description: str) -> dict[str, str]:
+    return {"unit": unit, "display_unit": display, "description": description}
+
+
+def _si(name: str) -> str:
+    """The SI unit of the same dimension."""
+    dimension = units.unit(name).dimension
+    return next(
+        known
+        for known, unit in units.UNITS.items()
+        if unit.dimension == dimension and abs(unit.factor - 1.0) < 1e-12
+    )

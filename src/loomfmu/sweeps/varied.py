@@ -1,0 +1,140 @@
+"""What a key of a sweep stands for: which values of the scene it sets, of what type and in what unit."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from .. import units
+from ..cosim.fmus import Port
+from ..cosim.instances import COARSE, FILES, PARAMETER_SETS, TIMES, WHOLE, Instance, overridden
+from ..cosim.scene import Scene
+from ..errors import LoomfmuError, suggestion
+from ..machines import HEAD_MASS, HEADS, MACHINE_COLUMNS, MACHINES
+
+Value = float | int | bool | str
+
+# what a loom as a whole has: published names, and the components that take them
+SETS = {
+    "machine": (MACHINES, {owner for owner, _name, _unit in MACHINE_COLUMNS.values()}),
+    "head": (HEADS, set(HEAD_MASS)),
+}
+SECONDS = ("duration", "step")
+COUNTS = ("steps_per_revolution", COARSE)
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A key of a sweep. `targets` are the keys of the scene that take its value, in SI; `read` checks one.
+
+    `kind` is Real, Integer, Boolean or Text. `needs_scene` are those whose values only the scene can judge.
+    """
+
+    key: str
+    targets: tuple[str, ...]
+    kind: str
+    unit: str
+    display: str
+    description: str
+    read: Callable[[Any], Value]
+    needs_scene: bool = False
+
+    def show(self, value: Value) -> str:
+        """A value as people read it."""
+        if self.kind == "Real" and self.display in units.UNITS:
+            return units.show(float(value), self.display)
+        return str(value)
+
+
+def varied(scene: Scene, key: str) -> Varied:
+    """What a key stands for in a scene. Raises LoomfmuError, naming the nearest key that there is."""
+    if key in SETS:
+        return _published(scene, key)
+    if "." not in key:
+        return _of_scene(scene, key)
+    pairs = overridden(scene.instances, key)
+    found = [_variable(scene, key, instance, variable) for instance, variable in pairs]
+    if any((each.kind, each.unit) != (found[0].kind, found[0].unit) for each in found):
+        raise LoomfmuError(f"{key} is not of one type and unit in {', '.join(name for name, _ in pairs)}")
+    targets = tuple(f"{instance}.{variable}" for instance, variable in pairs)
+    first = found[0]
+    return Varied(
+        key, targets, first.kind, first.unit, first.display, first.description, first.read, first.needs_scene
+    )
+
+
+def _published(scene: Scene, key: str) -> Varied:
+    """A published name, for all instances that take one."""
+    known, takers = SETS[key]
+    targets = tuple(
+        f"{name}.{key}" for name, each in scene.instances.items() if each.fmu.ours and each.fmu.name in takers
+    )
+    if not targets:
+        raise LoomfmuError(f"{key}: the scene has no {' or '.join(sorted(takers))} that would take it")
+
+    def read(given: Any) -> str:
+        if not isinstance(given, str) or given not in known:
+            raise LoomfmuError(f"there is no {key} {given!r}{suggestion(str(given), known)}")
+        return given
+
+    return Varied(key, targets, "Text", "1", "1", f"Published {key}", read, needs_scene=True)
+
+
+def _of_scene(scene: Scene, key: str) -> Varied:
+    """One of the scene's own keys."""
+    if key not in (*TIMES, *WHOLE):
+        known = [*TIMES, *WHOLE, *SETS, *(f"{name}." for name in scene.instances)]
+        raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
+    about = key.replace("_", " ")
+    if key not in (*TIMES, COARSE):
+        return Varied(key, (key,), "Text", "1", "1", about, _text(key), needs_scene=True)
+    unit = "s" if key in SECONDS else "1"
+
+    def read(given: Any) -> Value:
+        try:
+            value = units.parse(given, unit)
+        except units.UnitError as error:
+            raise LoomfmuError(f"{key}: {error}") from None
+        if not math.isfinite(value):
+            raise LoomfmuError(f"{key} = {value} is not finite")
+        if key in COUNTS and value != int(value):
+            raise LoomfmuError(f"{key} = {value:g} is not a whole number")
+        return int(value) if key in COUNTS else value
+
+    kind = "Integer" if key in COUNTS else "Real"
+    return Varied(key, (key,), kind, unit, unit, about, read, needs_scene=True)
+
+
+def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
+    """A parameter of an instance, the start of an input, or a name that an instance goes by."""
+    fmu = scene.instances[instance].fmu
+    name = fmu.name_of(variable)
+    if name not in fmu.ports and variable in (*PARAMETER_SETS, *FILES):
+        return Varied(key, (key,), "Text", "1", "1", variable, _text(key), needs_scene=True)
+    if any((drive.instance, drive.variable) == (instance, name) for drive in scene.drives):
+        raise LoomfmuError(f"{instance}.{variable} is driven by the scene's inputs and cannot be varied")
+
+    def read(given: Any) -> Value:
+        probe = Instance(instance, fmu)
+        probe.set(variable, given)
+        value = probe.values[name]
+        port = fmu.ports[name]
+        return port.choices[int(value) - port.first_choice] if port.choices else value
+
+    if name not in fmu.ports or fmu.ports[name].causality not in ("parameter", "input"):
+        read(0)  # says what is wrong
+    port = fmu.ports[name]
+    return Varied(key, (key,), _kind(port), port.unit, port.display, port.description, read)
+
+
+def _kind(port: Port) -> str:
+    return "Text" if port.choices else port.kind
+
+
+def _text(key: str) -> Callable[[Any], str]:
+    def read(given: Any) -> str:
+        if not isinstance(given, str):
+            raise LoomfmuError(f"{key} = {given!r} is not a name in quotes")
+        return given
+
+    return read

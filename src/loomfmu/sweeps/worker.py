@@ -1,0 +1,135 @@
+"""What a worker does: evaluate rows, one after the other, in instances that it keeps.
+
+It imports no more than a run does; tables are made where the sweep was started.
+"""
+
+import hashlib
+import math
+import threading
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from .. import machines
+from ..cosim.fmus import of_component
+from ..cosim.master import Interrupted
+from ..cosim.run import evaluate, run
+from ..cosim.scene import Scene
+from ..cosim.verdict import Verdict
+from ..errors import LoomfmuError
+from .plan import Plan, read_scene
+
+# the threads of one process share the instances that rest between runs: they take turns
+_turn = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Job:
+    """What all rows of a sweep have in common; `identity` is what the results depend on beside them."""
+
+    path: Path
+    fixed: tuple[tuple[str, Any], ...]
+    flavour: str
+    values: tuple[str, ...]
+    identity: str
+
+
+@dataclass(frozen=True)
+class Label:
+    """What a claim is about: its words, its signal, and the unit people read its values in."""
+
+    claim: str
+    signal: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Results of some rows, each: final values, then whether it holds, worst value and bound of each claim,
+    whether all hold, warnings, and what went wrong; None where there is none.
+
+    `labels` are empty if no row could be run. `seconds` each row took on average.
+    """
+
+    results: list[list[Any]]
+    labels: tuple[Label, ...]
+    seconds: float
+
+
+def job_of(plan: Plan) -> Job:
+    """What workers are told of a plan."""
+    return Job(
+        plan.path, tuple(plan.fixed.items()), plan.flavour, plan.values, identity(plan.scene, plan.flavour)
+    )
+
+
+def identity(scene: Scene, flavour: str) -> str:
+    """A digest of all that the results of a scene depend on: texts, files, FMUs, versions."""
+    parts = [version("loomfmu"), flavour, scene.text, repr(machines.MACHINES), repr(machines.HEADS)]
+    if scene.package is not None:
+        parts.append(hashlib.sha256(scene.package.read_bytes()).hexdigest())
+    for name, each in scene.instances.items():  # weaves and other files have become values
+        fmu = of_component(each.fmu.name, flavour) if each.fmu.built else each.fmu
+        parts += [name, fmu.sha256, repr(sorted(each.values.items()))]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
+    """Evaluate rows. A row that cannot be run says why; only a worker that differs raises LoomfmuError."""
+    with _turn:
+        scene = _scene(job)
+        begun = time.perf_counter()
+        labels: tuple[Label, ...] = ()
+        results = []
+        for each in settings:
+            result, verdicts = _row(job, scene, each)
+            results.append(result)
+            labels = labels or tuple(Label(v.claim, v.signal, v.unit) for v in verdicts)
+        return Batch(results, labels, (time.perf_counter() - begun) / len(settings))
+
+
+def run_trace(job: Job, settings: dict[str, Any], path: Path) -> None:
+    """Run a row with a full trace."""
+    with _turn:
+        run(_scene(job), set=settings, output=path, flavour=job.flavour)
+
+
+@lru_cache(maxsize=4)
+def _scene(job: Job) -> Scene:
+    """The scene as this worker sees it."""
+    scene = read_scene(job.path, dict(job.fixed))
+    if identity(scene, job.flavour) != job.identity:
+        raise LoomfmuError(
+            f"{job.path}: a worker has another version of loomfmu, or the file changed since the sweep began"
+        )
+    return scene
+
+
+def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
+    """The result of one row and the verdicts on it."""
+    try:
+        found = evaluate(scene, set=settings, flavour=job.flavour, values=job.values)
+        values = [found.trace[signal][-1].item() for signal in job.values]
+    except (OSError, MemoryError):  # of the machine, not of the row
+        raise
+    except Interrupted:
+        raise KeyboardInterrupt("interrupted") from None
+    except LoomfmuError as error:
+        return failed(job, scene, str(error)), ()
+    except Exception as error:  # one row of thousands must not end the others
+        return failed(job, scene, f"{type(error).__name__}: {error}"), ()
+    for verdict in found.claims:
+        values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound)]
+    return [*values, found.holds, "; ".join(found.warnings) or None, None], found.claims
+
+
+def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
+    """The result of a row that has none."""
+    return [None] * (len(job.values) + 3 * len(scene.claims) + 2) + [reason]
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,100 @@
+"""A dask cluster instead of processes of our own: the same batches, the same table."""
+
+import logging
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import odd_tasks
+import pytest
+from live_fmus import fmu_cache
+from sweep_files import NO_TRACES, written
+
+import loomfmu
+from loomfmu import LoomfmuError
+from loomfmu.cli import main
+
+distributed = pytest.importorskip("distributed")
+
+__all__ = ["fmu_cache"]
+
+SWEPT = (
+    '[grid]\n"weft.coupler_length" = ["245 mm", "500 mm"]\n'
+    '[sample]\ncount = 12\nseed = 4\n"shaft.speed" = ["500 rpm", "800 rpm"]\n' + NO_TRACES
+)
+
+
+@pytest.fixture(scope="module")
+def cluster(fmu_cache: None) -> Iterator[Any]:
+    """Two workers, started anew when they end."""
+    import dask
+
+    quiet = {"distributed.admin.system-monitor.disk": False, "distributed.scheduler.allowed-failures": 0}
+    with dask.config.set(quiet):
+        running = distributed.LocalCluster(
+            n_workers=2, threads_per_worker=2, dashboard_address=":0", silence_logs=logging.CRITICAL,
+            host="127.0.0.1",
+        )  # fmt: skip
+        yield running
+        running.close()
+
+
+def test_a_cluster_makes_the_table_of_one_process(tmp_path: Path, cluster: Any) -> None:
+    path = written(tmp_path, SWEPT)
+    one = loomfmu.sweep(path, processes=1, output=tmp_path / "one")
+    found = loomfmu.sweep(path, scheduler=cluster.scheduler_address, output=tmp_path / "cluster")
+    assert found.ran == 24 and found.errors == 12
+    assert found.path.read_bytes() == one.path.read_bytes()
+
+
+def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
+    tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path, SWEPT)
+    output = tmp_path / "out"
+    loomfmu.sweep(path, processes=1, output=output)
+    for batch in sorted(os.listdir(output / "batches"))[1:]:
+        (output / "batches" / batch).unlink()
+
+    def here(*_arguments: object, **_named: object) -> None:
+        pytest.fail("a row ran in the process that asked")
+
+    monkeypatch.setattr("loomfmu.sweeps.worker.evaluate", here)
+    before = (output / "table.parquet").read_bytes()
+    (output / "table.parquet").unlink()
+    arguments = ["sweep", str(path), "--output", str(output), "--scheduler", cluster.scheduler_address]
+    assert main(arguments) == 1
+    assert "24 combinations (1 of them run before)" in capsys.readouterr().out
+    assert (output / "table.parquet").read_bytes() == before
+
+
+def test_a_row_that_ends_the_workers_of_a_cluster_is_found(
+    tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written(tmp_path, '[grid]\n"shaft.speed" = [60.0, 60.125, 60.25, 60.375]\n' + NO_TRACES)
+    monkeypatch.setattr("loomfmu.sweeps.schedule.run_rows", odd_tasks.deadly_rows)
+    found = loomfmu.sweep(path, scheduler=cluster.scheduler_address, output=tmp_path / "out").table
+    errors = found["error"].to_pylist()
+    assert errors == [None, "the processes that ran it have ended", None, None]
+
+
+def test_a_scheduler_that_does_not_answer_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("loomfmu.sweeps.cluster.ANSWER", 0.5)
+    path = written(tmp_path, SWEPT)
+    for address in ("tcp://127.0.0.1:1", "nonsense://there"):
+        arguments = ["sweep", str(path), "--output", str(tmp_path / "out"), "--scheduler", address]
+        assert main(arguments) == 2
+        errors = capsys.readouterr().err
+        assert f"loomfmu: {address}: no dask scheduler answers there (" in errors.splitlines()[-1]
+
+
+def test_a_scheduler_without_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("loomfmu.sweeps.cluster.ANSWER", 0.5)
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0", host="127.0.0.1") as empty,
+        pytest.raises(LoomfmuError, match="that dask scheduler has no workers"),
+    ):
+        loomfmu.sweep(written(tmp_path, SWEPT), scheduler=empty.scheduler_address, output=tmp_path / "out")

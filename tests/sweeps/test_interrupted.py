@@ -1,0 +1,154 @@
+"""Sweeps that are killed at any moment, or stopped by Ctrl-C, go on where they were."""
+
+import os
+import random
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pyarrow.parquet as pq
+import pytest
+from live_fmus import fmu_cache
+from sweep_files import NO_TRACES, started, written
+
+import loomfmu
+from loomfmu.cosim.master import Interrupted
+
+__all__ = ["fmu_cache"]
+
+SPEEDS = 41
+
+
+def swept(speeds: int) -> str:
+    """A sweep of three times as many rows, a third of which cannot be run."""
+    return (
+        "[set]\nsteps_per_revolution = 1440\n"
+        f'[grid]\n"shaft.speed" = {{ from = 40.0, to = 80.0, count = {speeds} }}\n'
+        '"weft.coupler_length" = ["245 mm", "250 mm", "500 mm"]\n'
+        "[traces]\nfailures = 1\nsample = 1\n"
+    )
+
+
+def undisturbed(directory: Path, speeds: int) -> bytes:
+    """The table of the sweep that nobody disturbs."""
+    return loomfmu.sweep(written(directory, swept(speeds)), processes=1, output=directory).path.read_bytes()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    return undisturbed(tmp_path_factory.mktemp("whole"), SPEEDS)
+
+
+def batches(results: Path) -> dict[str, int]:
+    """The finished batches and when each was written."""
+    return {path.name: path.stat().st_mtime_ns for path in (results / "batches").glob("*.parquet")}
+
+
+def kill(path: Path, results: Path, moments: random.Random) -> bool:
+    """Start the command and kill it at a random moment, from its first to that in which it ends.
+
+    Whether it was still running; its workers end with it.
+    """
+    before = len(batches(results))
+    more = moments.choice([None, 1, 1, 2])  # batches to wait for, if not for a time alone
+    running = started(path, "--processes", "2")
+    while more is not None and len(batches(results)) < before + more and running.poll() is None:
+        time.sleep(0.005)
+    time.sleep(moments.uniform(0.0, 1.5 if more is None else 0.1))
+    alive = running.poll() is None
+    workers = psutil.Process(running.pid).children(recursive=True) if alive else []
+    running.kill()
+    running.communicate()
+    assert not psutil.wait_procs(workers, timeout=20)[1]
+    return alive
+
+
+def kill_often(directory: Path, table: bytes, speeds: int, count: int, seed: int) -> None:
+    path = written(directory, swept(speeds))
+    results = directory / "results" / "swept"
+    moments = random.Random(seed)
+    done: dict[str, int] = {}
+    caught = 0
+    for _ in range(count):
+        caught += kill(path, results, moments)
+        found = batches(results)
+        assert done.items() <= found.items(), "a finished batch is neither lost nor written again"
+        done = found
+    assert caught > 0.6 * count, "else the sweep was over too early"
+    assert done, "else no kill came in the midst of the rows"
+    running = started(path, "--processes", "2")
+    printed, _errors = running.communicate(timeout=120)
+    assert running.returncode == 1
+    assert f"Swept: {3 * speeds} combinations" in printed
+    assert (results / "table.parquet").read_bytes() == table
+    assert pq.read_table(results / "table.parquet")["row"].to_pylist() == list(range(3 * speeds))
+    assert done.items() <= batches(results).items()
+    assert not list(results.rglob("*.parquet.partial"))
+
+
+def test_a_sweep_that_is_killed_three_times_loses_and_doubles_nothing(tmp_path: Path, whole: bytes) -> None:
+    kill_often(tmp_path, whole, SPEEDS, count=3, seed=5)
+
+
+@pytest.mark.slow
+def test_a_sweep_that_is_killed_twenty_times_loses_and_doubles_nothing(tmp_path: Path) -> None:
+    (tmp_path / "whole").mkdir()
+    kill_often(tmp_path, undisturbed(tmp_path / "whole", 401), 401, count=20, seed=6)
+
+
+@pytest.mark.parametrize("everybody", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_ctrl_c_ends_a_sweep_that_goes_on_later(tmp_path: Path, whole: bytes, everybody: bool) -> None:
+    path = written(tmp_path, swept(SPEEDS))
+    results = tmp_path / "results" / "swept"
+    running = started(path, "--processes", "2")
+    while not batches(results):
+        assert running.poll() is None
+        time.sleep(0.005)
+    workers = psutil.Process(running.pid).children(recursive=True)
+    if everybody:  # a terminal tells the whole group
+        os.killpg(running.pid, signal.SIGINT)
+    else:
+        os.kill(running.pid, signal.SIGINT)
+    printed, errors = running.communicate(timeout=60)
+    assert running.returncode == 130, errors
+    assert errors == (
+        "loomfmu: interrupted; what is finished is kept in results/swept,"
+        " the same command goes on from there\n"
+    )
+    assert printed == ""
+    assert not psutil.wait_procs(workers, timeout=20)[1]
+    done = batches(results)
+    assert done and not (results / "table.parquet").exists()
+    if everybody:
+        found = loomfmu.sweep(path, processes=1, output=results)
+        assert 0 < found.ran < 3 * SPEEDS
+        assert found.path.read_bytes() == whole
+        assert done.items() <= batches(results).items()
+
+
+@pytest.mark.parametrize("how", [Interrupted, KeyboardInterrupt])
+def test_ctrl_c_in_a_row_is_no_result_of_that_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: type[BaseException]
+) -> None:
+    text = '[grid]\n"shaft.speed" = { from = 40.0, to = 80.0, count = 50 }\n' + NO_TRACES
+    path = written(tmp_path, text)
+    whole = loomfmu.sweep(path, processes=1, output=tmp_path / "whole").table
+    calls = iter(range(50))
+
+    def interrupted(*arguments: Any, **named: Any) -> Any:
+        if next(calls) == 30:
+            raise how
+        return loomfmu.evaluate(*arguments, **named)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("loomfmu.sweeps.worker.evaluate", interrupted)
+        with pytest.raises(KeyboardInterrupt, match=r"what is finished is kept in .*out, the same"):
+            loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    done = batches(tmp_path / "out")
+    assert done
+    found = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    assert 20 <= found.ran < 50
+    assert found.table.equals(whole, check_metadata=True)
+    assert done.items() <= batches(tmp_path / "out").items()

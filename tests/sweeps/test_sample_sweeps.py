@@ -1,0 +1,49 @@
+"""The sweeps that come with the project run, and say what they are there to say."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import pytest
+from live_fmus import fmu_cache
+
+from loomfmu.cli import main
+from loomfmu.design import loom
+
+__all__ = ["fmu_cache"]
+
+SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
+
+
+def test_there_is_a_test_for_each() -> None:
+    assert sorted(path.name for path in SWEEPS.iterdir()) == ["damper.toml", "safe_speed.toml"]
+
+
+def test_safe_speed_falls_with_wear_and_is_that_of_the_design(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "out"
+    assert main(["sweep", str(SWEEPS / "safe_speed.toml"), "--output", str(output), "--processes", "1"]) == 1
+    assert "70 combinations: 38 hold, 32 fail, 0 could not be run" in capsys.readouterr().out
+    table = pq.read_table(output / "table.parquet")
+    for row in table.to_pylist():
+        wanted = loom.safe_speed(row["machine"], clearance=row["belt.guide_clearance"]).speed
+        # 90 steps in a revolution, joined by quintics: 1.2e-6 off for the WL680-3600
+        assert row["belt.lowest_speed_limit"] == pytest.approx(wanted, rel=3e-6)
+    by_machine = table["belt.lowest_speed_limit"].to_numpy().reshape(7, 10)
+    assert np.all(np.diff(by_machine, axis=1) <= 0.0)
+    assert len(list((output / "traces").iterdir())) == 2
+    assert (output / "map.png").stat().st_size > 10_000
+
+
+def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
+    output = tmp_path / "out"
+    assert main(["sweep", str(SWEEPS / "damper.toml"), "--output", str(output), "--processes", "1"]) == 1
+    table = pq.read_table(output / "table.parquet")
+    assert table.num_rows == 64 and table["error"].null_count == 64
+    soft = table.filter(pc.field("damper.spring_stiffness") < 2e3)["damper_1.stop_contacts"].to_pylist()
+    stiff = table.filter(pc.field("damper.spring_stiffness") > 15e3)["damper_1.stop_contacts"].to_pylist()
+    assert len(soft) > 5 and min(soft) > 0
+    assert len(stiff) > 5 and max(stiff) == 0
+    assert (output / "map.png").stat().st_size > 10_000

@@ -1,0 +1,175 @@
+"""The directory of a sweep: whole batches, no other sweep's, one writer."""
+
+import json
+import os
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from live_fmus import fmu_cache
+from sweep_files import written
+
+from loomfmu import LoomfmuError
+from loomfmu.sweeps import plan as plans
+from loomfmu.sweeps.plan import Plan
+from loomfmu.sweeps.store import Store, opened
+from loomfmu.sweeps.tables import table_of, whole_table
+from loomfmu.sweeps.worker import Batch, Label
+
+__all__ = ["fmu_cache"]
+
+LABELS = (Label("first", "belt.lowest_margin", "1"), Label("second", "belt.lowest_speed_limit", "rev/min"))
+ROWS = 24
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Plan:
+    return plans.load(
+        written(tmp_path, f'[grid]\n"shaft.speed" = {{ from = 40.0, to = 63.0, count = {ROWS} }}\n')
+    )
+
+
+def batch(rows: range) -> Batch:
+    """Made-up results; every fifth row could not be run."""
+    results = [
+        [None] * 9 + [f"row {row}"]
+        if row % 5 == 4
+        else [70.0 + row, True, 0.1 * row, 0.0, row < 20, 70.0 + row, 60.0, row < 20, None, None]
+        for row in rows
+    ]
+    return Batch(results, LABELS if any(row % 5 != 4 for row in rows) else (), 0.01)
+
+
+def parts(cuts: set[int]) -> list[range]:
+    ends = [0, *sorted(cuts), ROWS]
+    return [range(start, stop) for start, stop in pairwise(ends)]
+
+
+@given(cuts=st.sets(st.integers(1, ROWS - 1)), order=st.randoms(use_true_random=False))
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_the_table_is_the_same_whatever_the_batches_were(plan: Plan, cuts: set[int], order: object) -> None:
+    whole = whole_table(plan, [table_of(plan, range(ROWS), batch(range(ROWS)))])
+    pieces = [table_of(plan, rows, batch(rows)) for rows in parts(cuts)]
+    order.shuffle(pieces)  # type: ignore[attr-defined]
+    found = whole_table(plan, pieces)
+    assert found.equals(whole, check_metadata=True)
+    sinks = [pa.BufferOutputStream(), pa.BufferOutputStream()]
+    for table, sink in zip((found, whole), sinks, strict=True):
+        pq.write_table(table, sink)
+    assert sinks[0].getvalue() == sinks[1].getvalue()
+
+
+@given(cuts=st.sets(st.integers(1, ROWS - 1)), kept=st.sets(st.integers(0, ROWS)))
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_what_is_left_is_what_is_not_done(plan: Plan, cuts: set[int], kept: set[int]) -> None:
+    store = Store(plan.path.parent / "there", plan)
+    store.batches.mkdir(parents=True, exist_ok=True)
+    for path in store.batches.iterdir():
+        path.unlink()
+    done = [rows for number, rows in enumerate(parts(cuts)) if number in kept]
+    for rows in done:
+        store._path(rows).touch()
+    assert store.done() == done
+    rows_done, rows_left = ([row for rows in found for row in rows] for found in (done, store.left()))
+    assert sorted(rows_done + rows_left) == list(range(ROWS))
+
+
+def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: Plan, tmp_path: Path) -> None:
+    place = tmp_path / "results"
+    with opened(place, plan, "one", restart=False) as store:
+        store.write(range(0, 10), batch(range(0, 10)))
+        assert os.listdir(store.batches) == ["rows_000000_000009.parquet"]
+    (place / "batches" / "rows_000010_000019.parquet.partial").write_bytes(
+        b"PAR1 and then the process was killed"
+    )
+    with opened(place, plan, "one", restart=False) as store:
+        assert store.left() == [range(10, 24)]
+        store.write(range(10, 24), batch(range(10, 24)))
+        table = store.finish()
+    assert sorted(os.listdir(place)) == ["batches", "lock", "sweep.json", "table.parquet"]
+    assert not list(place.rglob("*.partial"))
+    assert table["row"].to_pylist() == list(range(ROWS))
+    assert pq.read_table(place / "table.parquet").equals(table, check_metadata=True)
+    assert json.loads((place / "sweep.json").read_text()) == {
+        "title": "Swept", "rows": ROWS, "fingerprint": "one",
+    }  # fmt: skip
+
+
+def test_a_batch_that_cannot_be_read_is_named(plan: Plan, tmp_path: Path) -> None:
+    with opened(tmp_path / "results", plan, "one", restart=False) as store:
+        store.write(range(0, 12), batch(range(0, 12)))
+        store._path(range(12, 24)).write_bytes(b"nonsense")
+        with pytest.raises(LoomfmuError, match=r"rows_000012_000023\.parquet: cannot be read .*; delete it"):
+            store.finish()
+
+
+def test_rows_that_are_there_twice_are_refused(plan: Plan, tmp_path: Path) -> None:
+    with opened(tmp_path / "results", plan, "one", restart=False) as store:
+        for rows in (range(0, 12), range(10, 24)):
+            store.write(rows, batch(rows))
+        with pytest.raises(LoomfmuError, match="rows are missing or double"):
+            store.finish()
+
+
+def test_another_sweep_is_refused_until_it_is_thrown_away(plan: Plan, tmp_path: Path) -> None:
+    place = tmp_path / "results"
+    with opened(place, plan, "one", restart=False) as store:
+        store.write(range(0, 24), batch(range(0, 24)))
+        store.finish()
+    (place / "notes.txt").write_text("mine")
+    before = sorted(path.relative_to(place) for path in place.rglob("*"))
+    with (
+        pytest.raises(LoomfmuError, match=r"holds another sweep, or its file, .* --restart throws that away"),
+        opened(place, plan, "other", restart=False),
+    ):
+        pytest.fail("it was opened")
+    assert sorted(path.relative_to(place) for path in place.rglob("*")) == before
+    with opened(place, plan, "other", restart=True) as store:
+        assert store.left() == [range(ROWS)]
+    assert sorted(os.listdir(place)) == ["batches", "lock", "notes.txt", "sweep.json"]
+
+
+def test_results_without_identity_are_not_taken_for_ours(plan: Plan, tmp_path: Path) -> None:
+    place = tmp_path / "results"
+    place.mkdir()
+    (place / "table.parquet").write_bytes(b"somebody else's")
+    with (
+        pytest.raises(LoomfmuError, match="it holds results of no known sweep"),
+        opened(place, plan, "one", restart=False),
+    ):
+        pytest.fail("it was opened")
+    assert (place / "table.parquet").read_bytes() == b"somebody else's"
+
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from loomfmu.sweeps.store import _locked
+with _locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(600)
+"""
+
+
+def test_a_second_sweep_is_kept_out_and_a_killed_one_is_not_in_the_way(plan: Plan, tmp_path: Path) -> None:
+    place = tmp_path / "results"
+    place.mkdir()
+    command = [sys.executable, "-c", HOLDER, str(place)]
+    holder = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert holder.stdout is not None and holder.stdout.readline() == "held\n"
+    with (
+        pytest.raises(LoomfmuError, match=rf"another sweep is running there \(process {holder.pid}\)"),
+        opened(place, plan, "one", restart=True),
+    ):
+        pytest.fail("it was opened")
+    holder.kill()
+    holder.wait()
+    holder.stdout.close()
+    with opened(place, plan, "one", restart=False) as store:
+        assert store.left() == [range(ROWS)]
