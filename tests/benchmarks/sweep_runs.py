@@ -1,0 +1,111 @@
+"""How many combinations of a sweep are done in a second, on one process and on two."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+from own import DEMO
+from records import Notes, Table, say
+from start_up import MAIN
+from texts import Figures, Find, parts, shown, whole
+
+NAME = "sweeps"
+STEPS = 180  # in the one revolution of a row
+SIZES = {"full": (512, 5), "quick": (64, 2), "tiny": (16, 1)}  # rows, repeats
+FEW = 8  # rows of the sweep that tells the set-up
+SWEEP = """
+scene = "{scene}"
+flavour = "native"
+[set]
+revolutions = 1
+steps_per_revolution = {steps}
+[grid]
+"shaft.speed" = {{ from = "400 rev/min", to = "700 rev/min", count = {speeds} }}
+"belt.guide_clearance" = {{ from = "0.1 mm", to = "1 mm", count = 4 }}
+[traces]
+failures = 0
+sample = 0
+"""
+
+
+def measure(effort: str, notes: Notes) -> list[Table]:
+    """Sweeps of many rows and of few, by the command, in turn."""
+    rows, repeats = SIZES[effort]
+    table = Table(NAME, ("processes", "rows", "rate [rows/s]", "spread [%]", "set-up [s]", "repeats"))
+    missing = [name for name in ("loomfmu.sweeps", "pyarrow") if find_spec(name) is None]
+    if missing:
+        notes("sweeps", f"{missing[0]} is missing")
+        return [table]
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    processes = [1, 2] if cores > 1 and effort != "tiny" else [1]
+    if cores < 2:
+        notes("a sweep on two processes", "there is one core")
+    times: dict[tuple[int, int], list[float]] = {}
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
+        say(f"{NAME}: {rows} rows")
+        _swept(Path(directory), FEW, 1)  # FMUs are built
+        for _ in range(repeats):
+            for count in processes:
+                for size in (FEW, rows):
+                    duration = _swept(Path(directory), size, count)
+                    times.setdefault((count, size), []).append(duration)
+    for count in processes:
+        few, many = times[count, FEW], times[count, rows]
+        rates = [(rows - FEW) / (long - short) for long, short in zip(many, few, strict=True)]
+        rate = median(rates)
+        spread = max(abs(each - rate) for each in rates) / rate
+        table.add(count, rows, rate, 100.0 * spread, median(few) - FEW / rate, repeats)
+    return [table]
+
+
+def _swept(directory: Path, rows: int, processes: int) -> float:
+    """Seconds for a sweep of so many rows, from the command to its end."""
+    path = directory / f"sweep_{rows}.toml"
+    text = SWEEP.format(scene=DEMO.as_posix(), steps=STEPS, speeds=rows // 4)
+    path.write_text(text, encoding="utf-8")
+    words = [
+        "sweep",
+        str(path),
+        "--processes",
+        str(processes),
+        "--output",
+        str(directory / "out"),
+        "--restart",
+    ]
+    start = perf_counter()
+    run = subprocess.run([sys.executable, "-c", MAIN, *words], capture_output=True, text=True, check=False)
+    duration = perf_counter() - start
+    if run.returncode not in (0, 1):  # 1: in some rows a claim fails
+        raise RuntimeError(f"loomfmu sweep: {run.stderr.strip()[-300:]}")
+    return duration
+
+
+# ---- what is said of it
+
+
+def section(find: Find) -> str:
+    """Rows in a second."""
+    rows = find(NAME)
+    if not rows:
+        return "*Not run.*"
+    gain = ""
+    rates = {row["processes"]: row["rate [rows/s]"] for row in rows}
+    if len(rates) == 2:
+        gain = f"Two processes do {shown(rates[2.0] / rates[1.0])} times what one does."
+    return parts(
+        f"`loomfmu sweep` over speed and clearance of the demonstration loom: one revolution of {STEPS} steps"
+        " in each row, judged in memory, native FMUs. The rate is that of many rows less few; the set-up is"
+        " what the command takes beside them.",
+        whole(rows),
+        gain,
+    )
+
+
+def figures(find: Find) -> Figures:
+    """None."""
+    return {}

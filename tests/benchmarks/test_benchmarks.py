@@ -1,0 +1,134 @@
+"""The benchmarks in their tiniest size: tables, report, references. No time is asserted."""
+
+import math
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import records
+import written
+from children import Child, Failed
+from exact import MP, REDUCTION, Frame
+from limits import HOST, LOOP, NUMPY
+from precision import APART, delay
+from reference import Rotor
+from running import run
+
+Done = Callable[[str], Path]
+
+
+@pytest.fixture(scope="module")
+def done(natives: None, tmp_path_factory: pytest.TempPathFactory) -> Done:
+    """Runs a benchmark, once for all tests, and gives the directory of the results."""
+    results = tmp_path_factory.mktemp("results")
+    ran: set[str] = set()
+
+    def once(name: str) -> Path:
+        if name not in ran:
+            assert run(name, "tiny", results)
+            ran.add(name)
+        return results
+
+    return once
+
+
+def find(results: Path, name: str) -> list[dict[str, Any]]:
+    return records.read(results / written.FOLDER, name)
+
+
+@pytest.mark.parametrize("name", written.BENCHMARKS)
+def test_a_benchmark_gives_tables_of_finite_numbers(done: Done, name: str) -> None:
+    results = done(name)
+    rows = find(results, name) or find(results, f"{name}_steps")
+    assert rows
+    for table in (results / written.FOLDER).glob("*.csv"):
+        for row in find(results, table.stem):
+            for key, value in row.items():
+                assert not isinstance(value, float) or math.isfinite(value), (table.name, key, value)
+
+
+def test_the_report_has_every_benchmark_and_its_figures(done: Done) -> None:
+    for name in written.BENCHMARKS:
+        results = done(name)
+    paths = written.write(results)
+    text = paths[0].read_text(encoding="utf-8")
+    for title, _module in written.BENCHMARKS.values():
+        assert f"## {title}\n" in text
+    assert "*Not run.*" not in text
+    assert "PyFMI: " in text  # what was not run is named
+    shown = set(re.findall(r"\(benchmarks/(\w+\.png)\)", text))
+    assert shown == {path.name for path in paths[1:]}
+    assert all(path.stat().st_size > 0 for path in paths[1:])
+    assert written.text(results) == text
+
+
+def test_the_committed_report_is_the_one_that_its_tables_give() -> None:
+    committed = records.ROOT / "results" / written.REPORT
+    if not committed.exists():
+        pytest.skip("the benchmarks were not run yet: make bench")
+    # after a change of words: python tests/benchmarks --report
+    assert committed.read_text(encoding="utf-8") == written.text(committed.parent)
+
+
+def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(done: Done) -> None:
+    away = {row["what"]: row["largest difference [share]"] for row in find(done("limits"), "limits")}
+    assert away[LOOP] == 0.0
+    assert away[HOST] == 0.0
+    assert 0.0 < away[NUMPY] < 1e-13  # some hundred roundings: the terms stand in another order
+
+
+def test_signals_that_follow_from_the_angle_have_the_digits_of_the_references(done: Done) -> None:
+    (row,) = (row for row in find(done("precision"), "precision") if row["method"] == "loomfmu, native FMUs")
+    assert row["error of heald_1.lift [share of largest]"] < 1e-14  # tens of roundings
+    assert row["error of belt.margin [share of largest]"] < 1e-13
+
+
+def test_both_references_of_the_damper_are_one(done: Done) -> None:
+    away = {row["result"]: row["value"] for row in find(done("precision"), "references")}
+    assert away[APART] < 1e-15  # m, of 17 mm: what DOP853 is asked for is an absolute 1e-14
+
+
+@pytest.mark.parametrize("x", [0.1, 0.39, 0.4, 1.0, 2.5, 3.1])
+def test_the_rotor_law_integrated_by_hand_is_that_integrated_by_quadrature(x: float) -> None:
+    place, rotor = MP.mpf(x), Rotor("sloped_sine", REDUCTION)
+    wanted = rotor.angle(place), rotor.velocity(place), rotor.acceleration(place)
+    for found, other in zip(Frame().rotor(place), wanted, strict=True):
+        assert abs(found - other) < 1e-28  # 30 digits
+
+
+def test_a_delay_is_found_from_an_error_and_the_rate() -> None:
+    time = np.linspace(0.0, 1.0, 46)
+    late = 1e-6
+    error = np.sin(6.0 * (time - late)) - np.sin(6.0 * time)
+    # what is left is of second order in the delay
+    assert delay(error, 6.0 * np.cos(6.0 * time)) == pytest.approx(late, rel=1e-4)
+
+
+def dies(_directory: Path) -> None:
+    os._exit(3)
+
+
+def refuses(_directory: Path) -> None:
+    raise ValueError("it is not to be had\nhere")
+
+
+@pytest.mark.parametrize(("make", "said"), [(dies, "status 3"), (refuses, "it is not to be had$")])
+def test_a_configuration_that_cannot_be_run_is_named(make: Callable[[Path], None], said: str) -> None:
+    with pytest.raises(Failed, match=said):
+        Child(make)
+
+
+def test_results_of_one_benchmark_replace_its_own_alone(tmp_path: Path) -> None:
+    columns = ("benchmark", "what", "why")
+    for name, why in (("cost", "a"), ("lean", "b"), ("cost", "c")):
+        notes = records.Notes(name)
+        notes("something", why)
+        notes("something", why)
+        records.replaced(tmp_path, "notes", name, notes.rows(), columns)
+    assert [(row["benchmark"], row["why"]) for row in records.read(tmp_path, "notes")] == [
+        ("lean", "b"), ("cost", "c"),
+    ]  # fmt: skip

@@ -1,0 +1,123 @@
+"""The report, written whole from the tables of the results: words and numbers cannot differ."""
+
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import cost
+import guard
+import lean
+import limits
+import precision
+import scaling
+import start_up
+import sweep_runs
+import writing
+from records import Row, read
+from texts import Draw, Figures, Find, items, parts, table
+
+from loomfmu.validation import plots
+
+REPORT = "benchmarks.md"
+FOLDER = "benchmarks"
+# name -> title, module
+BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
+    precision.NAME: ("Work and precision", precision),
+    cost.NAME: ("Cost of a macro step", cost),
+    scaling.NAME: ("Scaling", scaling),
+    limits.NAME: ("How near to the limits", limits),
+    lean.NAME: ("Running only what is asked for", lean),
+    sweep_runs.NAME: ("Sweeps", sweep_runs),
+    start_up.NAME: ("Start-up", start_up),
+    writing.NAME: ("Writing traces", writing),
+    guard.NAME: ("Guard", guard),
+}
+RUNS = (
+    "benchmark", "effort", "duration [s]", "date", "commit", "CPU", "cores", "kernel", "Python", "packages",
+)  # fmt: skip
+NOTES = ("benchmark", "what", "why")
+
+INTRO = """# Benchmarks
+
+Written whole by `make bench` from the tables in [benchmarks](benchmarks). One of them alone:
+`python tests/benchmarks NAME...`, a short look: `--quick`, which writes to `build` instead.
+
+Times are medians of repeats that were taken in turn, so that all see the same weather of the machine; each
+configuration runs in a process of its own. The spread is the largest distance of any repeat from the median.
+Compare ratios within one table, not times between machines."""
+
+
+def text(results: Path) -> str:
+    """The whole report from the tables below a directory."""
+
+    def find(name: str) -> list[Row]:
+        return read(results / FOLDER, name)
+
+    sections = [_section(title, module, find) for title, module in BENCHMARKS.values()]
+    return parts(INTRO, _machine(find), *sections, _not_run(find)) + "\n"
+
+
+def write(results: Path) -> list[Path]:
+    """Write the report, and its figures if matplotlib is there; paths of what was written."""
+    report = results / REPORT
+    temporary = report.with_suffix(".partial")
+    temporary.write_text(text(results), encoding="utf-8")
+    temporary.replace(report)
+    written = [report]
+    if not plots.available():
+        return written
+    for _title, module in BENCHMARKS.values():
+        for name, (_caption, height, draw) in _figures(module, results).items():
+            written.append(results / FOLDER / name)
+            _draw(height, draw, written[-1])
+    return written
+
+
+def _figures(module: Any, results: Path) -> Figures:
+    found: Figures = module.figures(lambda name: read(results / FOLDER, name))
+    return found
+
+
+def _section(title: str, module: Any, find: Find) -> str:
+    shown = [f"![{caption}]({FOLDER}/{name})" for name, (caption, _h, _d) in module.figures(find).items()]
+    return parts(f"## {title}", module.section(find), *shown)
+
+
+def _machine(find: Find) -> str:
+    """The machine, once if all was run on the same one at the same commit."""
+    runs = find("runs")
+    if not runs:
+        return "*Nothing was run.*"
+    same = RUNS[3:]
+    machines = list(dict.fromkeys(tuple(str(run[key]) for key in same) for run in runs))
+    told = []
+    for found in machines:
+        mine = [run for run in runs if tuple(str(run[key]) for key in same) == found]
+        names = ", ".join(
+            f"{run['benchmark']} ({run['effort']}, {run['duration [s]']:.0f} s)" for run in mine
+        )
+        lines = [
+            [key, value.removesuffix(".0") if key == "cores" else value]
+            for key, value in zip(same, found, strict=True)
+        ]
+        told.append(table(["", ""], [*lines, ["benchmarks", names]]))
+    return parts("## Machine", *told)
+
+
+def _not_run(find: Find) -> str:
+    """What was left out, and why."""
+    notes = find("notes")
+    done = {run["benchmark"] for run in find("runs")}
+    lines = [f"{row['benchmark']}: {row['what']}: {row['why']}" for row in notes]
+    lines += [f"{name}: not run" for name in BENCHMARKS if name not in done]
+    return parts("## Not run, or run less", items(*lines) or "Everything was run.")
+
+
+def _draw(height: float, draw: Draw, path: Path) -> None:
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(plots.STYLE):
+        figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
+        draw(figure)
+        figure.savefig(path, metadata={"Software": None})
