@@ -161,16 +161,15 @@ def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
         nonlocal rows
         rows += len(times)
 
-    with Master(scene, compiled=True) as master:
+    main = threading.main_thread().ident
+    assert main is not None
+    timer = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
+    before = time.perf_counter()
+    with pytest.raises(Interrupted), Master(scene, compiled=True) as master:
         master.initialize()
-        main = threading.main_thread().ident
-        assert main is not None
-        timer = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
         timer.start()
-        before = time.perf_counter()
-        with pytest.raises(Interrupted):
-            master.run(1024, count, lambda _step: None)
-        timer.join()
+        master.run(1024, count, lambda _step: None)
+    timer.join()
     assert 0 < rows < scene.steps
     assert time.perf_counter() - before < 30.0  # a part is made in 50 ms: this is to see that it ends at all
 

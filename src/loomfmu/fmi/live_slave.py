@@ -13,7 +13,6 @@ import os
 import struct
 import sys
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 WARNING, DISCARD, ERROR = 1, 2, 3
@@ -323,7 +322,7 @@ def _let_go_at_exit(resources: str, name: str) -> None:
     corrupts the heap wherever the memory has another use by then. Once let go, both find nothing.
     On Windows they run in the other order. A host that is no Python has its interpreter ended by the state.
     """
-    library = str(Path(resources).parent / "binaries" / "linux64" / f"{name}.so")
+    library = f"{resources.rstrip('/').rpartition('/')[0]}/binaries/linux64/{name}.so"
     if sys.platform == "linux" and sys.orig_argv and library not in _libraries:
         _libraries.add(library)
         atexit.register(_let_go, library)
