@@ -3,6 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
+PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 
 .PHONY: demo test check stress bench docs validation wheel clean
 
@@ -11,7 +13,7 @@ demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
 
 test: .venv/installed-for-tests check
-	$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=loadfile --cov --cov-report=term
+	$(BIN)/python -m pytest $(PARALLEL) --cov --cov-report=term
 
 check: .venv/installed-for-tests
 	$(BIN)/ruff check .

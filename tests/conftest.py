@@ -1,7 +1,21 @@
 """What all tests share."""
 
+import pytest
 from hypothesis import settings
+from sharing import fmu_cache
+
+__all__ = ["fmu_cache"]
+
+collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 
 # the same examples every time, no database in the working directory, no hurry on a busy machine
 settings.register_profile("loomfmu", derandomize=True, database=None, deadline=None, max_examples=100)
 settings.load_profile("loomfmu")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What takes minutes runs on demand."""
+    if "slow" not in config.option.markexpr:
+        for item in items:
+            if item.get_closest_marker("slow"):
+                item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))

@@ -17,6 +17,7 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
+from sharing import fmu_cache as fmu_cache
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim import fmus
@@ -25,18 +26,6 @@ from loomfmu.variables import Component, variables_of
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 SPEED = 41.88790204786391  # 400 rev/min, what every component starts with
 REVOLUTION = 2.0 * math.pi / SPEED  # s
-
-
-@pytest.fixture(scope="session", autouse=True)
-def fmu_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """One cache of built FMUs for all tests, also for the processes they start; not the user's own."""
-    before = os.environ.get("LOOMFMU_CACHE")
-    os.environ["LOOMFMU_CACHE"] = str(tmp_path_factory.getbasetemp() / "fmu_cache")
-    yield
-    if before is None:
-        del os.environ["LOOMFMU_CACHE"]
-    else:
-        os.environ["LOOMFMU_CACHE"] = before
 
 
 class Live:
@@ -139,7 +128,7 @@ def outputs_of(component: Component) -> dict[str, Any]:
     return {name: getattr(component, name) for name in names}
 
 
-def in_a_process(script: str, *arguments: str, timeout: float = 100.0, **environment: str) -> str:
+def in_a_process(script: str, *arguments: str, timeout: float = 300.0, **environment: str) -> str:
     """Run a script in a process of its own, where a crash is seen, and return what it printed."""
     done = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", script, *arguments],

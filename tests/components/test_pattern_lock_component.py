@@ -1,8 +1,8 @@
 """PatternLock: a pawl that goes and comes, in time or not, on a shaft that turns as it likes."""
 
-from itertools import pairwise
 from math import degrees, pi, radians
 
+import numpy as np
 import pytest
 
 from loomfmu.components.dobby_drive import DobbyDrive
@@ -46,6 +46,7 @@ def test_engagement_is_centred_on_the_slow_point_of_the_drive():
     assert lock.available_angle == pytest.approx(drive.dwell_angle, rel=0.06)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("speed", [400 * RPM, -400 * RPM])
 @pytest.mark.parametrize("start", [-30.0, 0.0, 7.0])
 def test_turn_is_continuous_and_has_its_rates(speed, start):
@@ -56,12 +57,12 @@ def test_turn_is_continuous_and_has_its_rates(speed, start):
     for n in range(40000):
         lock.step(n * step, step)
         rows.append((lock.turn, lock.turn_velocity, lock.turn_acceleration))
-    for (turn, velocity, acceleration), (then, faster, _after) in pairwise(rows):
-        # over a step of 10 us: velocity and acceleration change by 1e-5 of 1400 and of 2e5 at most
-        assert then - turn == pytest.approx(velocity * step, abs=0.5 * step * step * 1500.0)
-        assert faster - velocity == pytest.approx(acceleration * step, abs=0.5 * step * step * 3e5)
-    assert max(row[0] for row in rows) == pytest.approx(lock.whole_turn, rel=1e-15)
-    assert min(row[0] for row in rows) == pytest.approx(0.0, abs=1e-15)
+    turn, velocity, acceleration = np.array(rows).T
+    # over a step of 10 us: velocity and acceleration change by 1e-5 of 1400 and of 2e5 at most
+    assert np.all(np.abs(np.diff(turn) - velocity[:-1] * step) <= 0.5 * step * step * 1500.0)
+    assert np.all(np.abs(np.diff(velocity) - acceleration[:-1] * step) <= 0.5 * step * step * 3e5)
+    assert turn.max() == pytest.approx(lock.whole_turn, rel=1e-15)
+    assert turn.min() == pytest.approx(0.0, abs=1e-15)
 
 
 def test_backwards_is_the_same_motion():

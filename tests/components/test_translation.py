@@ -131,6 +131,7 @@ def test_flattened_component_gives_the_same_bits(component, seed):
     in_step(component, fresh, seed, compare)
 
 
+@pytest.mark.no_cover
 @every_component
 @pytest.mark.parametrize("seed", range(4))
 def test_translated_component_agrees(translated, component, seed):
@@ -148,10 +149,9 @@ def test_translated_component_agrees(translated, component, seed):
 
 
 def test_a_step_never_goes_on_for_ever(translated):
-    # a million pieces of motion, each short against 60 kHz, are a problem to report; in Python the test
-    # itself would take its time
+    # pieces of motion beyond number, each short against 60 kHz, are a problem to report
     damper = translated["HealdDamper"].HealdDamper()
     damper.spring_stiffness, damper.carrier_mass = 1e12, 1e-3
     assert damper.initialize(0.0) == 0
     assert damper.step(0.0, 3600.0) == 1
-    assert "more than a million times" in COMPONENTS["HealdDamper"].problems[0].text
+    assert "more than 100,000 times" in COMPONENTS["HealdDamper"].problems[0].text

@@ -35,6 +35,7 @@ def placed(weft: WeftInsertion, theta: float) -> WeftInsertion:
     return weft
 
 
+@pytest.mark.no_cover
 @every_machine
 def test_motion_over_a_turn(name):
     weft = weft_of(name, speed=1.0)

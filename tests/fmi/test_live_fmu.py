@@ -415,26 +415,28 @@ def test_a_warning_is_told_once_and_the_run_goes_on(live: Open) -> None:
     assert instance.log == [(1, "logStatusWarning", said)]
 
 
-def test_a_pick_beyond_an_fmi_integer_is_refused_without_a_crash() -> None:
-    # 1e12 rad does not fit the 32 bits of fmi2Integer, 1e20 rad not the 64 bits of the serialised state
+def test_a_shaft_beyond_all_picks_is_refused_without_a_crash() -> None:
+    # 1e12 rad does not fit the 32 bits of fmi2Integer, 1e20 rad not the 64 bits of the serialised state:
+    # neither by the input nor by the own speed can the shaft get there
     text = in_a_process(
         """
 from live_fmus import *
-instance = Live("DobbyDrive").start(follow_shaft=True)
 for angle in (1e12, 1e20, 1e300):
-    instance.set(shaft_angle=angle)
-    assert instance.step(0.0, 1e-3) == OK
-    assert instance.get("pick") == [0]
-    assert instance.step(1e-3, 1e-3) == DISCARD
-    instance.slave.serializeFMUState(instance.slave.getFMUState())
-    print(instance.texts[-1])
-    instance.call("reset")
-    instance.start(follow_shaft=True)
-instance.free()
+    for follow in (True, False):
+        instance = Live("DobbyDrive").start(follow_shaft=follow)
+        if follow:
+            instance.set(shaft_angle=angle)
+        assert instance.step(min(angle, 1e14), 1e-3) == DISCARD
+        assert instance.get("pick") == [0]
+        instance.slave.serializeFMUState(instance.slave.getFMUState())
+        print(instance.texts[-1])
+        instance.free()
 """
     )
-    assert text.splitlines()[0] == "pick = 159154943091 is more than an FMI integer holds"
-    assert all("is more than an FMI integer holds" in line for line in text.splitlines())
+    lines = text.splitlines()
+    assert lines[0] == "shaft_angle = 5.729578e+13 deg is outside [-5.729578e+10, 5.729578e+10] deg"
+    assert all("is outside" in line for line in lines[::2])
+    assert all("more than 2e9 rad from its zero" in line for line in lines[1::2])
 
 
 # ---- hosts
@@ -540,3 +542,11 @@ def test_what_a_state_holds_is_packed_without_gaps(live: Open) -> None:
     assert (guid.decode(), mode.rstrip(b"\0").decode()) == (instance.fmu.guid, "stepping")
     assert (time, complaint) == (0.0, 0)
     np.testing.assert_array_equal(values, instance.variables())
+
+
+@pytest.mark.parametrize("time", [1e16, -1e300, math.inf, math.nan])
+def test_a_time_at_which_angles_would_overflow_is_refused(live: Open, time: float) -> None:
+    instance = live("MainShaft").start()
+    assert instance.step(time, 1e-3) == DISCARD
+    assert instance.texts[-1] == f"a step from {time!r} s by 0.001 s: finite and forward is asked for"
+    assert all(math.isfinite(value) for value in instance.outputs())

@@ -2,26 +2,14 @@
 
 import shutil
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from live_fmus import fmu_cache
 from natives import Native
+from sharing import native_fmus
 
-from loomfmu.components import COMPONENTS
 from loomfmu.cosim import fmus
-
-__all__ = ["fmu_cache"]
-
-
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """What takes minutes runs on demand."""
-    if "slow" not in config.option.markexpr:
-        for item in items:
-            if item.get_closest_marker("slow"):
-                item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))
 
 
 @pytest.fixture(scope="session")
@@ -46,9 +34,7 @@ def gcc(tools: None) -> str:
 @pytest.fixture(scope="session")
 def built(fmu_cache: None, tools: None) -> dict[str, fmus.Fmu]:
     """All native FMUs."""
-    with ThreadPoolExecutor(max_workers=4) as pool:
-        found = pool.map(lambda name: fmus.of_component(name, "native"), COMPONENTS)
-        return dict(zip(COMPONENTS, found, strict=True))
+    return native_fmus()
 
 
 @pytest.fixture(scope="session")

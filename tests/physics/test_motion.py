@@ -1,5 +1,6 @@
 """Motion between two samples: any quintic comes back, and noise does not grow."""
 
+import itertools
 from fractions import Fraction
 
 import numpy as np
@@ -7,7 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loomfmu.physics.motion import joined, joined_value, largest_between
+from loomfmu.physics.motion import (
+    above_noise,
+    bent,
+    bump_noise,
+    bumps,
+    expected_bump,
+    joined,
+    joined_value,
+    largest_between,
+    sample_noise,
+)
 
 coefficient = st.floats(-10.0, 10.0)
 quintic = st.tuples(*[coefficient] * 6)
@@ -48,16 +59,53 @@ def test_both_ends_are_met(c):
     assert second == pytest.approx(end[2], abs=60 * 4e-16 * 4 * scale)
 
 
-@pytest.mark.parametrize("step", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
+@given(quintic, st.floats(0.3, 3.0))
+def test_the_change_of_one_bump_gives_the_other(c, ratio):
+    # the fourth derivative of a quintic runs on a line, so its fifth is that line's slope, whatever the steps
+    def sampled(begin, step):
+        one, other = derivatives(c, begin), derivatives(c, begin + step)
+        return (one[0], step * one[1], step**2 * one[2]), (other[0], step * other[1], step**2 * other[2])
+
+    before, _ = bumps(*sampled(0.0, 1.0)[0], *sampled(0.0, 1.0)[1])
+    here = sampled(1.0, ratio)
+    by_rate, by_value = bumps(*here[0], *here[1])
+    # rates of up to 1e5 rounded to 1e-16, six times, and carried over by the fourth power of the ratio
+    scale = max(map(abs, (*here[0], *here[1], 600.0)))
+    assert expected_bump(before, 1.0, by_rate, ratio) == pytest.approx(by_value, abs=60 * 4e-16 * 100 * scale)
+
+
+@pytest.mark.parametrize("before", [0.0, -1.0, 0.2])
+def test_unlike_steps_let_nothing_be_expected(before):
+    assert expected_bump(5.0, before, 7.0, 1.0) == 0.0
+
+
+@pytest.mark.parametrize("step", [1e-2, 3e-3, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10])
 def test_close_samples_bring_no_noise(step):
-    # a motion of 1 m, sampled ever closer: without leaving out noise, 60 * 1e-16 / step^2 would appear
+    # a motion of 1 m, sampled ever closer: with all its noise, 0.096 * 60 * 1e-16 / step^2 would appear
     def sample(t):
         return np.sin(t), step * np.cos(t), -step * step * np.sin(t)
 
-    cubic = joined(*sample(1.0), *sample(1.0 + step))
-    _value, second = joined_value(np.sin(1.0), step * np.cos(1.0), *cubic, 0.5)
-    # worst where the bump of the value is just kept: that is at steps of (60 * 1e-16)^(1/5) = 1e-3
-    assert second / step**2 == pytest.approx(-np.sin(1.0 + 0.5 * step), abs=1e-6)
+    def curve(start, before):
+        one, other = sample(start), sample(start + step)
+        by_rate, by_value = bumps(*one, *other)
+        sizes = [abs(a) + abs(b) for a, b in zip(one, other, strict=True)]
+        noise = [sample_noise(size, rate, start / step) for size, rate in itertools.pairwise(sizes)]
+        rate_noise, value_noise = bump_noise(*noise)
+        by_rate = above_noise(by_rate, 0.0, rate_noise)
+        expected = 0.0 if before is None else expected_bump(before, step, by_rate, step)
+        return by_rate, bent(one[2], other[2], by_rate, above_noise(by_value, expected, value_noise))
+
+    at = 1.0 + step  # the time as it is rounded
+    before, _ = curve(1.0, None)
+    shares = np.linspace(0.0, 1.0, 33)
+    exact = -np.sin(at + shares * step)
+    for known, bound in ((None, 1e-9), (before, 1e-10)):
+        _, (a0, a1, a2, a3) = curve(at, known)
+        second = (a0 + shares * (a1 + shares * (a2 + shares * a3))) / step**2
+        # worst where the bump of the value goes under, at a step of (720 * 1e-15)^(1/5) = 4e-3: without it
+        # 0.008 h^3 are left, and with what is expected in its place 0.004 h^4. The rate: 1e-15 / h
+        # down to (12 * 1e-15)^(1/3) = 2e-5, and h^2 / 8 from there
+        assert np.max(np.abs(second - exact)) < bound
 
 
 @given(st.tuples(*[coefficient] * 4))

@@ -12,10 +12,18 @@ from ..physics.belt import (
     margin,
     speed_limit,
 )
-from ..physics.motion import joined, joined_value
-from ..physics.shaft import carried
+from ..physics.motion import (
+    above_noise,
+    bent,
+    bump_noise,
+    bumps,
+    expected_bump,
+    joined_value,
+    sample_noise,
+)
+from ..physics.shaft import carried, too_far
 from ..variables import Problem, input_, output, parameter, state
-from .shaft_driven import ShaftDriven
+from .shaft_driven import TOO_FAR, ShaftDriven
 
 # Time [s] and shaft angle [rad] below which two samples are one: their squares would underflow
 SHORTEST = 1e-15
@@ -35,6 +43,7 @@ class BeltMonitor(ShaftDriven):
             "guide_clearance = {guide_clearance}: from 1 mm the belt is to be replaced or the loom slowed",
             warning=True,
         ),
+        TOO_FAR,
     )
 
     bending_stiffness: float = parameter(
@@ -56,9 +65,16 @@ class BeltMonitor(ShaftDriven):
     prescribed_length_factor: float = parameter(
         "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
     )
-    travel: float = input_("m", 0.9667, "Travel of the rapier head", rate="velocity")
-    velocity: float = input_("m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration")
-    acceleration: float = input_("m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0)
+    travel: float = input_(
+        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
+    )
+    velocity: float = input_(
+        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
+        minimum=-1e9, maximum=1e9,
+    )  # fmt: skip
+    acceleration: float = input_(
+        "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
+    )
     yarn_tension: float = input_(
         "N", 0.0, "Weft tension, which presses the belt", display="cN", minimum=-1e6, maximum=1e6
     )
@@ -112,6 +128,10 @@ class BeltMonitor(ShaftDriven):
     sampled_slope: float = state("m", "Travel by shaft angle at the last sample, first derivative")
     sampled_bend: float = state("m", "Travel by shaft angle at the last sample, second derivative")
     sampled_turning: bool = state("1", "Whether the shaft turned at the last sample", start=False)
+    bump_by_time: float = state("m", "Bump of the rate by time over the last step")
+    bump_time: float = state("s", "Duration of the last step, if it was joined")
+    bump_by_angle: float = state("m", "Bump of the rate by shaft angle over the last step")
+    bump_angle: float = state("rad", "Shaft angle of the last step, if it was joined")
     joined_angle: float = state("rad", "Shaft angle of the present sample")
     joined_slope: float = state("m", "First derivative by shaft angle at the present sample")
     joined_bend: float = state("m", "Second derivative by shaft angle at the present sample")
@@ -125,8 +145,12 @@ class BeltMonitor(ShaftDriven):
         self.buckled = False
         self.acceleration_rate = 0.0
         self.bend_rate = 0.0
+        self.bump_time = 0.0
+        self.bump_angle = 0.0
         self.use_clearance()
         self.take_sample(time, 0.0)
+        if too_far(self.joined_angle):
+            return 2
         self.remember(time)
         self.judge(0.0)
         return self.show(0.0)
@@ -136,6 +160,8 @@ class BeltMonitor(ShaftDriven):
         self.use_clearance()
         at = time + step_size if self.inputs_at_step_end else time
         self.take_sample(time, step_size if self.inputs_at_step_end else 0.0)
+        if too_far(self.joined_angle):
+            return 2
         duration = at - self.sampled_time
         self.judge(duration)
         if duration > SHORTEST:
@@ -190,23 +216,45 @@ class BeltMonitor(ShaftDriven):
             return speed_limit(free_length, second, factor, self.bending_stiffness, self.head_mass, tension)
         return margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
 
+    def second_between(self, limit: bool, step: float) -> tuple[float, float, float, float]:
+        """Second derivative of the travel on the way from the last sample to this one, as from `joined`.
+
+        Where the samples come so close that the bump of the value drowns in their rounding, it is taken
+        from how the bump of the rate has changed since the step before.
+        """
+        rate = step * (self.sampled_slope if limit else self.sampled_velocity)
+        end_rate = step * (self.joined_slope if limit else self.velocity)
+        second = step * step * (self.sampled_bend if limit else self.sampled_acceleration)
+        end_second = step * step * (self.joined_bend if limit else self.acceleration)
+        by_rate, by_value = bumps(self.sampled_travel, rate, second, self.travel, end_rate, end_second)
+        place = (self.joined_angle if limit else self.sampled_time) / step
+        rates = fabs(rate) + fabs(end_rate)
+        rate_noise, value_noise = bump_noise(
+            sample_noise(fabs(self.sampled_travel) + fabs(self.travel), rates, place),
+            sample_noise(rates, fabs(second) + fabs(end_second), place),
+        )
+        by_rate = above_noise(by_rate, 0.0, rate_noise)
+        if limit:
+            expected = expected_bump(self.bump_by_angle, self.bump_angle, by_rate, step)
+            self.bump_by_angle = by_rate
+            self.bump_angle = step
+        else:
+            expected = expected_bump(self.bump_by_time, self.bump_time, by_rate, step)
+            self.bump_by_time = by_rate
+            self.bump_time = step
+        by_value = above_noise(by_value, expected, value_noise)
+        return bent(second, end_second, by_rate, by_value)
+
     def lowest_between(self, limit: bool, lowest: float, duration: float) -> float:
         """Lowest speed limit or margin on the way from the last sample to this one, if below `lowest`.
 
-        Five values find the neighbourhood, golden sections the place: the value at a minimum is then
-        exact to rounding. What is farther above `lowest` than the five differ is not searched.
+        The way is known by shaft angle for the limit, by time for the margin. Five values find the
+        neighbourhood, golden sections the place: the value at a minimum is then exact to rounding. What is
+        farther above `lowest` than the five differ is not searched.
         """
-        # by shaft angle for the limit, by time for the margin
         step = self.joined_angle - self.sampled_angle if limit else duration
-        rate = self.sampled_slope if limit else self.sampled_velocity
-        second = self.sampled_bend if limit else self.sampled_acceleration
-        end_rate = self.joined_slope if limit else self.velocity
-        end_second = self.joined_bend if limit else self.acceleration
-        rate = rate * step
-        a0, a1, a2, a3 = joined(
-            self.sampled_travel, rate, second * step * step,
-            self.travel, end_rate * step, end_second * step * step,
-        )  # fmt: skip
+        rate = step * (self.sampled_slope if limit else self.sampled_velocity)
+        a0, a1, a2, a3 = self.second_between(limit, step)
         nearest = 1e300
         farthest = -1e300
         place = 0
@@ -261,12 +309,17 @@ class BeltMonitor(ShaftDriven):
                 self.lowest_speed_limit = limit
         turn = fabs(self.joined_angle - self.sampled_angle)
         outside = self.travel > guide or self.sampled_travel > guide
-        if duration > SHORTEST and outside and turn <= 0.25 * pi:
-            if force > 0.0 or self.head_mass * self.sampled_acceleration + self.sampled_force > 0.0:
-                self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
-            pushed = self.joined_bend > 0.0 or self.sampled_bend > 0.0
-            if pushed and self.joined_turning and self.sampled_turning and turn > SHORTEST:
-                self.lowest_speed_limit = self.lowest_between(True, self.lowest_speed_limit, duration)
+        near = duration > SHORTEST and outside and turn <= 0.25 * pi
+        sampled_force = self.head_mass * self.sampled_acceleration + self.sampled_force
+        if near and (force > 0.0 or sampled_force > 0.0):
+            self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
+        elif duration > SHORTEST:
+            self.bump_time = 0.0
+        pushed = self.joined_bend > 0.0 or self.sampled_bend > 0.0
+        if near and pushed and self.joined_turning and self.sampled_turning and turn > SHORTEST:
+            self.lowest_speed_limit = self.lowest_between(True, self.lowest_speed_limit, duration)
+        elif duration > SHORTEST:
+            self.bump_angle = 0.0
         if self.lowest_margin < 0.0:
             self.buckled = True
 

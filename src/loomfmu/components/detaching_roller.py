@@ -12,8 +12,9 @@ from ..physics.detaching_roller import (
     drafting_force,
     top_roller_torque,
 )
+from ..physics.shaft import too_far
 from ..variables import Problem, input_, output, parameter
-from .shaft_driven import ShaftDriven
+from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
 
@@ -33,6 +34,7 @@ class DetachingRoller(ShaftDriven):
             " model is negative there",
             warning=True,
         ),
+        TOO_FAR,
     )
 
     use_table: bool = parameter(
@@ -60,7 +62,7 @@ class DetachingRoller(ShaftDriven):
     units: int = parameter("1", 8, "Units of the machine side by side", minimum=1, maximum=1000)
     acceleration: float = input_(
         "rad/s2", 8699.498672957831, "Acceleration of the rollers, used while use_table is false",
-        nominal=10000.0,
+        minimum=-1e12, maximum=1e12, nominal=10000.0,
     )  # fmt: skip
     fibre_share: float = input_(
         "1", 1.0, "Fibres in the nip over the most of them, used while use_table is false",
@@ -92,6 +94,8 @@ class DetachingRoller(ShaftDriven):
     def step(self, time: float, step_size: float) -> int:
         """Torques at the end of the step: a function of the shaft, or of the inputs, alone."""
         theta, speed, shaft_acceleration = self.shaft(time, step_size)
+        if too_far(theta):
+            return 2
         self.division = division_of(theta)
         drafting = self.division > DRAFT_START and self.division <= DRAFT_END
         if self.use_table:

@@ -14,6 +14,7 @@ from ..physics.rotor_mechanisms import (
     slotted_levers_place,
 )
 from ..physics.rotor_table import TABLE
+from ..physics.shaft import too_far
 from ..physics.shed_cam import SPLINE_CAM, cam_phase
 from ..variables import output
 from .rotor_laws import RotorLaws
@@ -75,6 +76,8 @@ class DobbyDrive(RotorLaws):
     def step(self, time: float, step_size: float) -> int:
         """Turn the rotor: a function of the shaft alone, exact for every step."""
         theta, speed, acceleration = self.shaft(time, step_size)
+        if too_far(theta):
+            return 6
         self.pick = floor(theta / (2.0 * pi))
         if self.law == SPLINE_CAM:
             return self.turn_cam(theta - self.slow_point, speed, acceleration)

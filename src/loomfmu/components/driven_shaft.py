@@ -35,11 +35,21 @@ class DrivenShaft(Component):
         "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
     )
     torque_1: float = input_(
-        "N.m", 0.0, "Torque that a first mechanism asks of the shaft; positive brakes it", nominal=10.0
-    )
-    torque_2: float = input_("N.m", 0.0, "Torque that a second mechanism asks of the shaft", nominal=10.0)
-    torque_3: float = input_("N.m", 0.0, "Torque that a third mechanism asks of the shaft", nominal=10.0)
-    torque_4: float = input_("N.m", 0.0, "Torque that a fourth mechanism asks of the shaft", nominal=10.0)
+        "N.m", 0.0, "Torque that a first mechanism asks of the shaft; positive brakes it", nominal=10.0,
+        minimum=-1e12, maximum=1e12,
+    )  # fmt: skip
+    torque_2: float = input_(
+        "N.m", 0.0, "Torque that a second mechanism asks of the shaft", nominal=10.0,
+        minimum=-1e12, maximum=1e12,
+    )  # fmt: skip
+    torque_3: float = input_(
+        "N.m", 0.0, "Torque that a third mechanism asks of the shaft", nominal=10.0,
+        minimum=-1e12, maximum=1e12,
+    )  # fmt: skip
+    torque_4: float = input_(
+        "N.m", 0.0, "Torque that a fourth mechanism asks of the shaft", nominal=10.0,
+        minimum=-1e12, maximum=1e12,
+    )  # fmt: skip
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
     )

@@ -14,8 +14,14 @@ from ..physics.damper import (
     propagate,
     stop_damping_ratio,
 )
-from ..physics.motion import joined, largest_between
+from ..physics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
 from ..variables import Component, Problem, input_, output, parameter, state
+
+# Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
+SHORTEST = 1e-15
+# Pieces of motion in one step: some 10 us each in Python
+MOST_PIECES = 100000
+MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
 
 @dataclass(slots=True)
@@ -29,7 +35,7 @@ class HealdDamper(Component):
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the carrier changes its contact or its piece of motion more than a million times in one step"
+            "the carrier changes its contact or its piece of motion more than 100,000 times in one step"
             " (spring_stiffness = {spring_stiffness}, damping_ratio = {damping_ratio}, stop_stiffness ="
             " {stop_stiffness}, carrier_mass = {carrier_mass}); take a smaller step"
         ),
@@ -70,10 +76,18 @@ class HealdDamper(Component):
     inputs_at_step_end: bool = parameter(
         "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
     )
-    lift: float = input_("m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity")
-    velocity: float = input_("m/s", 0.0, "Velocity of the frame", rate="acceleration")
-    acceleration: float = input_("m/s2", 10.0, "Acceleration of the frame", nominal=10.0)
-    warp_force: float = input_("N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0)
+    lift: float = input_(
+        "m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
+    )
+    velocity: float = input_(
+        "m/s", 0.0, "Velocity of the frame", rate="acceleration", minimum=-1e9, maximum=1e9
+    )
+    acceleration: float = input_(
+        "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
+    )
+    warp_force: float = input_(
+        "N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0, minimum=-1e12, maximum=1e12
+    )
     displacement: float = output(
         "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
     )
@@ -98,6 +112,7 @@ class HealdDamper(Component):
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_force: float = state("N", "Warp load at the last sample")
+    largest_lift: float = state("m", "Largest size of the lift so far, by which its rounding is judged")
     peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far")
     peak_frame: float = state("m/s2", "Largest acceleration of the frame so far")
 
@@ -123,6 +138,7 @@ class HealdDamper(Component):
         self.peak_load = 0.0
         self.peak_carrier = 0.0
         self.peak_frame = fabs(self.acceleration)
+        self.largest_lift = fabs(self.lift)
         self.remember()
         self.show(self.acceleration, self.warp_force)
         return 0
@@ -144,25 +160,44 @@ class HealdDamper(Component):
         a3 = 0.0
         load = self.warp_force
         load_rate = 0.0
-        if self.inputs_at_step_end:
-            h = step_size
-            a0, a1, a2, a3 = joined(
-                self.sampled_lift, h * self.sampled_velocity, h * h * self.sampled_acceleration,
-                self.lift, h * self.velocity, h * h * self.acceleration,
-            )  # fmt: skip
-            a0 = a0 / (h * h)
-            a1 = a1 / (h * h)
-            a2 = a2 / (h * h)
-            a3 = a3 / (h * h)
+        if self.inputs_at_step_end and step_size > SHORTEST:
+            a0, a1, a2, a3 = self.frame_between(time, step_size)
             load = self.sampled_force
             load_rate = (self.warp_force - self.sampled_force) / step_size
-        frame = largest_between(a0, a1, a2, a3)
-        if frame > self.peak_frame:
-            self.peak_frame = frame
+        elif fabs(self.acceleration) > self.peak_frame:
+            self.peak_frame = fabs(self.acceleration)
         problem = self.move(step_size, a0, a1, a2, a3, load, load_rate)
         self.remember()
         self.show(self.acceleration, self.warp_force)
         return problem
+
+    def frame_between(self, time: float, h: float) -> tuple[float, float, float, float]:
+        """Acceleration of the frame from the last sample to this one, a cubic in the time since then.
+
+        What moves the carrier is the whole quintic: integrated, it meets the samples, noise and all. The
+        frame's largest acceleration is read off the curve, and there the noise is left out.
+        """
+        rate = h * self.sampled_velocity
+        end_rate = h * self.velocity
+        second = h * h * self.sampled_acceleration
+        end_second = h * h * self.acceleration
+        by_rate, by_value = bumps(self.sampled_lift, rate, second, self.lift, end_rate, end_second)
+        if fabs(self.lift) > self.largest_lift:
+            self.largest_lift = fabs(self.lift)
+        rates = fabs(rate) + fabs(end_rate)
+        rate_noise, value_noise = bump_noise(
+            sample_noise(2.0 * self.largest_lift, rates, time / h),
+            sample_noise(rates, fabs(second) + fabs(end_second), time / h),
+        )
+        a0, a1, a2, a3 = bent(
+            second, end_second, above_noise(by_rate, 0.0, rate_noise), above_noise(by_value, 0.0, value_noise)
+        )
+        frame = largest_between(a0, a1, a2, a3) / (h * h)
+        if frame > self.peak_frame:
+            self.peak_frame = frame
+        a0, a1, a2, a3 = bent(second, end_second, by_rate, by_value)
+        square = h * h
+        return a0 / square, a1 / (square * h), a2 / (square * square), a3 / (square * square * h)
 
     def on_stop(self) -> float:
         """1 or -1 while the carrier presses on the upper or lower stop, else 0."""
@@ -177,9 +212,12 @@ class HealdDamper(Component):
         mass = self.carrier_mass
         elapsed = 0.0
         pieces = 0
+        own = sqrt(4.0 * self.spring_stiffness / mass) + self.damping / mass
+        if own * duration > 0.5 * MOST_PIECES:
+            return 1  # it would need more even if it never met a stop
         while elapsed < duration:
             pieces = pieces + 1
-            if pieces > 1000000:
+            if pieces > MOST_PIECES:
                 return 1
             side = self.on_stop()
             stiffness = (4.0 * self.spring_stiffness + side * side * self.stop_stiffness) / mass
@@ -190,14 +228,13 @@ class HealdDamper(Component):
             own = sqrt(stiffness) + damping
             if own * piece > 0.5:
                 piece = 0.5 / own
-            u = elapsed / duration
             weight = load + load_rate * elapsed
             changed = self.move_piece(
                 stiffness, damping, preload,
-                preload + weight / mass - (a0 + u * (a1 + u * (a2 + u * a3))),
-                load_rate / mass - (a1 + u * (2.0 * a2 + u * 3.0 * a3)) / duration,
-                -(a2 + 3.0 * a3 * u) / (duration * duration),
-                -a3 / (duration * duration * duration),
+                preload + weight / mass - (a0 + elapsed * (a1 + elapsed * (a2 + elapsed * a3))),
+                load_rate / mass - (a1 + elapsed * (2.0 * a2 + elapsed * 3.0 * a3)),
+                -(a2 + 3.0 * a3 * elapsed),
+                -a3,
                 weight, load_rate, piece,
             )  # fmt: skip
             if changed >= rest:
@@ -242,7 +279,7 @@ class HealdDamper(Component):
             self.contact = next_contact(
                 before, z, v, self.free_travel, self.stop_stiffness, self.stop_damping
             )
-            if before == 0:
+            if before == 0 and self.stop_contacts < MOST_CONTACTS:
                 self.stop_contacts = self.stop_contacts + 1
         return taken
 
@@ -296,5 +333,5 @@ class HealdDamper(Component):
         self.note_load(self.transmitted_force, load)
         self.carrier_acceleration = (load - self.transmitted_force) / self.carrier_mass
         self.acceleration_ratio = 0.0
-        if self.peak_frame > 0.0:
+        if self.peak_frame > 1e-100:  # the quotient is finite
             self.acceleration_ratio = self.peak_carrier / self.peak_frame

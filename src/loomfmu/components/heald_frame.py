@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 from math import pi
+from typing import ClassVar
 
 from ..physics.heald import lift_fraction, peg, slow_points_passed
-from ..physics.shaft import carried
-from ..variables import Component, input_, output, parameter
+from ..physics.shaft import carried, too_far
+from ..variables import Component, Problem, input_, output, parameter
 
 
 @dataclass(slots=True)
@@ -15,6 +16,13 @@ class HealdFrame(Component):
     At the slow point of pick k the frame rests where peg k wants it: raised for 1, lowered for 0. Then
     it changes if peg k + 1 differs, and holds if not. The pattern repeats after `pattern_length` picks.
     """
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the rotor is more than 2e9 rad from its zero, where its angle is known to no better than"
+            " 2e-7 rad; start nearer to time and angle 0"
+        ),
+    )
 
     stroke: float = parameter(
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
@@ -41,20 +49,26 @@ class HealdFrame(Component):
     )
     rotor_angle: float = input_(
         "rad", 3.141592653589793, "Rotor angle from the slow point of pick 0, not wrapped", display="deg",
-        unbounded=True, nominal=6.0, rate="rotor_velocity",
+        unbounded=True, nominal=6.0, rate="rotor_velocity", minimum=-1e9, maximum=1e9,
     )  # fmt: skip
     rotor_velocity: float = input_(
         "rad/s", 41.88790204786391, "Rotor velocity", display="rev/min", nominal=50.0,
-        rate="rotor_acceleration",
+        rate="rotor_acceleration", minimum=-1e9, maximum=1e9,
     )  # fmt: skip
-    rotor_acceleration: float = input_("rad/s2", 0.0, "Rotor acceleration", nominal=1000.0)
+    rotor_acceleration: float = input_(
+        "rad/s2", 0.0, "Rotor acceleration", nominal=1000.0, minimum=-1e15, maximum=1e15
+    )
     lift_fraction: float = input_(
-        "1", 0.5, "Lift of a frame that changes at every pick, used if follow_lift is true", rate="lift_rate"
-    )
+        "1", 0.5, "Lift of a frame that changes at every pick, used if follow_lift is true",
+        rate="lift_rate", minimum=-1e3, maximum=1e3,
+    )  # fmt: skip
     lift_rate: float = input_(
-        "1/s", 10.471975511965976, "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration"
+        "1/s", 10.471975511965976, "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration",
+        minimum=-1e9, maximum=1e9,
+    )  # fmt: skip
+    lift_acceleration: float = input_(
+        "1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
-    lift_acceleration: float = input_("1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0)
     lift: float = output(
         "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity"
     )
@@ -87,14 +101,20 @@ class HealdFrame(Component):
             word = self.pattern_2
         return peg(word, index % 16)
 
-    def followed(self, pick: int, step_size: float) -> tuple[float, float, float]:
-        """Share of a change that the dobby's lift makes, which rises in even turns and falls in odd ones."""
+    def by_crank(self, turned: float, velocity: float, falling: bool) -> tuple[float, float, float]:
+        """Share of the stroke above the lower end, by the crank: a frame falls as it rose, the other way."""
+        if falling:
+            return lift_fraction(2.0 * pi - turned, -velocity, -self.rotor_acceleration)
+        return lift_fraction(turned, velocity, self.rotor_acceleration)
+
+    def by_cam(self, pick: int, step_size: float, falling: bool) -> tuple[float, float, float]:
+        """Share of the stroke above the lower end, by the dobby's lift, which rises in even turns."""
         share = self.lift_fraction
         rate = self.lift_rate
         if not self.inputs_at_step_end:
             share = carried(share, rate, self.lift_acceleration, step_size)
             rate = rate + self.lift_acceleration * step_size
-        if pick % 2 == 0:
+        if (pick % 2 == 0) != falling:
             return share, rate, self.lift_acceleration
         return 1.0 - share, -rate, -self.lift_acceleration
 
@@ -109,15 +129,21 @@ class HealdFrame(Component):
         if not self.inputs_at_step_end:
             angle = carried(angle, velocity, self.rotor_acceleration, step_size)
             velocity = velocity + self.rotor_acceleration * step_size
+        if too_far(angle):
+            return 1
         pick = slow_points_passed(angle)
         before = self.requested(pick)
         change = self.requested(pick + 1) - before
-        share, rate, second = lift_fraction(angle - 2.0 * pi * pick, velocity, self.rotor_acceleration)
-        if self.follow_lift:
-            share, rate, second = self.followed(pick, step_size)
-        self.lift = self.stroke * (before + change * share)
-        self.velocity = self.stroke * change * rate
-        self.acceleration = self.stroke * change * second
+        share = 1.0 * before
+        rate = 0.0
+        second = 0.0
+        if change != 0 and self.follow_lift:
+            share, rate, second = self.by_cam(pick, step_size, change < 0)
+        elif change != 0:
+            share, rate, second = self.by_crank(angle - 2.0 * pi * pick, velocity, change < 0)
+        self.lift = self.stroke * share
+        self.velocity = self.stroke * rate
+        self.acceleration = self.stroke * second
         self.warp_height = self.warp_ratio * (self.lift - 0.5 * self.stroke)
         self.inertia_force = self.frame_mass * self.acceleration
         self.moving = change != 0

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import fabs, floor, pi
+from typing import ClassVar
 
 from ..physics.pattern_lock import (
     available_time,
@@ -13,8 +14,9 @@ from ..physics.pattern_lock import (
     release_time,
     torque_speed_limit,
 )
-from ..variables import output, parameter, state
-from .shaft_driven import ShaftDriven
+from ..physics.shaft import too_far
+from ..variables import Problem, output, parameter, state
+from .shaft_driven import TOO_FAR, ShaftDriven
 
 
 @dataclass(slots=True)
@@ -24,6 +26,8 @@ class PatternLock(ShaftDriven):
     In even picks the pawl turns from one disc to the other, in odd picks back, a pick lasting from one
     start of the engagement to the next.
     """
+
+    problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
 
     pawl_mass: float = parameter(
         "kg", 0.170, "Mass of the pawl", display="g", minimum=1e-6, maximum=100.0, nominal=0.1
@@ -127,6 +131,8 @@ class PatternLock(ShaftDriven):
     def step(self, time: float, step_size: float) -> int:
         """Turn the pawl: a function of the shaft alone, exact for every step."""
         theta, speed, acceleration = self.shaft(time, step_size)
+        if too_far(theta):
+            return 1
         x = theta - self.engagement_start
         turns = floor(x / (2.0 * pi))
         angle, first, second = engagement(x - 2.0 * pi * turns, self.engagement_angle, self.whole_turn)

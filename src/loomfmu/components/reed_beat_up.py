@@ -13,8 +13,9 @@ from ..physics.reed import (
     smallest_transmission_angle,
     transmission_angle,
 )
+from ..physics.shaft import too_far
 from ..variables import Problem, output, parameter, state
-from .shaft_driven import ShaftDriven
+from .shaft_driven import TOO_FAR, ShaftDriven
 
 
 @dataclass(slots=True)
@@ -37,6 +38,7 @@ class ReedBeatUp(ShaftDriven):
             " margin {clearance}"
         ),
         Problem("assembly = {assembly} or crank_direction = {crank_direction} is outside {{-1, 1}}"),
+        TOO_FAR,
     )
 
     crank_length: float = parameter(
@@ -187,6 +189,8 @@ class ReedBeatUp(ShaftDriven):
     def step(self, time: float, step_size: float) -> int:
         """Move the reed: a function of the shaft alone, exact for every step."""
         theta, speed, acceleration = self.shaft(time, step_size)
+        if too_far(theta):
+            return 5
         crank = self.beat_up_crank + self.crank_direction * (theta - self.beat_up_angle)
         angle, first, second = self.rocker(crank, 1.0 * self.crank_direction)
         self.position, by_theta, bend, self.pressure_angle = self.reed(angle + self.arm_angle, first, second)

@@ -17,6 +17,7 @@ from ..physics.shed_cam import SPLINE_CAM, not_a_knot
 from ..physics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
 from ..variables import Problem
 from .law_parameters import LawParameters
+from .shaft_driven import TOO_FAR
 
 
 @dataclass(slots=True)
@@ -44,6 +45,7 @@ class RotorLaws(LawParameters):
             "the cam's spline starts at cam_height_1 = {cam_height_1}, ends at cam_height_6 = {cam_height_6}"
             " and rises by {cam_span}; both ends must be alike, and it must rise"
         ),
+        TOO_FAR,
     )
 
     def check(self) -> int:

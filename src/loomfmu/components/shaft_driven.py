@@ -3,7 +3,12 @@
 from dataclasses import dataclass
 
 from ..physics.shaft import carried
-from ..variables import Component, input_, parameter
+from ..variables import Component, Problem, input_, parameter
+
+TOO_FAR = Problem(
+    "the shaft is more than 2e9 rad from its zero, where its angle is known to no better than 2e-7 rad; start"
+    " nearer to time and angle 0"
+)
 
 
 @dataclass(slots=True)
@@ -26,13 +31,15 @@ class ShaftDriven(Component):
     )
     shaft_angle: float = input_(
         "rad", 0.0, "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0,
-        rate="shaft_velocity",
+        rate="shaft_velocity", minimum=-1e9, maximum=1e9,
     )  # fmt: skip
     shaft_velocity: float = input_(
         "rad/s", 41.88790204786391, "Shaft velocity", display="rev/min", nominal=50.0,
-        rate="shaft_acceleration",
+        rate="shaft_acceleration", minimum=-1e6, maximum=1e6,
     )  # fmt: skip
-    shaft_acceleration: float = input_("rad/s2", 0.0, "Shaft acceleration", nominal=100.0)
+    shaft_acceleration: float = input_(
+        "rad/s2", 0.0, "Shaft acceleration", nominal=100.0, minimum=-1e15, maximum=1e15
+    )
 
     def shaft(self, time: float, step_size: float) -> tuple[float, float, float]:
         """Angle, velocity and acceleration of the shaft at the end of the step."""

@@ -56,9 +56,15 @@ class WarpTension(Component):
     inputs_at_step_end: bool = parameter(
         "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
     )
-    lift: float = input_("m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity")
-    velocity: float = input_("m/s", 0.0, "Velocity of the frame", rate="acceleration")
-    acceleration: float = input_("m/s2", 0.0, "Acceleration of the frame", nominal=10.0)
+    lift: float = input_(
+        "m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
+    )
+    velocity: float = input_(
+        "m/s", 0.0, "Velocity of the frame", rate="acceleration", minimum=-1e9, maximum=1e9
+    )
+    acceleration: float = input_(
+        "m/s2", 0.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
+    )
     extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
     tension: float = output("N", "Tension of a thread", display="cN")
     highest_tension: float = output("N", "Highest tension so far, on the continuous curve", display="cN")

@@ -11,8 +11,9 @@ from ..physics.linkage import (
     weft_motion,
     wrapped,
 )
+from ..physics.shaft import too_far
 from ..variables import Problem, output, parameter, state
-from .shaft_driven import ShaftDriven
+from .shaft_driven import TOO_FAR, ShaftDriven
 
 
 @dataclass(slots=True)
@@ -31,6 +32,7 @@ class WeftInsertion(ShaftDriven):
             " ({pivot_x}, {pivot_y}); its closure is {closure} and may not be negative"
         ),
         Problem("assembly = {assembly} is outside {{-1, 1}}"),
+        TOO_FAR,
     )
 
     rocker_angle: float = parameter(
@@ -128,6 +130,8 @@ class WeftInsertion(ShaftDriven):
     def step(self, time: float, step_size: float) -> int:
         """Move the head: a function of the shaft alone, exact for every step."""
         theta, speed, acceleration = self.shaft(time, step_size)
+        if too_far(theta):
+            return 4
         angle, first, second = self.sector(theta)
         first = self.travel_per_angle * first
         second = self.travel_per_angle * second

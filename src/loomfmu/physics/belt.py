@@ -158,11 +158,13 @@ def speed_limit(
     """
     if free_length <= 0.0 or slope <= 0.0:
         return NO_LIMIT
+    reduced = factor * free_length
+    # not by the critical force, which knows no end towards the guide
+    if pi * pi * stiffness >= (tension + NO_LIMIT * NO_LIMIT * mass * slope) * reduced * reduced:
+        return NO_LIMIT
     spare = critical_force(free_length, factor, stiffness) - tension
     if spare <= 0.0:
         return 0.0
-    if spare >= NO_LIMIT * NO_LIMIT * mass * slope:
-        return NO_LIMIT
     return sqrt(spare / (mass * slope))
 
 

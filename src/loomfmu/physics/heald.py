@@ -9,7 +9,8 @@ from math import cos, floor, pi, sin
 def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[float, float, float]:
     """Share of the stroke of a frame that changes at every pick: `(1 - cos(S/2)) / 2`.
 
-    Half a turn of the frame's crank belongs to one turn of the rotor.
+    Half a turn of the frame's crank belongs to one turn of the rotor. The share is written `sin(S/4)^2`, so
+    that nothing cancels where the frame has hardly left its rest.
 
     Args:
         angle, velocity, acceleration: of the rotor [rad, rad/s, rad/s2]
@@ -22,8 +23,9 @@ def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[f
     """
     sine = sin(0.5 * angle)
     cosine = cos(0.5 * angle)
+    quarter = sin(0.25 * angle)
     return (
-        0.5 * (1.0 - cosine),
+        quarter * quarter,
         0.25 * sine * velocity,
         0.125 * cosine * velocity * velocity + 0.25 * sine * acceleration,
     )

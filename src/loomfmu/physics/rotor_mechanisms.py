@@ -18,7 +18,7 @@ def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, 
         G = x - atan2(e sin x, q + e cos x)
 
     the angle about the eccentric of a pin at the radius q about the shaft, both counted from the side
-    away from the eccentric.
+    away from the eccentric. With `1 + cos x = 2 cos(x/2)^2` nothing cancels where the pin comes near to it.
 
     Args:
         x: angle of the pin about its axis, from the slow point [rad]
@@ -34,11 +34,14 @@ def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, 
     sine = sin(x)
     cosine = cos(x)
     cross = radius * eccentricity
-    square = radius * radius + 2.0 * cross * cosine + eccentricity * eccentricity
-    gain = (radius - eccentricity) * (radius + eccentricity) * cross / (square * square)
+    apart = radius - eccentricity
+    half = cos(0.5 * x)
+    reach = apart + 2.0 * eccentricity * half * half
+    square = apart * apart + 4.0 * cross * half * half
+    gain = apart * (radius + eccentricity) * cross / (square * square)
     return (
-        x - atan2(eccentricity * sine, radius + eccentricity * cosine),
-        radius * (radius + eccentricity * cosine) / square,
+        x - atan2(eccentricity * sine, reach),
+        radius * reach / square,
         gain * sine,
         gain * (cosine + 4.0 * cross * sine * sine / square),
     )

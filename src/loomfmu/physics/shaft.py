@@ -1,6 +1,18 @@
 """Motion of the main shaft in closed form."""
 
-from math import cos, sin
+from math import cos, fabs, sin
+
+# Angle [rad] beyond which no mechanism is computed: it is known to 2e-7 rad there, after 3e8 revolutions
+FARTHEST = 2e9
+
+
+def too_far(angle: float) -> bool:
+    """Whether an angle [rad] is so large that its rounding counts.
+
+    >>> too_far(1e9), too_far(-3e9)
+    (False, True)
+    """
+    return fabs(angle) > FARTHEST
 
 
 def ramp(time: float, duration: float) -> tuple[float, float, float]:

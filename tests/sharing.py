@@ -1,0 +1,50 @@
+"""What all processes have in common that share the tests of one session."""
+
+import pickle
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from filelock import FileLock
+
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim import fmus
+from loomfmu.fmi import translate
+from loomfmu.fmi.native_builder import host_platform
+
+
+def shared_directory(request: pytest.FixtureRequest, factory: pytest.TempPathFactory) -> Path:
+    """The session's temporary directory: each worker of pytest-xdist has its own below it."""
+    own = factory.getbasetemp()
+    return own.parent if hasattr(request.config, "workerinput") else own
+
+
+@pytest.fixture(scope="session", autouse=True)
+def fmu_cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """One cache of built FMUs for all tests, also for the processes they start; not the user's own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LOOMFMU_CACHE", str(shared_directory(request, tmp_path_factory) / "fmu_cache"))
+        # Pyccel names the folder it writes to after it, and then its files are not found
+        patch.delenv("PYTEST_XDIST_WORKER", raising=False)
+        yield
+
+
+def native_fmus() -> dict[str, fmus.Fmu]:
+    """All native FMUs, for the machine's own platform, in the session's cache.
+
+    One process builds them, on all cores, and leaves its translations to the others. They could do it
+    as safely, but for nothing: they wait.
+    """
+    cache = fmus.cache_directory()
+    cache.mkdir(parents=True, exist_ok=True)
+    translations = cache / "translations"
+    with FileLock(cache / "native.lock"):
+        if translations.exists():
+            translate._done.update(pickle.loads(translations.read_bytes()))
+        else:
+            with ThreadPoolExecutor(max_workers=4) as pool:
+                list(pool.map(lambda name: fmus.file_of(name, "native", (host_platform(),)), COMPONENTS))
+            done = {component: translate.translate(component) for component in COMPONENTS.values()}
+            translations.write_bytes(pickle.dumps(done))
+    return {name: fmus.of_component(name, "native") for name in COMPONENTS}
