@@ -184,10 +184,22 @@ class HealdDamper(Component):
         by_rate, by_value = bumps(self.sampled_lift, rate, second, self.lift, end_rate, end_second)
         if fabs(self.lift) > self.largest_lift:
             self.largest_lift = fabs(self.lift)
-        rates = fabs(rate) + fabs(end_rate)
+        # no bump is larger than that: most steps cannot hold the largest acceleration
+        reach = fabs(second) if fabs(second) > fabs(end_second) else fabs(end_second)
+        if reach + 0.25 * fabs(by_rate) + 0.1 * fabs(by_value) > self.peak_frame * h * h:
+            self.note_frame(second, end_second, by_rate, by_value, fabs(rate) + fabs(end_rate), time / h, h)
+        a0, a1, a2, a3 = bent(second, end_second, by_rate, by_value)
+        square = h * h
+        return a0 / square, a1 / (square * h), a2 / (square * square), a3 / (square * square * h)
+
+    def note_frame(
+        self, second: float, end_second: float, by_rate: float, by_value: float, rates: float, place: float,
+        h: float,
+    ) -> None:  # fmt: skip
+        """Keep the largest acceleration of the frame, read off the curve without its noise."""
         rate_noise, value_noise = bump_noise(
-            sample_noise(2.0 * self.largest_lift, rates, time / h),
-            sample_noise(rates, fabs(second) + fabs(end_second), time / h),
+            sample_noise(2.0 * self.largest_lift, rates, place),
+            sample_noise(rates, fabs(second) + fabs(end_second), place),
         )
         a0, a1, a2, a3 = bent(
             second, end_second, above_noise(by_rate, 0.0, rate_noise), above_noise(by_value, 0.0, value_noise)
@@ -195,9 +207,6 @@ class HealdDamper(Component):
         frame = largest_between(a0, a1, a2, a3) / (h * h)
         if frame > self.peak_frame:
             self.peak_frame = frame
-        a0, a1, a2, a3 = bent(second, end_second, by_rate, by_value)
-        square = h * h
-        return a0 / square, a1 / (square * h), a2 / (square * square), a3 / (square * square * h)
 
     def on_stop(self) -> float:
         """1 or -1 while the carrier presses on the upper or lower stop, else 0."""

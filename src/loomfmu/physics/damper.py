@@ -91,33 +91,27 @@ def propagate(
     square = duration * duration
     elastic = stiffness * square
     viscous = damping * duration
-    w0 = drive * square
-    w1 = drive_1 * duration * square
-    w2 = drive_2 * square * square
-    w3 = drive_3 * duration * square * square
-    term = position
+    fourth_power = square * square
     following = rate * duration
-    total = term + following
-    slope = following
-    n = 0
-    while n < 100:
-        source = 0.0
-        if n == 0:
-            source = w0
-        elif n == 1:
-            source = w1
-        elif n == 2:
-            source = w2
-        elif n == 3:
-            source = w3
-        new = (source - viscous * (n + 1) * following - elastic * term) / ((n + 1) * (n + 2))
+    # the terms that the drive feeds
+    second = (drive * square - viscous * following - elastic * position) / 2.0
+    third = (drive_1 * duration * square - 2.0 * viscous * second - elastic * following) / 6.0
+    fourth = (drive_2 * fourth_power - 3.0 * viscous * third - elastic * second) / 12.0
+    fifth = (drive_3 * duration * fourth_power - 4.0 * viscous * fourth - elastic * third) / 20.0
+    total = position + following + second + third + fourth + fifth
+    slope = following + 2.0 * second + 3.0 * third + 4.0 * fourth + 5.0 * fifth
+    term = fourth
+    following = fifth
+    n = 6
+    while n < 103:
+        if n * (fabs(term) + fabs(following)) <= 1e-18 * (fabs(total) + fabs(slope)):
+            break
+        new = -(viscous * (n - 1) * following + elastic * term) / ((n - 1) * n)
         total = total + new
-        slope = slope + (n + 2) * new
+        slope = slope + n * new
         term = following
         following = new
         n = n + 1
-        if n > 3 and (n + 2) * (fabs(term) + fabs(following)) <= 1e-18 * (fabs(total) + fabs(slope)):
-            break
     return total, slope / duration
 
 
