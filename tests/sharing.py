@@ -25,8 +25,6 @@ def fmu_cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
     """One cache of built FMUs for all tests, also for the processes they start; not the user's own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("LOOMFMU_CACHE", str(shared_directory(request, tmp_path_factory) / "fmu_cache"))
-        # Pyccel names the folder it writes to after it, and then its files are not found
-        patch.delenv("PYTEST_XDIST_WORKER", raising=False)
         yield
 
 

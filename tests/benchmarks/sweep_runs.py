@@ -16,7 +16,7 @@ from texts import Figures, Find, parts, shown, whole
 
 NAME = "sweeps"
 STEPS = 180  # in the one revolution of a row
-SIZES = {"full": (512, 5), "quick": (64, 2), "tiny": (16, 1)}  # rows, repeats
+SIZES = {"full": (5000, 3), "quick": (64, 2), "tiny": (16, 1)}  # rows, repeats
 FEW = 8  # rows of the sweep that tells the set-up
 SWEEP = """
 scene = "{scene}"

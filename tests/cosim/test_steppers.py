@@ -75,6 +75,20 @@ def test_the_size_of_a_block_changes_nothing(block: int) -> None:
     equal([tuple(whole)], [tuple(parts)])
 
 
+def test_very_many_blocks_are_handed_over(tmp_path: Path) -> None:
+    scene = scenes.parse("steps_per_revolution = 3000", "long")
+    with Master(scene) as master:
+        master.initialize()
+        rows = 0
+
+        def count(times: np.ndarray, *_: np.ndarray) -> None:
+            nonlocal rows
+            rows += len(times)
+
+        master.run(2, count, lambda _step: None)  # what a run of millions of steps has in blocks of thousands
+    assert rows == 3001
+
+
 def test_chosen_points_are_stepped_by_both_alike() -> None:
     scene = small(90, shaft__ramp_duration=0.05, rest=DRIVEN)
     random = np.random.default_rng(1)

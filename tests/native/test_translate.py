@@ -235,3 +235,8 @@ def test_messages_are_safe_for_hosts_that_take_them_for_formats(gcc, tmp_path, m
     # a locale with a decimal comma changes nothing either: the host has set none, C's own is used
     run = subprocess.run([tmp_path / "host"], capture_output=True, text=True, env=os.environ, check=True)
     assert run.stdout == "share = 150 % is outside [0, 100] %\n"
+
+
+def test_it_translates_in_a_worker_of_pytest_xdist(tools, monkeypatch):
+    monkeypatch.setenv("PYTEST_XDIST_WORKER", "gw0")
+    assert translating._translated(COMPONENTS["MainShaft"]) == translate(COMPONENTS["MainShaft"])

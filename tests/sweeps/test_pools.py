@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from loomfmu import LoomfmuError
-from loomfmu.sweeps.pools import Died, Here, Pool, Processes, Task
+from loomfmu.sweeps.pools import Died, Here, Pool, Processes, Task, _undisturbed
 
 
 @pytest.fixture
@@ -122,3 +122,11 @@ def test_the_end_of_a_worker_at_its_start_is_no_fault_of_a_task(monkeypatch: pyt
 
 def test_a_pool_of_one_is_this_process() -> None:
     assert all_done(Here(), [Task(0, odd_tasks.pid, (0,))]) == {0: os.getpid()}
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows cannot keep a signal waiting")
+def test_ctrl_c_while_a_worker_is_started_is_heard_after_it() -> None:
+    with pytest.raises(KeyboardInterrupt), _undisturbed():
+        os.kill(os.getpid(), signal.SIGINT)
+        heard = False
+    assert heard is False, "the start itself was not disturbed"

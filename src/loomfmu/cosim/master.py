@@ -247,7 +247,8 @@ class Master:
                 span = self.grid.span(step, min(rows - filled, self.grid.steps - step, part))
                 before = perf_counter()
                 taken, failure = self._advance(span, reals[filled:], integers[filled:])
-                part = max(1, int(part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))))
+                grown = part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))
+                part = max(1, min(rows, int(grown)))
                 times[filled : filled + taken] = span.ends[:taken]
                 filled += taken
                 step += taken

@@ -6,6 +6,7 @@ references, and static functions: no globals, no allocation, no library but libm
 
 import ast
 import math
+import os
 import re
 import subprocess
 import sys
@@ -183,6 +184,8 @@ def _pyccel(component: type[Component], text: str, prepared: str) -> tuple[str, 
         run = subprocess.run(
             [sys.executable, "-m", f"{__package__}.c_printer", f"{name}.py"],
             cwd=directory, capture_output=True, text=True, check=False,
+            # Pyccel names the folder it writes to after a worker of pytest-xdist that it finds itself in
+            env={name: value for name, value in os.environ.items() if name != "PYTEST_XDIST_WORKER"},
         )  # fmt: skip
         written = Path(directory) / "__pyccel__" / name
         if run.returncode == 0 and written.with_suffix(".c").exists():

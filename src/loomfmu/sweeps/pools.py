@@ -176,15 +176,24 @@ class Processes:
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """A process that is started here ignores Ctrl-C from its first moment: its end is ours to decide."""
+    """A process that is started here hears no Ctrl-C from its first moment: its end is ours to decide.
+
+    Ours hears what came meanwhile when it is started; on Windows, which cannot wait so, it is lost.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
-        return
-    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
+    elif hasattr(signal, "pthread_sigmask"):
+        previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, previous)
+    else:
+        handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, handler)
 
 
 def _serve(connection: "Connection[Any, Any]") -> None:
