@@ -1,8 +1,14 @@
-"""Components that misbehave."""
+"""Components that misbehave, and the fixture that makes FMUs of them."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+import pytest
+
+from loomfmu import components
+from loomfmu.cosim import fmus
+from loomfmu.fmi import builder
 from loomfmu.variables import Component, Problem, input_, output, parameter
 
 
@@ -72,3 +78,14 @@ class Complaining(Component):
 
 
 ODD = (Overflowing, Raising, Complaining)
+
+
+@pytest.fixture
+def odd(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Components that misbehave, as FMUs."""
+    home = builder.folder(components.MainShaft)
+    for component in ODD:
+        monkeypatch.setitem(fmus.COMPONENTS, component.__name__, component)
+    monkeypatch.setattr(builder, "folder", lambda component: home)
+    yield
+    fmus.of_component.cache_clear()

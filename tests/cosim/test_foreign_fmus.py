@@ -72,6 +72,28 @@ def test_a_loom_can_be_turned_by_a_motor_that_feels_it(place: Path, tmp_path: Pa
     assert result.claims[0].holds and result.claims[0].worst == pytest.approx(np.radians(85.92125), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("file", "names"),
+    [
+        ("Motor.fmu", ("load_tau", "flange_phi", "flange_w", "flange_a")),
+        ("Motor3.fmu", ("load", "angle", "velocity", "acceleration")),
+    ],
+)
+def test_a_loop_with_an_fmu_that_keeps_no_state_cannot_be_iterated(
+    place: Path, tmp_path: Path, file: str, names: tuple[str, ...]
+) -> None:
+    text = (
+        LENGTH + f'coupling = "iterated"\n[weft]\nmachine = "WL680-3600"\n[motor]\nfmu = "{file}"\n[wires]\n'
+    )
+    text += f'"motor.{names[0]}" = "weft.shaft_torque"\n'
+    inputs = ("shaft_angle", "shaft_velocity", "shaft_acceleration")
+    text += "".join(f'"weft.{to}" = "motor.{name}"\n' for to, name in zip(inputs, names[1:], strict=True))
+    with pytest.raises(LoomfmuError) as raised:
+        ran(place, text, tmp_path)
+    assert str(raised.value).startswith("motor: it cannot keep its state, which an iterated loop needs: ")
+    assert "\n" not in str(raised.value)
+
+
 def test_integers_booleans_and_enumerations_come_through(place: Path, tmp_path: Path) -> None:
     text = LENGTH + SHAFT3 + '[motor]\nfmu = "Motor.fmu"\nmode = "no way back"\n'
     trace = ran(place, text, tmp_path, shaft__mode="no_way_back", shaft__w_free="100 rpm").trace

@@ -8,12 +8,12 @@ from pathlib import Path
 from signal import SIGINT, getsignal
 
 import numpy as np
-import odd_components
 import pytest
 from direct_loom import by_components, by_public_methods, small, traced
 from live_fmus import fmu_cache
+from odd_components import odd
 
-from loomfmu import LoomfmuError, components
+from loomfmu import LoomfmuError
 from loomfmu.cosim import fmus, slave
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.master import Master
@@ -22,7 +22,7 @@ from loomfmu.cosim.scene import Scene
 from loomfmu.fmi import builder
 from loomfmu.traces import ROWS, Trace
 
-__all__ = ["fmu_cache"]
+__all__ = ["fmu_cache", "odd"]
 
 SHAFTS = {
     "constant": {"shaft__speed": "600 rpm"},
@@ -254,17 +254,6 @@ def test_two_instances_of_one_fmu_are_two(tmp_path: Path) -> None:
 
 
 # ---- failures
-
-
-@pytest.fixture
-def odd(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Components that misbehave, as FMUs."""
-    home = builder.folder(components.MainShaft)
-    for component in odd_components.ODD:
-        monkeypatch.setitem(fmus.COMPONENTS, component.__name__, component)
-    monkeypatch.setattr(builder, "folder", lambda component: home)
-    yield
-    fmus.of_component.cache_clear()
 
 
 def odd_scene(component: str, rest: str = "") -> Scene:

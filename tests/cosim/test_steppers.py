@@ -8,12 +8,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-import odd_components
 import pytest
 from direct_loom import small
 from live_fmus import fmu_cache
+from odd_components import odd
 
-from loomfmu import LoomfmuError, components
+from loomfmu import LoomfmuError
 from loomfmu.cosim import fmus, steppers
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.grid import Grid, chosen, uniform
@@ -21,9 +21,8 @@ from loomfmu.cosim.lean import lean
 from loomfmu.cosim.master import Interrupted, Master
 from loomfmu.cosim.run import _in_flavour
 from loomfmu.cosim.scene import Scene
-from loomfmu.fmi import builder
 
-__all__ = ["fmu_cache"]
+__all__ = ["fmu_cache", "odd"]
 
 pytestmark = pytest.mark.skipif(
     find_spec("ziglang") is None or not sys.platform.startswith("linux"),
@@ -132,17 +131,6 @@ def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None
 
 
 # ---- failures
-
-
-@pytest.fixture
-def odd(monkeypatch: pytest.MonkeyPatch):
-    """Components that misbehave, as FMUs."""
-    home = builder.folder(components.MainShaft)
-    for component in odd_components.ODD:
-        monkeypatch.setitem(fmus.COMPONENTS, component.__name__, component)
-    monkeypatch.setattr(builder, "folder", lambda component: home)
-    yield
-    fmus.of_component.cache_clear()
 
 
 @pytest.mark.usefixtures("odd")

@@ -151,23 +151,29 @@ class Slave:
     def save(self) -> None:
         """Keep the state as it is for `restore`. Raises LoomfmuError where the FMU cannot."""
         state = ctypes.c_void_p(self._saved)
-        function = self._library[f"{self.standard}GetFMU{self._state_word}"]
-        if function(self._component, ctypes.byref(state)) > WARNING:
-            raise LoomfmuError(f"{self.name}: its state cannot be kept: {self._reason()}")
+        if self._state_function("Get")(self._component, ctypes.byref(state)) > WARNING:
+            raise LoomfmuError(
+                f"{self.name}: it cannot keep its state, which an iterated loop needs: {self._reason()}"
+            )
         self._saved = state.value
 
     def restore(self) -> None:
         """Go back to the state that was kept last."""
-        function = self._library[f"{self.standard}SetFMU{self._state_word}"]
-        if function(self._component, ctypes.c_void_p(self._saved)) > WARNING:
+        if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) > WARNING:
             raise LoomfmuError(f"{self.name}: it cannot go back to a state of its own: {self._reason()}")
 
     def forget(self) -> None:
         """Free the state that was kept."""
         if self._saved is not None and not self.fatal:
-            state = ctypes.c_void_p(self._saved)
-            self._library[f"{self.standard}FreeFMU{self._state_word}"](self._component, ctypes.byref(state))
+            self._state_function("Free")(self._component, ctypes.byref(ctypes.c_void_p(self._saved)))
         self._saved = None
+
+    def _state_function(self, action: str) -> Callable[..., int]:
+        name = f"{self.standard}{action}FMU{self._state_word}"
+        try:
+            return self._library[name]  # type: ignore[no-any-return]
+        except AttributeError:
+            raise LoomfmuError(f"{self.name}: {self.fmu.path} has no {name}") from None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
         """What to raise for a status that is not OK."""
