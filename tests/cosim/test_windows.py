@@ -97,6 +97,30 @@ def test_windows_are_found_wherever_they_are(changed: dict[str, object]) -> None
         assert verdict.worst == pytest.approx(exact.worst, rel=reach, nan_ok=True), str(verdict)
 
 
+@pytest.mark.parametrize(
+    ("rest", "why"),
+    [
+        (
+            '[shaft]\ncomponent = "DrivenShaft"\ninertia = 0.1\n',
+            "(weft.shaft_torque -> shaft.torque_1 closes a loop)",
+        ),
+        (
+            '[shaft]\ncomponent = "DrivenShaft"\n[wires]\n"shaft.torque_1" = false\n',
+            "(shaft integrates)",
+        ),
+    ],
+)
+def test_what_integrates_takes_the_scenes_own_steps(rest: str, why: str) -> None:
+    text = 'grid = "windows"\ncoupling = "iterated"\nsteps_per_revolution = 360\n'
+    text += '[loom]\nmachine = "WL680-3600"\n'
+    text += f'{rest}[[claims]]\nkind = "lowest_margin"\nbound = -1.0\n'
+    found = loomfmu.evaluate(scenes.parse(text))
+    assert f"steps: the scene's own everywhere {why}" in found.skipped
+    even = loomfmu.evaluate(scenes.parse(text), set={"grid": "uniform"})
+    assert found.claims == even.claims
+    assert found.steps == even.steps == 360
+
+
 def test_a_claim_that_is_judged_at_every_sample_gets_them_all() -> None:
     text = 'grid = "windows"\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n' + (
         '[[claims]]\nkind = "below"\nsignal = "weft.shaft_torque"\nbound = "1000 N.m"\n'
@@ -132,7 +156,10 @@ def test_a_recorded_run_is_on_the_same_grid_and_says_so(tmp_path: Path) -> None:
     result = loomfmu.run(DEMO, set={"grid": "windows"}, output=tmp_path / "windows.h5")
     np.testing.assert_array_equal(result.trace.time, judged().trace.time)
     assert result.trace.attributes["grid"] == "windows"
-    assert any(line.startswith("steps: 48 in a revolution, and landings") for line in result.skipped)
+    assert any(
+        line.startswith("steps: 48 in a revolution (damper_1 integrates), and landings")
+        for line in result.skipped
+    )
 
 
 @pytest.mark.parametrize(

@@ -91,7 +91,8 @@ def run(
     path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
     if not path.name or path.is_dir():
         raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
-    plan = Plan(scene, lean(scene, recorded(scene)), _grid(scene))
+    signals = recorded(scene)
+    plan = Plan(scene, lean(scene, signals), _grid(scene, signals))
     with plan.master() as master:
         master.initialize()
         if master.interrupted.value:
@@ -134,7 +135,7 @@ def evaluate(
     """
     scene = _checked(scene, set, flavour)
     wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
-    grid = _grid(scene)
+    grid = _grid(scene, wanted)
     recording, needed, warnings = remembered(scene, wanted, grid)
     verdicts = tuple(judge(recording, **claim) for claim in scene.claims)
     skipped = explained(Plan(scene, needed, grid))
@@ -152,8 +153,8 @@ def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavou
     return scene
 
 
-def _grid(scene: Scene) -> Grid:
-    return window_grid(scene) if scene.grid == WINDOWS else uniform(scene)
+def _grid(scene: Scene, signals: Sequence[str]) -> Grid:
+    return window_grid(scene, signals) if scene.grid == WINDOWS else uniform(scene)
 
 
 def explained(plan: Plan) -> tuple[str, ...]:

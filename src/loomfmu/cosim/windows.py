@@ -8,7 +8,7 @@ close to one it is small: so few steps do for what takes many equal ones.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from ..errors import LoomfmuError
 from ..traces import Recording
 from . import claims, curves
 from .asked import shaft_angle, with_rates
+from .graph import step_order
 from .grid import Grid, chosen, period, uniform
+from .lean import lean
 from .play import remembered
 from .scene import Scene
 
@@ -29,9 +31,9 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
-# least steps in a revolution for a damper: good to 2e-9 of its peak in the demonstration and 3e-7 where it
-# starts in the middle of a motion, ten times worse with 24
-DAMPED = 48
+# Least steps in a revolution for what remembers how its frame moved: a damper is then good to 2e-9 of its
+# peak in the demonstration and 3e-7 where it starts in the middle of a motion, warp threads to 2e-10
+REMEMBERING = {"HealdDamper": 48, "WarpTension": 48}
 BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit"}  # latched output -> what it follows
 
 
@@ -52,8 +54,8 @@ class Places:
         self.about += [time - reach, time + reach]
 
 
-def window_grid(scene: Scene) -> Grid:
-    """The communication points of a scene whose `grid` is "windows".
+def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
+    """The communication points of a scene whose `grid` is "windows" and that keeps these signals.
 
     Raises:
         LoomfmuError: the scene has no shaft or no claim to look for, or an FMU takes equal steps only
@@ -61,21 +63,49 @@ def window_grid(scene: Scene) -> Grid:
     _check(scene)
     fine = period(scene) / scene.steps_per_revolution
     coarse = period(scene) / scene.coarse_steps_per_revolution
+    longest, why = _longest(scene, signals, coarse, fine)
+    if longest <= fine:
+        return replace(uniform(scene), notes=(f"steps: the scene's own everywhere{why}",))
     points, scouted = _equal(scene, coarse), 0
     for _ in range(SCOUTS):
         recording, needed, _warnings = remembered(scene, _watched(scene), chosen(scene, points))
         scouted += len(needed.scene.instances) * (len(points) - 1)
-        places = Places(period(scene), coarse)
+        places = Places(period(scene), longest)
         for claim in scene.claims:
             arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
             LOOKS.get(claim["kind"], _everywhere)(places, recording, fine, **arguments)
         points = _merged(_equal(scene, coarse), places, APART * period(scene))
     points = _merged(_equal(scene, places.most), places, APART * period(scene))
     notes = (
-        f"steps: {period(scene) / places.most:.0f} in a revolution, and landings where the claims look;"
+        f"steps: {period(scene) / places.most:.0f} in a revolution{why}, and landings where the claims look;"
         f" {scouted} steps of FMUs to find these",
     )
     return chosen(scene, points, notes, scouted)
+
+
+def _longest(scene: Scene, signals: Sequence[str], coarse: float, fine: float) -> tuple[float, str]:
+    """The longest step that all instances bear which are run, and why it is that.
+
+    Most of ours are exact whatever the step. What integrates over what it is given is not, nor is a loop, nor
+    an FMU that we know nothing of: these take the scene's own steps throughout.
+    """
+    needed = lean(scene, signals).scene
+    _order, lagged = step_order(needed.instances, needed.wires)
+    if lagged:
+        return fine, f" ({lagged[0]} closes a loop)"
+    longest, why = coarse, ""
+    for name, instance in needed.instances.items():
+        bears = fine if not instance.fmu.ours else _bears(instance.fmu.name, scene, coarse, fine)
+        if bears < longest:
+            longest, why = bears, f" ({name} integrates)"
+    return max(longest, fine), why
+
+
+def _bears(component: str, scene: Scene, coarse: float, fine: float) -> float:
+    """The longest step with which a component of ours is as good as the landings."""
+    if component == "DrivenShaft":
+        return fine
+    return period(scene) / REMEMBERING[component] if component in REMEMBERING else coarse
 
 
 def _check(scene: Scene) -> None:
@@ -108,7 +138,7 @@ def _watched(scene: Scene) -> list[str]:
     wanted = list(shaft_angle(scene))
     for claim in scene.claims:
         signals = claims.signals_of(claim, scene.instances)
-        wanted += signals if LOOKS.get(claim["kind"]) not in (None, _carrier) else []
+        wanted += signals if LOOKS.get(claim["kind"]) not in (None, _nowhere) else []
         for belt in _belts(scene, signals):
             wanted += [f"{belt}.{name}" for name in ("free_length", "axial_force", *BELT.values())]
     return with_rates(scene, wanted)
@@ -234,9 +264,8 @@ def _dwell_contains(
         places.points += curves.times_at(trace, units.parse(angle, "rad"))
 
 
-def _carrier(places: Places, trace: Recording, fine: float, damper: str, at_most: object) -> None:
-    """A carrier remembers how its frame moved: coarse steps anywhere would be felt later."""
-    places.most = min(places.most, places.period / DAMPED)
+def _nowhere(places: Places, trace: Recording, fine: float, **_: object) -> None:
+    """A claim on what its component latches, on its own continuous curve."""
 
 
 def _everywhere(places: Places, trace: Recording, fine: float, **_: object) -> None:
@@ -251,6 +280,6 @@ LOOKS: dict[str, Look] = {
     "dwell": _dwell,
     "clear_shed": _clear_shed,
     "dwell_contains": _dwell_contains,
-    "peak_load": _carrier,
-    "stop_contacts": _carrier,
+    "peak_load": _nowhere,
+    "stop_contacts": _nowhere,
 }
