@@ -116,7 +116,10 @@ def _table(rows: list[Row]) -> str:
 
 
 def figures(find: Find) -> Figures:
-    """Bars: a panel for each kind of FMUs, a bar for each master on all cores and on one."""
+    """A panel for each kind of FMUs, a point for each master on all cores and on one.
+
+    Points, not bars: their axis is logarithmic, where the length of a bar means nothing.
+    """
     rows = find(NAME)
     if not rows:
         return {}
@@ -131,9 +134,9 @@ def figures(find: Find) -> Figures:
                 mine = [row for row in group if row["cores"] == cores]
                 if not mine:
                     continue
-                at = [names.index(f"{row['master']}, {row['recording']}") + 0.4 * place for row in mine]
-                panel.barh(at, [row[STEP] for row in mine], 0.38, color=colour, label=f"cores: {cores}")
-            panel.set_yticks([n + 0.2 for n in range(len(names))], names)
+                at = [names.index(f"{row['master']}, {row['recording']}") + 0.2 * place for row in mine]
+                panel.plot([row[STEP] for row in mine], at, "o", color=colour, label=f"cores: {cores}")
+            panel.set_yticks([n + 0.1 for n in range(len(names))], names)
             panel.invert_yaxis()
             panel.set_xscale("log")
             panel.set_xlabel(f"us per step, {kind} FMUs")
