@@ -136,7 +136,6 @@ def test_list_names_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
     for name in NAMES:
         assert f"\n{name}: " in "\n" + printed
     assert "outputs: travel, velocity, acceleration, stroke, shaft_torque" in printed
-    assert "law: uniform, harmonic_ends, sloped_line, sloped_sine" in printed
     assert "WL680-3600" in printed and "G6300 left" in printed
 
 

@@ -6,6 +6,7 @@ Exit status: 0 all claims hold; 1 a claim failed; 2 bad input or a failed FMU; 1
 import argparse
 import math
 import os
+import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,8 +38,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
+class _Version(argparse.Action):
+    """Reads the version only when it is asked for: that takes longer than parsing the command."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import version
+
+        print(f"loomfmu {version('loomfmu')}")
+        parser.exit()
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="loomfmu", description=(__doc__ or "").split("\n\n")[1].strip())
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     run = commands.add_parser("run", help="co-simulate a scene, record it and judge its claims")
@@ -70,8 +82,18 @@ def _parser() -> argparse.ArgumentParser:
     )
     build.set_defaults(command=_build)
 
-    listing = commands.add_parser("list", help="list the FMUs, machines and rapier heads there are")
+    listing = commands.add_parser("list", help="list what there is, or describe one FMU or machine")
+    listing.add_argument("name", nargs="?", metavar="NAME", help="an FMU, a machine or a rapier head")
     listing.set_defaults(command=_list)
+
+    init = commands.add_parser(
+        "init", help="write an example scene and a sweep of it into DIR, here by default"
+    )
+    init.add_argument(
+        "directory", nargs="?", type=Path, default=Path(), metavar="DIR", help="here by default"
+    )
+    init.add_argument("--all", action="store_true", help="write every example scene")
+    init.set_defaults(command=_init)
 
     show = commands.add_parser("show", help="summarise a trace")
     show.add_argument("trace", metavar="FILE.h5")
@@ -200,21 +222,23 @@ def _build(options: argparse.Namespace) -> int:
     return 0
 
 
-def _list(_options: argparse.Namespace) -> int:
-    from .components import COMPONENTS
-    from .machines import HEADS, MACHINES
-    from .variables import variables_of
+def _list(options: argparse.Namespace) -> int:
+    from . import catalogue
 
-    for name, component in COMPONENTS.items():
-        print(f"{name}: {(component.__doc__ or '').splitlines()[0]}")
-        for causality in ("input", "output"):
-            names = [v.name for v in variables_of(component) if v.causality == causality]
-            print(f"    {causality}s: {', '.join(names) or 'none'}")
-        for variable in variables_of(component):
-            if variable.choices:
-                print(f"    {variable.name}: {', '.join(variable.choices)}")
-    print(f"machines: {', '.join(MACHINES)}")
-    print(f"heads: {', '.join(HEADS)}")
+    width = shutil.get_terminal_size().columns
+    lines = catalogue.details(options.name, width) if options.name else catalogue.overview()
+    print(*lines, sep="\n")
+    return 0
+
+
+def _init(options: argparse.Namespace) -> int:
+    from . import catalogue
+
+    written = catalogue.start(options.directory, everything=options.all)
+    print(*written, sep="\n")
+    print(
+        f"\nnext: loomfmu run {written[0] if not options.all else options.directory / catalogue.STARTERS[0]}"
+    )
     return 0
 
 
@@ -224,7 +248,7 @@ def _validate(options: argparse.Namespace) -> int:
     for path in report.write(options.output):
         print(path)
     if not plots.available():
-        print("the plots are left out: they need matplotlib, pip install loomfmu[plot]", file=sys.stderr)
+        print('the plots are left out: they need matplotlib, pip install "loomfmu[plot]"', file=sys.stderr)
     return 0
 
 

@@ -1,7 +1,8 @@
 """What goes wrong by a user's hand: always one line that says what, where and what would be right."""
 
 import difflib
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 
 MOST_SHOWN = 16  # names that a message lists
 
@@ -10,14 +11,23 @@ class LoomfmuError(Exception):
     """Bad input, or an FMU that failed; its text is the one line that a user sees."""
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
-    """The nearest known name as the end of a message.
+def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] | None = None) -> str:
+    """The nearest known name as the end of a message, by its spelling or by a word of its description.
 
     >>> suggestion("sped", ["speed", "angle"])
     "; did you mean 'speed'?"
+    >>> suggestion("zeta", ["law", "reduction"], {"reduction": "Share of the speed taken off, zeta"})
+    "; did you mean 'reduction'?"
     """
     known = list(known)
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    word = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
+    described = [each for each, text in (descriptions or {}).items() if name and word.search(text)]
+    # a slip of spelling first, then a word that was meant, then a distant likeness
+    near = (
+        difflib.get_close_matches(name, known, n=1, cutoff=0.75)
+        or described
+        or difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    )
     if near:
         return f"; did you mean {near[0]!r}?"
     shown = ", ".join(known[:MOST_SHOWN]) + (", .." if len(known) > MOST_SHOWN else "")

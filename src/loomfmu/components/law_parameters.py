@@ -44,7 +44,7 @@ class LawParameters(ShaftDriven):
         ),
     )  # fmt: skip
     speed_reduction: float = parameter(
-        "1", 0.5, "Share of the rotor speed taken off at the slow point (harmonic_ends, sloped_...)",
+        "1", 0.5, "Share of the rotor speed taken off at the slow point, zeta (harmonic_ends, sloped_...)",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     slow_point: float = parameter(

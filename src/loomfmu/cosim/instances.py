@@ -49,9 +49,10 @@ class Instance:
         """Set a parameter, or the start of an input. Raises LoomfmuError for what cannot be set."""
         name = self.fmu.name_of(key)
         if name not in self.fmu.ports:
-            settable = [port.name for port in self.fmu.ports.values() if _can_be_set(port)]
+            settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
             extra = PARAMETER_SETS if self.fmu.built else FILES
-            raise LoomfmuError(f"{self.name}.{key} is unknown{suggestion(key, [*settable, *extra])}")
+            hint = suggestion(key, [*settable, *extra], settable)
+            raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
         port = self.fmu.ports[name]
         if not _can_be_set(port):
             kind = "an output" if port.causality == "output" else "a state"

@@ -36,13 +36,14 @@ def variable_table(component: type[Component]) -> str:
     rows = ["| variable | causality | unit | start | limits | what it is |", "|---|---|---|---|---|---|"]
     for variable in variables_of(component):
         rows.append(
-            f"| `{variable.name}` | {variable.causality} | {variable.display} | {_start(variable)}"
-            f" | {_limits(variable)} | {variable.description} |"
+            f"| `{variable.name}` | {variable.causality} | {variable.display} | {start_text(variable)}"
+            f" | {limits_text(variable)} | {variable.description} |"
         )
     return "\n".join(rows)
 
 
-def _start(variable: Variable) -> str:
+def start_text(variable: Variable) -> str:
+    """The value that a variable starts with, in the unit people read it in; nothing if it is computed."""
     if not variable.settable:
         return ""
     if variable.choices:
@@ -52,7 +53,8 @@ def _start(variable: Variable) -> str:
     return f"{variable.start / units.unit(variable.display).factor:.6g}"
 
 
-def _limits(variable: Variable) -> str:
+def limits_text(variable: Variable) -> str:
+    """The limits of a variable in the unit people read it in, or the names of its values."""
     if variable.choices:
         return ", ".join(variable.choices)
     if variable.minimum is None and variable.maximum is None:

@@ -103,7 +103,7 @@ def sweep(
         *(["distributed"] if scheduler else []),
     ):
         if find_spec(package) is None:
-            raise LoomfmuError(f"{path}: this needs {package}, pip install loomfmu[{NEEDED[package]}]")
+            raise LoomfmuError(f"{path}: this needs {package}: pip install 'loomfmu[{NEEDED[package]}]'")
     from .store import opened
 
     job = job_of(plan)

@@ -1,0 +1,117 @@
+"""What there is to run: FMUs with their variables, published machines and rapier heads, example scenes."""
+
+import re
+import shutil
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+
+from .components import COMPONENTS
+from .errors import LoomfmuError, suggestion
+from .fmi.documentation import limits_text, start_text
+from .machines import HEADS, MACHINES, parameters
+from .variables import Component, Variable, variables_of
+
+STARTERS = (
+    "wl680_3600.toml",
+    "sweeps/safe_speed.toml",
+)  # what `loomfmu init` writes: a loom, and a sweep of it
+HEADINGS = {"parameter": "parameters", "input": "inputs, with start values", "output": "outputs"}
+MOST_VALUES = 6  # of a run of numbered variables that are shown one by one
+
+
+def examples() -> Path:
+    """The folder of the example scenes: in the package, or beside it in a checkout."""
+    package = Path(__file__).parent
+    installed = package / "sims"
+    return installed if installed.is_dir() else package.parents[1] / "sims"
+
+
+def start(directory: Path, *, everything: bool = False) -> list[Path]:
+    """Write the demo's scene and a sweep of it into a folder, or every example; the files written.
+
+    Raises:
+        LoomfmuError: a file is there already; nothing has been written
+        OSError: the folder cannot be written
+    """
+    source = examples()
+    found = sorted(path for path in source.rglob("*") if path.suffix in (".toml", ".wif"))
+    chosen = found if everything else [source / name for name in STARTERS]
+    targets = {path: directory / path.relative_to(source) for path in chosen}
+    for target in targets.values():
+        if target.exists() or target.is_symlink():
+            raise LoomfmuError(f"{target} already exists; nothing was written")
+    for path, target in targets.items():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, target)
+    return list(targets.values())
+
+
+def overview() -> Iterator[str]:
+    """Lines that name every FMU with its inputs and outputs, then machines, heads and example scenes."""
+    for name, component in COMPONENTS.items():
+        yield f"{name}: {_summary(component)}"
+        for causality in ("input", "output"):
+            names = [v.name for v in variables_of(component) if v.causality == causality]
+            yield f"    {causality}s: {', '.join(names) or 'none'}"
+    yield f"machines: {', '.join(MACHINES)}"
+    yield f"heads: {', '.join(HEADS)}"
+    yield f"scenes: {', '.join(sorted(path.stem for path in examples().glob('*.toml')))}"
+    yield "`loomfmu list NAME` describes an FMU, a machine or a head; `loomfmu init --all` writes the scenes."
+
+
+def details(name: str, width: int = 80) -> Iterator[str]:
+    """Lines that describe an FMU with all its variables, or the values of a machine or a head.
+
+    Raises LoomfmuError for an unknown name.
+    """
+    if name in COMPONENTS:
+        return _variables(name, COMPONENTS[name], width)
+    if name in MACHINES:
+        return _values(name, machine=name)
+    if name in HEADS:
+        return _values(name, head=name)
+    hint = suggestion(name, [*COMPONENTS, *MACHINES, *HEADS])
+    raise LoomfmuError(f"{name!r} is neither an FMU, a machine nor a rapier head{hint}")
+
+
+def _summary(component: type[Component]) -> str:
+    return (component.__doc__ or "").splitlines()[0]
+
+
+def _variables(name: str, component: type[Component], width: int) -> Iterator[str]:
+    yield f"{name}: {_summary(component)}"
+    variables = variables_of(component)
+    for causality, heading in HEADINGS.items():
+        chosen = [variable for variable in variables if variable.causality == causality]
+        if chosen:
+            yield f"\n{heading}"
+        for _stem, same in groupby(chosen, key=lambda variable: re.sub(r"\d+$", "", variable.name)):
+            yield from _described(list(same), width)
+
+
+def _described(numbered: Sequence[Variable], width: int) -> Iterator[str]:
+    """A variable, or a run of numbered ones: its values and limits, and below what it is."""
+    first, last = numbered[0], numbered[-1]
+    name = first.name if first is last else f"{first.name} .. {last.name}"
+    unit = "" if first.display == "1" else f" {first.display}"
+    starts = [start_text(variable) for variable in numbered]
+    shown = ", ".join(starts) if len(starts) <= MOST_VALUES else f"{starts[0]} .. {starts[-1]}"
+    line = f"{name} = {shown}{unit}" if first.settable else name + unit.replace(" ", " in ")
+    if limits_text(first):
+        line += f"  [{limits_text(first)}]"
+    yield from textwrap.wrap(line, width, initial_indent=2 * " ", subsequent_indent=6 * " ")
+    yield from textwrap.wrap(first.description, width, initial_indent=6 * " ", subsequent_indent=6 * " ")
+
+
+def _values(name: str, *, machine: str | None = None, head: str | None = None) -> Iterator[str]:
+    yield f"{name}: published {'machine' if machine else 'rapier head'}"
+    for owner, component in COMPONENTS.items():
+        given = parameters(owner, machine=machine, head=head)
+        for variable in variables_of(component):
+            if variable.name in given:
+                unit = "" if variable.display == "1" else f" {variable.display}"
+                shown = start_text(replace(variable, start=given[variable.name]))
+                yield f"  {owner}.{variable.name} = {shown}{unit}"
