@@ -1,6 +1,5 @@
 """What all processes have in common that share the tests of one session."""
 
-import pickle
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -10,7 +9,6 @@ from filelock import FileLock
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim import fmus
-from loomfmu.fmi import translate
 from loomfmu.fmi.native_builder import host_platform
 
 
@@ -31,18 +29,10 @@ def fmu_cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
 def native_fmus() -> dict[str, fmus.Fmu]:
     """All native FMUs, for the machine's own platform, in the session's cache.
 
-    One process builds them, on all cores, and leaves its translations to the others. They could do it
-    as safely, but for nothing: they wait.
+    One process builds them, on all cores, while the others wait.
     """
     cache = fmus.cache_directory()
     cache.mkdir(parents=True, exist_ok=True)
-    translations = cache / "translations"
-    with FileLock(cache / "native.lock"):
-        if translations.exists():
-            translate._done.update(pickle.loads(translations.read_bytes()))
-        else:
-            with ThreadPoolExecutor(max_workers=4) as pool:
-                list(pool.map(lambda name: fmus.file_of(name, "native", (host_platform(),)), COMPONENTS))
-            done = {component: translate.translate(component) for component in COMPONENTS.values()}
-            translations.write_bytes(pickle.dumps(done))
+    with FileLock(cache / "native.lock"), ThreadPoolExecutor(max_workers=4) as pool:
+        list(pool.map(lambda name: fmus.file_of(name, "native", (host_platform(),)), COMPONENTS))
     return {name: fmus.of_component(name, "native") for name in COMPONENTS}

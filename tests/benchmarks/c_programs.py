@@ -4,7 +4,6 @@ Both take `steps [file]`, print the seconds that the steps took, and write all o
 file if there is one. They are compiled as the FMUs are.
 """
 
-import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -23,7 +22,6 @@ from loomfmu.fmi.translate import translate
 
 HERE = Path(__file__).parent
 KINDS = ("Real", "Integer", "Boolean")
-FUNCTION = re.compile(r"^static \w+ (\w+)\(", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ def loop(source: Source, directory: Path) -> Program:
     scene = source.scene()
     text = "\n".join(_loop_parts(scene))
     (directory / "loop.c").write_text(text, encoding="utf-8")
-    for name, place in (("pyc_math_c.h", native_builder.SHELL), ("timed_loop.h", HERE)):
+    for name, place in (("python_arithmetic.h", native_builder.SHELL), ("timed_loop.h", HERE)):
         (directory / name).write_bytes((place / name).read_bytes())
     return Program(_compiled(directory, "loop.c"), _columns(scene))
 
@@ -99,7 +97,7 @@ def _loop_parts(scene: Scene) -> Iterator[str]:
     if lagged:
         raise ValueError(f"a loop of wires is not translated: {lagged[0]}")
     yield "#define _POSIX_C_SOURCE 199309L"  # for the clock
-    yield '#include <stdbool.h>\n#include <stdint.h>\n#include "pyc_math_c.h"\n'
+    yield '#include <stdbool.h>\n#include <stdint.h>\n#include "python_arithmetic.h"\n'
     for component in dict.fromkeys(scene.instances[name].fmu.name for name in order):
         yield _component(component)
     for name in order:
@@ -130,13 +128,10 @@ def _function(head: str, lines: list[str]) -> Iterator[str]:
 
 
 def _component(name: str) -> str:
-    """A translated component; the functions of physics that others have too bear its name."""
+    """A translated component."""
     translated = translate(COMPONENTS[name])
     struct = [line for line in translated.header.splitlines() if not line.startswith("#")]
     code = "\n".join(line for line in translated.code.splitlines() if not line.startswith("#include"))
-    for function in FUNCTION.findall(code):
-        if not function.startswith(name):
-            code = re.sub(rf"\b{function}\(", f"{name}_{function}(", code)
     return "\n".join([*struct, code])
 
 

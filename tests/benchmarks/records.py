@@ -15,7 +15,7 @@ from typing import Any
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 PACKAGES = (
-    "loomfmu", "numpy", "scipy", "h5py", "fmpy", "libcosimpy", "ecospy", "pyccel", "ziglang", "mpmath",
+    "loomfmu", "numpy", "scipy", "h5py", "fmpy", "libcosimpy", "ecospy", "ziglang", "mpmath",
 )  # fmt: skip
 
 Row = dict[str, Any]

@@ -59,13 +59,13 @@ def measure(effort: str, notes: Notes) -> list[Table]:
     chosen = dict(COMMANDS)
     if effort == "tiny":
         chosen = {name: chosen[name] for name in list(chosen)[:4]}
-    elif find_spec("pyccel") and find_spec("ziglang"):
+    elif find_spec("ziglang"):
         chosen |= NATIVE
         notes(ONCE, "timed once" if effort == "full" else "left out of a quick run")
         if effort == "quick":
             del chosen[ONCE]
     else:
-        notes("native FMUs", "pyccel or ziglang is not installed")
+        notes("native FMUs", "ziglang is not installed")
     table = Table(NAME, ("what", "time [ms]", "spread [%]", "repeats"))
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
         for name, times in _in_turn(chosen, REPEATS[effort], Path(directory)).items():

@@ -74,7 +74,7 @@ class UsesList(Component):
 
 @dataclass(slots=True)
 class CallsInWhile(Component):
-    """A function in the condition of a while."""
+    """A function in the condition of a while, called each time."""
 
     value: float = output("1", "A value")
 
@@ -91,7 +91,7 @@ class CallsInWhile(Component):
 
 @dataclass(slots=True)
 class ReadsItsResult(Component):
-    """A method that reads what its results are written to."""
+    """A method that reads what its results are written to, all of them computed first."""
 
     value: float = output("1", "A value")
     other: float = output("1", "Another")
@@ -112,7 +112,7 @@ class ReadsItsResult(Component):
 
 @dataclass(slots=True)
 class ChangesType(Component):
-    """A name whose type changes, which the translator itself refuses."""
+    """A name whose type changes."""
 
     value: float = output("1", "A value")
 
@@ -125,4 +125,57 @@ class ChangesType(Component):
         count = 1
         count = 0.5 * time
         self.value = count
+        return 0
+
+
+@dataclass(slots=True)
+class DependsOnOrder(Component):
+    """A line whose value depends on which part of it comes first."""
+
+    value: float = output("1", "A value")
+    total: float = output("1", "A total")
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return 0
+
+    def counted(self, time: float) -> float:
+        """Change a variable and return a value."""
+        self.value = self.value + time
+        return time
+
+    def step(self, time: float, step_size: float) -> int:
+        """Step."""
+        self.total = self.value + self.counted(time)
+        return 0
+
+
+@dataclass(slots=True)
+class Loops(Component):
+    """Loops that change their own bounds, a variable kept after a loop, names that C keeps for itself."""
+
+    register: float = output("1", "A name of C")
+    last: int = output("1", "The last number", start=0, variability="discrete")
+    chained: bool = output("1", "A chain of comparisons", start=False, variability="discrete")
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Step."""
+        end = 5
+        double = 0.0
+        number = -1
+        for number in range(end, -2, -2):
+            end = end + 1
+            if number == 3:
+                continue
+            # a loop within a loop
+            for inner in range(end):
+                number = number + inner
+                double += 1 / (1 + number * number)
+        self.register = double if -(-1.0 * double) > 0 else -double
+        self.last = number
+        self.chained = 0 < time <= 2.0 and not end < 3
         return 0

@@ -220,7 +220,8 @@ class RotorLaws(LawParameters):
             return self.angle_above(self.cam_height_1 + (1.0 - tolerance) * self.cam_span)
         if self.law == SLOTTED_LEVERS or self.law == NONCIRCULAR_GEARS or self.law == TABLE:
             reach = 4.0 * asin(sqrt(tolerance))
-            return self.place_of(reach) - self.place_of(-reach)
+            late = self.place_of(reach)
+            return late - self.place_of(-reach)
         return dwell_angle(self.law, self.speed_reduction, tolerance)
 
     def angle_above(self, level: float) -> float:

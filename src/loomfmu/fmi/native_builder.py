@@ -58,7 +58,7 @@ PLATFORMS = {
 # no fused multiply-add: the results are those of Python, which has none
 FLAGS = ("-shared", "-std=c99", "-O2", "-ffp-contract=off", "-g0", "-s", "-fno-sanitize=all")
 COMMON_FILES = (
-    "tables.h", "pyc_math_c.h", "instance.h", "messages.c", "instance.c", "values.c", "states.c",
+    "tables.h", "python_arithmetic.h", "instance.h", "messages.c", "instance.c", "values.c", "states.c",
 )  # fmt: skip
 SHELL_FILES = {
     2: (
@@ -157,7 +157,7 @@ def identity(component: type[Component], platforms: tuple[str, ...]) -> str:
     digest = hashlib.sha256(repr((guid(component), platforms)).encode())
     for file in (*sorted(SHELL.iterdir()), *sorted(Path(__file__).parent.glob("*.py"))):
         digest.update(file.read_bytes())
-    for tool in ("pyccel", "ziglang", "fmpy"):
+    for tool in ("ziglang", "fmpy"):
         digest.update(metadata.version(tool).encode() if find_spec(tool) else b"")
     return f"{guid(component)}-native-{digest.hexdigest()[:16]}"
 

@@ -5,6 +5,7 @@ import re
 
 from .. import units
 from ..variables import Component, Variable, variables_of
+from .c_expressions import c_name
 from .live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .memoryless import is_memoryless
 
@@ -98,7 +99,7 @@ def _row(variable: Variable, names: list[str]) -> str:
         KINDS[variable.type],
         variable.causality.upper(),
         variable.variability.upper(),
-        f"offsetof(Component, {variable.name})",
+        f"offsetof(Component, {c_name(variable.name)})",
         low,
         high,
         _text(variable.display),

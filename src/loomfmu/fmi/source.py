@@ -84,3 +84,12 @@ def _class(component: type[Component], methods: dict[str, FunctionType]) -> str:
     for method in methods.values():
         body += "\n" + textwrap.indent(textwrap.dedent(inspect.getsource(method)), "    ")
     return body
+
+
+def functions(component: type[Component]) -> dict[str, FunctionType]:
+    """The methods of a component and the functions of physics that they use."""
+    methods = _methods(component)
+    found = dict(methods)
+    for method in methods.values():
+        _collect(method, found, {}, set())
+    return found

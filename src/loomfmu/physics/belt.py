@@ -75,7 +75,7 @@ def length_factor(clearance: float) -> float:
     if clearance >= 0.80e-3:
         return 1.0
     index = 0
-    for knot in range(1, 4):  # no call in a while's condition: Pyccel would evaluate it only once
+    for knot in range(1, 4):
         begin, _factor = _knot(knot)
         if clearance >= begin:
             index = knot

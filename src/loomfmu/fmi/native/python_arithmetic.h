@@ -1,28 +1,28 @@
 /* Integer and remainder arithmetic as Python has it, for the translated components. */
-#ifndef PYC_MATH_C_H
-#define PYC_MATH_C_H
+#ifndef PYTHON_ARITHMETIC_H
+#define PYTHON_ARITHMETIC_H
 
 #include <math.h>
 #include <stdint.h>
 
 /* Where Python's unlimited integers end here: room is left for what is added to them. */
-#define PYC_LARGEST (INT64_C(1) << 60)
+#define PYTHON_LARGEST (INT64_C(1) << 60)
 
 /* A whole number as an integer. Python knows no largest one and raises on what is not finite; here
  * the largest, or 0 for NaN, stands for it, and the step ends with outputs that are refused. */
-static inline int64_t pyc_whole(double value)
+static inline int64_t python_whole(double value)
 {
-    if (value >= (double)PYC_LARGEST) {
-        return PYC_LARGEST;
+    if (value >= (double)PYTHON_LARGEST) {
+        return PYTHON_LARGEST;
     }
-    if (value <= -(double)PYC_LARGEST) {
-        return -PYC_LARGEST;
+    if (value <= -(double)PYTHON_LARGEST) {
+        return -PYTHON_LARGEST;
     }
     return isnan(value) ? 0 : (int64_t)value;
 }
 
 /* Remainder with the sign of the divisor; 0 where Python raises. */
-static inline int64_t pyc_modulo(int64_t value, int64_t divisor)
+static inline int64_t python_modulo_int(int64_t value, int64_t divisor)
 {
     int64_t rest;
     if (divisor == 0 || divisor == -1) {
@@ -32,7 +32,7 @@ static inline int64_t pyc_modulo(int64_t value, int64_t divisor)
     return rest != 0 && (rest < 0) != (divisor < 0) ? rest + divisor : rest;
 }
 
-static inline int64_t pyc_integer_division(int64_t value, int64_t divisor)
+static inline int64_t python_floor_division_int(int64_t value, int64_t divisor)
 {
     if (divisor == 0) {
         return 0;
@@ -44,7 +44,7 @@ static inline int64_t pyc_integer_division(int64_t value, int64_t divisor)
 }
 
 /* Remainder with the sign of the divisor, as CPython's float_rem. */
-static inline double pyc_fmodulo(double value, double divisor)
+static inline double python_modulo_float(double value, double divisor)
 {
     double rest = fmod(value, divisor);
     if (rest != 0.0) {
@@ -54,7 +54,7 @@ static inline double pyc_fmodulo(double value, double divisor)
 }
 
 /* As CPython's float_floor_div: consistent with the remainder, which floor(a / b) is not. */
-static inline double pyc_floor_division(double value, double divisor)
+static inline double python_floor_division_float(double value, double divisor)
 {
     double rest = fmod(value, divisor);
     double quotient = (value - rest) / divisor;

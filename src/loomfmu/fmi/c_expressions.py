@@ -1,0 +1,327 @@
+"""Expressions of the Python that translates to C, as C99 with their types.
+
+What is not written down here does not translate: the grammar is closed. Python's `float` is `double` here,
+its `int` is `int64_t`; whole numbers widen to real ones where Python would let them.
+"""
+
+import ast
+import math
+from dataclasses import dataclass, field
+
+REAL, WHOLE, TRUTH = "double", "int64_t", "bool"
+TYPES = {"float": REAL, "int": WHOLE, "bool": TRUTH}
+NAMES = {c: python for python, c in TYPES.items()}
+Results = tuple[str, ...]  # types of what a function returns: none, one or several
+
+# C's levels of binding, loosest first
+TERNARY, OR, AND, BITS, EQUAL, ORDER, SHIFT, SUM, PRODUCT, UNARY, ATOM = range(11)
+
+ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
+    ast.Add: ("+", SUM),
+    ast.Sub: ("-", SUM),
+    ast.Mult: ("*", PRODUCT),
+    ast.Div: ("/", PRODUCT),
+}
+BITWISE: dict[type[ast.operator], tuple[str, int]] = {
+    ast.BitAnd: ("&", BITS),
+    ast.BitOr: ("|", BITS),
+    ast.BitXor: ("^", BITS),
+    ast.LShift: ("<<", SHIFT),
+    ast.RShift: (">>", SHIFT),
+}
+# C rounds and takes remainders in another way than Python: python_arithmetic.h has Python's
+DIVISIONS: dict[type[ast.operator], str] = {ast.FloorDiv: "floor_division", ast.Mod: "modulo"}
+COMPARISONS: dict[type[ast.cmpop], tuple[str, int]] = {
+    ast.Lt: ("<", ORDER),
+    ast.LtE: ("<=", ORDER),
+    ast.Gt: (">", ORDER),
+    ast.GtE: (">=", ORDER),
+    ast.Eq: ("==", EQUAL),
+    ast.NotEq: ("!=", EQUAL),
+}
+# functions that Python takes from the same libm, and how many arguments they have
+REAL_FUNCTIONS = {
+    **dict.fromkeys(
+        (
+            "acos", "acosh", "asin", "asinh", "atan", "atanh", "cbrt", "cos", "cosh", "erf", "erfc", "exp",
+            "expm1", "fabs", "log", "log10", "log1p", "log2", "sin", "sinh", "sqrt", "tan", "tanh",
+        ),
+        1,
+    ),
+    **dict.fromkeys(("atan2", "copysign", "fmod", "pow"), 2),
+}  # fmt: skip
+WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
+TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
+
+
+class Untranslatable(Exception):
+    """A node that has no counterpart in C, and the reason."""
+
+    def __init__(self, node: ast.AST, reason: str):
+        super().__init__(reason)
+        self.node = node
+
+
+@dataclass(frozen=True)
+class Code:
+    """An expression in C: text, type, how tightly it binds, and its value if it is a plain number."""
+
+    text: str
+    type: str
+    level: int = ATOM
+    number: float | int | None = None
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A function as C calls it: its name, the types of its arguments and of its results."""
+
+    name: str
+    arguments: tuple[str, ...]
+    results: Results
+    method: bool = False
+
+
+@dataclass
+class Scope:
+    """What the names of a function mean: its locals, the component's variables, functions and constants."""
+
+    functions: dict[str, Signature]
+    methods: dict[str, Signature]
+    variables: dict[str, str]  # of the component, with their types
+    constants: dict[str, float | int]
+    from_math: frozenset[str]
+    changes: dict[str, frozenset[str]]  # the variables that each method changes, those that it calls included
+    locals: dict[str, str] = field(default_factory=dict)
+
+
+def literal(value: float | int | bool) -> Code:
+    """A number or a truth value as C writes it."""
+    if isinstance(value, bool):
+        return Code(str(value).lower(), TRUTH)
+    if isinstance(value, int):
+        text = str(value) if abs(value) < 2**31 else f"INT64_C({value})"
+        return Code(text, WHOLE, UNARY if value < 0 else ATOM, value)
+    if not math.isfinite(value):
+        text = "NAN" if math.isnan(value) else "INFINITY" if value > 0 else "-INFINITY"
+    else:
+        text = repr(value)
+    return Code(text, REAL, UNARY if text.startswith("-") else ATOM, value)
+
+
+def within(code: Code, level: int) -> str:
+    """The text of an operand, in parentheses if it binds more loosely than that."""
+    return code.text if code.level >= level else f"({code.text})"
+
+
+def widened(code: Code, kind: str, node: ast.AST) -> Code:
+    """An expression as another type: what Python takes for equal, and nothing else."""
+    if code.type == kind:
+        return code
+    if kind == REAL and code.number is not None:
+        return literal(float(code.number))
+    if (code.type, kind) in ((WHOLE, REAL), (TRUTH, REAL), (TRUTH, WHOLE)):
+        return Code(f"({kind}){within(code, ATOM)}", kind, UNARY)
+    raise Untranslatable(node, f"{ast.unparse(node)} is {NAMES[code.type]} where {NAMES[kind]} is needed")
+
+
+class Expressions:
+    """Translates the expressions of one function."""
+
+    def __init__(self, scope: Scope):
+        self.scope = scope
+
+    def of(self, node: ast.expr) -> Code:
+        """An expression in C. Raises Untranslatable for one that has no counterpart."""
+        method = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if method is None:
+            raise Untranslatable(node, f"{type(node).__name__} is not in the subset")
+        found: Code = method(node)
+        return found
+
+    def as_type(self, node: ast.expr, kind: str) -> Code:
+        """An expression as a type."""
+        return widened(self.of(node), kind, node)
+
+    def condition(self, node: ast.expr) -> Code:
+        """An expression that is true or false."""
+        code = self.of(node)
+        if code.type != TRUTH:
+            raise Untranslatable(node, f"{ast.unparse(node)} is {NAMES[code.type]}, not a condition")
+        return code
+
+    def call(self, node: ast.Call) -> tuple[str, Results]:
+        """A call of one of our functions or methods: its text and the types of its results."""
+        signature = self._signature(node)
+        if len(node.args) != len(signature.arguments):
+            raise Untranslatable(node, f"{ast.unparse(node.func)} takes {len(signature.arguments)} arguments")
+        pairs = zip(node.args, signature.arguments, strict=True)
+        arguments = ["self"] * signature.method + [self.as_type(given, kind).text for given, kind in pairs]
+        return f"{signature.name}({', '.join(arguments)})", signature.results
+
+    def is_ours(self, node: ast.AST) -> bool:
+        """Whether an expression calls one of our functions or methods."""
+        if not isinstance(node, ast.Call):
+            return False
+        called = node.func
+        return isinstance(called, ast.Attribute) or (
+            isinstance(called, ast.Name) and called.id in self.scope.functions
+        )
+
+    def _signature(self, node: ast.Call) -> Signature:
+        if node.keywords:
+            raise Untranslatable(node, "an argument is given by its name")
+        if isinstance(node.func, ast.Name):
+            return self.scope.functions[node.func.id]
+        attribute = of_self(node.func)
+        if attribute not in self.scope.methods:
+            raise Untranslatable(node, f"{ast.unparse(node.func)} is not a method of the component")
+        return self.scope.methods[attribute]
+
+    # ---- one method for each kind of node
+
+    def _constant(self, node: ast.Constant) -> Code:
+        if not isinstance(node.value, bool | int | float):
+            raise Untranslatable(node, f"{node.value!r} is not a number")
+        return literal(node.value)
+
+    def _name(self, node: ast.Name) -> Code:
+        if node.id in self.scope.locals:
+            return Code(c_name(node.id), self.scope.locals[node.id])
+        if node.id in self.scope.constants:
+            return literal(self.scope.constants[node.id])
+        raise Untranslatable(node, f"{node.id} has no value here")
+
+    def _attribute(self, node: ast.Attribute) -> Code:
+        name = of_self(node)
+        if name not in self.scope.variables:
+            raise Untranslatable(node, f"{ast.unparse(node)} is not a variable of the component")
+        return Code(f"self->{c_name(name)}", self.scope.variables[name])
+
+    def _unaryop(self, node: ast.UnaryOp) -> Code:
+        if isinstance(node.op, ast.Not):
+            return Code(f"!{within(self.condition(node.operand), ATOM)}", TRUTH, UNARY)
+        operand = self.of(node.operand)
+        if isinstance(node.op, ast.Invert) or operand.type == TRUTH:
+            raise Untranslatable(node, f"{ast.unparse(node)} is not in the subset")
+        if isinstance(node.op, ast.UAdd):
+            return operand
+        if operand.number is not None:
+            return literal(-operand.number)
+        return Code(f"-{within(operand, ATOM)}", operand.type, UNARY)
+
+    def _binop(self, node: ast.BinOp) -> Code:
+        left, right = self.of(node.left), self.of(node.right)
+        operation = type(node.op)
+        if operation in BITWISE:
+            return self._bits(node)
+        if operation is ast.Pow:
+            if REAL not in (left.type, right.type):
+                raise Untranslatable(node, "a power of whole numbers is not in the subset")
+            return Code(f"pow({self._real(node.left)}, {self._real(node.right)})", REAL)
+        kind = WHOLE if left.type == right.type == WHOLE and operation is not ast.Div else REAL
+        if operation in DIVISIONS:
+            one, other = self.as_type(node.left, kind).text, self.as_type(node.right, kind).text
+            return Code(f"python_{DIVISIONS[operation]}_{NAMES[kind]}({one}, {other})", kind)
+        if operation not in ARITHMETIC:
+            raise Untranslatable(node, f"{operation.__name__} is not in the subset")
+        symbol, level = ARITHMETIC[operation]
+        left, right = widened(left, kind, node.left), widened(right, kind, node.right)
+        shown = within(right, level + 1)
+        shown = f"({shown})" if shown.startswith("-") else shown
+        return Code(f"{within(left, level)} {symbol} {shown}", kind, level)
+
+    def _real(self, node: ast.expr) -> str:
+        return self.as_type(node, REAL).text
+
+    def _bits(self, node: ast.BinOp) -> Code:
+        symbol, level = BITWISE[type(node.op)]
+        left, right = self.as_type(node.left, WHOLE), self.as_type(node.right, WHOLE)
+        return Code(f"{within(left, UNARY)} {symbol} {within(right, UNARY)}", WHOLE, level)
+
+    def _compare(self, node: ast.Compare) -> Code:
+        operands = [node.left, *node.comparators]
+        if any(self.is_ours(operand) for operand in operands[1:-1]):
+            raise Untranslatable(node, "a call in the middle of a chain of comparisons would be made twice")
+        parts = [
+            self._compared(one, sign, other)
+            for one, sign, other in zip(operands, node.ops, operands[1:], strict=False)
+        ]
+        return parts[0] if len(parts) == 1 else _joined("&&", AND, parts)
+
+    def _compared(self, one: ast.expr, sign: ast.cmpop, other: ast.expr) -> Code:
+        if type(sign) not in COMPARISONS:
+            raise Untranslatable(other, f"{type(sign).__name__} is not in the subset")
+        symbol, level = COMPARISONS[type(sign)]
+        left, right = self.of(one), self.of(other)
+        kind = next(each for each in (REAL, WHOLE, TRUTH) if each in (left.type, right.type))
+        left, right = widened(left, kind, one), widened(right, kind, other)
+        return Code(f"{within(left, SHIFT)} {symbol} {within(right, SHIFT)}", TRUTH, level)
+
+    def _boolop(self, node: ast.BoolOp) -> Code:
+        parts = [self.condition(value) for value in node.values]
+        return _joined("&&", AND, parts) if isinstance(node.op, ast.And) else _joined("||", OR, parts)
+
+    def _ifexp(self, node: ast.IfExp) -> Code:
+        then, otherwise = self.of(node.body), self.of(node.orelse)
+        kind = next(each for each in (REAL, WHOLE, TRUTH) if each in (then.type, otherwise.type))
+        then, otherwise = widened(then, kind, node.body), widened(otherwise, kind, node.orelse)
+        asked = within(self.condition(node.test), OR)
+        return Code(f"{asked} ? {within(then, OR)} : {within(otherwise, TERNARY)}", kind, TERNARY)
+
+    def _call(self, node: ast.Call) -> Code:
+        if self.is_ours(node):
+            text, results = self.call(node)
+            if len(results) != 1:
+                raise Untranslatable(node, f"{ast.unparse(node.func)} returns {len(results)} values, not one")
+            return Code(text, results[0])
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if node.keywords:
+            raise Untranslatable(node, "an argument is given by its name")
+        if name in ("float", "int") and len(node.args) == 1:
+            return self._converted(node.args[0], TYPES[name])
+        if name not in self.scope.from_math:
+            raise Untranslatable(node, f"{name} is neither of math nor a function of the physics")
+        arguments = ", ".join(self._real(given) for given in node.args)
+        if len(node.args) != REAL_FUNCTIONS.get(name, 1):
+            raise Untranslatable(node, f"{name} takes {REAL_FUNCTIONS.get(name, 1)} arguments")
+        if name in REAL_FUNCTIONS:
+            return Code(f"{name}({arguments})", REAL)
+        if name in WHOLE_FUNCTIONS:
+            return Code(f"python_whole({name}({arguments}))", WHOLE)
+        if name in TRUTH_FUNCTIONS:
+            return Code(f"({name}({arguments}) != 0)", TRUTH)
+        raise Untranslatable(node, f"math.{name} gives other bits in C than in Python")
+
+    def _converted(self, node: ast.expr, kind: str) -> Code:
+        code = self.of(node)
+        if kind == WHOLE and code.type == REAL:
+            return Code(f"python_whole({code.text})", WHOLE)
+        return widened(code, kind, node)
+
+
+def _joined(symbol: str, level: int, parts: list[Code]) -> Code:
+    """Conditions joined by one operator; those of the other one stand in parentheses."""
+    return Code(f" {symbol} ".join(within(part, EQUAL) for part in parts), TRUTH, level)
+
+
+def of_self(node: ast.AST) -> str:
+    """The name of an attribute of `self`, or nothing."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+        return node.attr
+    return ""
+
+
+KEYWORDS = frozenset(
+    (
+        "auto", "bool", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
+        "enum", "extern", "false", "float", "for", "goto", "if", "inline", "int", "long", "main", "register",
+        "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "true", "typedef",
+        "union", "unsigned", "void", "volatile", "while",
+    )
+)  # fmt: skip
+
+
+def c_name(name: str) -> str:
+    """A name that C takes: its keywords get an underscore."""
+    return f"{name}_" if name in KEYWORDS else name
