@@ -114,7 +114,7 @@ static void values(fmi2Component component)
     for (i = 0; i < count && i < 5; i++) {
         references[i] = any_reference(kind, function < 4);
         reals[i] = fitting_real(references[i]);
-        integers[i] = pick(4) ? (int)(pyc_whole(fitting_real(references[i])) % 1000) : any_integer();
+        integers[i] = pick(4) ? (int)(python_whole(fitting_real(references[i])) % 1000) : any_integer();
     }
     count = count > 5 ? 5 : count;
     switch (function) {

@@ -64,7 +64,7 @@ static void values(fmi3Instance instance)
     for (i = 0; i < 5; i++) {
         references[i] = any_reference(kind, function < 4);
         reals[i] = fitting_real(references[i]);
-        integers[i] = pick(20) ? pyc_whole(fitting_real(references[i])) : pick(2) ? INT64_MIN : INT64_MAX;
+        integers[i] = pick(20) ? python_whole(fitting_real(references[i])) : pick(2) ? INT64_MIN : INT64_MAX;
         booleans[i] = pick(2) != 0;
     }
     switch (function) {
