@@ -128,15 +128,23 @@ def description2(name: str = "Motor", *, units: bool = True, phi: str = "rad", f
     )  # fmt: skip
 
 
-def motor2(directory: Path, name: str = "Motor", *, single: bool = False, **options: object) -> Path:
-    """The motor as an FMI 2.0 FMU."""
+def motor2(
+    directory: Path,
+    name: str = "Motor",
+    *,
+    single: bool = False,
+    defines: tuple[str, ...] = (),
+    **options: object,
+) -> Path:
+    """The motor as an FMI 2.0 FMU; `defines` are macros of its source, such as LATE=1."""
     if single:
         options["flags"] = 'canBeInstantiatedOnlyOncePerProcess="true"'
-    binary = library("fmi2.c", directory / "Motor.so", f"-DSINGLE={int(single)}")
+    macros = [f"-D{macro}" for macro in (f"SINGLE={int(single)}", *defines)]
+    binary = library("fmi2.c", directory / "Motor.so", *macros)
     return packed(directory / f"{name}.fmu", description2(name, **options), binary, "Motor")  # type: ignore[arg-type]
 
 
-def motor3(directory: Path) -> Path:
+def motor3(directory: Path, *, defines: tuple[str, ...] = ()) -> Path:
     """The motor as an FMI 3.0 FMU."""
-    binary = library("fmi3.c", directory / "Motor3.so")
+    binary = library("fmi3.c", directory / "Motor3.so", *(f"-D{macro}" for macro in defines))
     return packed(directory / "Motor3.fmu", FMI3.format(fixed=FIXED), binary, "Motor3", "x86_64-linux")

@@ -8,11 +8,15 @@
 #ifndef SINGLE
 #define SINGLE 0
 #endif
+#ifndef LATE /* whether rates are computed on leaving initialization, and not before */
+#define LATE 0
+#endif
 
 typedef struct {
     Motor motor;
     const fmi2CallbackFunctions *functions;
     char name[64];
+    int running, touched; /* out of initialization; given an input since the last step */
 } Instance;
 
 static int alive = 0;
@@ -59,13 +63,14 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
                              "J = %g %s is not above %d", i->motor.inertia, "kg.m2", 0);
         return fmi2Error;
     }
-    motor_rates(&i->motor);
+    if (!LATE) motor_rates(&i->motor);
     return fmi2OK;
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     motor_rates(&((Instance *)c)->motor);
+    ((Instance *)c)->running = 1;
     return fmi2OK;
 }
 
@@ -86,13 +91,21 @@ static int *whole(Motor *m, fmi2ValueReference r)
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real v[])
 {
-    for (size_t k = 0; k < n; k++) v[k] = *real(&((Instance *)c)->motor, r[k]);
+    Instance *i = c;
+    if (i->touched) {
+        i->functions->logger(i->functions->componentEnvironment, i->name, fmi2Error, "error",
+                             "no step between fmi2SetReal and fmi2GetReal");
+        return fmi2Error;
+    }
+    for (size_t k = 0; k < n; k++) v[k] = *real(&i->motor, r[k]);
     return fmi2OK;
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real v[])
 {
-    for (size_t k = 0; k < n; k++) *real(&((Instance *)c)->motor, r[k]) = v[k];
+    Instance *i = c;
+    i->touched = i->running;
+    for (size_t k = 0; k < n; k++) *real(&i->motor, r[k]) = v[k];
     return fmi2OK;
 }
 
@@ -122,6 +135,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real h, fmi2Boolean ke
 {
     Instance *i = c;
     (void)keep;
+    i->touched = 0;
     if (i->motor.verbose) {
         i->functions->logger(i->functions->componentEnvironment, i->name, fmi2Warning, "load",
                              "%s carries %.3f N.m, step %d", i->name, i->motor.load, i->motor.steps);

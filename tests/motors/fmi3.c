@@ -5,6 +5,10 @@
 #include "fmi3FunctionTypes.h"
 #include "motor.h"
 
+#ifndef LATE /* whether rates are computed on leaving initialization, and not before */
+#define LATE 0
+#endif
+
 typedef struct {
     Motor motor;
     fmi3LogMessageCallback log;
@@ -45,7 +49,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean defined, fmi3
         i->log(i->environment, fmi3Error, "error", "J is not above 0");
         return fmi3Error;
     }
-    motor_rates(&i->motor);
+    if (!LATE) motor_rates(&i->motor);
     return fmi3OK;
 }
 

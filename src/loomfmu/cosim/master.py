@@ -21,10 +21,11 @@ from ..errors import LoomfmuError
 from .graph import step_order
 from .grid import Grid, Span, uniform
 from .lean import ConstantShaft
-from .loops import MOST_EXCHANGES, Broyden, Iteration, Swing
+from .loops import Iteration, Swing
 from .scene import ITERATED, Scene
 from .slave import Slave, borrow, give_back
-from .steppers import Action, Memory, Stepper, perform, stepper
+from .start import Slot, Start
+from .steppers import Action, Memory, Stepper, stepper
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}
 PATIENCE = 0.05  # s between looks for Ctrl-C
@@ -32,7 +33,6 @@ PATIENCE = 0.05  # s between looks for Ctrl-C
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int32]
 Block = Callable[[Reals, Reals, Integers], None]
-Slot = tuple[str, int]
 
 
 class Interrupted(Exception):
@@ -67,7 +67,7 @@ class Master:
         self.slaves: dict[str, Slave] = {}
         self.interrupted = ctypes.c_int32(0)
         self._compiled = compiled
-        self.settled = True
+        self._start_warnings: list[str] = []
         self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
         self._swing = Swing(self.lagged, self._lagged_slots())
 
@@ -131,26 +131,19 @@ class Master:
         for drive in self.scene.drives:
             self.reals[self.slots[drive.instance, drive.variable][1]] = drive.along(np.zeros(1))[0]
         self._turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
-        self._exchange_at_start()
-        for name in self.order:
-            self.slaves[name].finish_initialization()
+        start = Start(
+            self.slaves,
+            {name: self._inputs(name) for name in self.order},
+            {name: self._outputs(name) for name in self.order},
+            self.scene.wires,
+            self.lagged,
+            self.slots,
+            self.reals,
+            self.integers,
+        )
+        start.make()
+        self._start_warnings = start.warnings
         self._stepper = self._make_stepper()
-
-    def _exchange_at_start(self) -> None:
-        """Hand all outputs on until loops agree with themselves; where they cannot, hand them on once."""
-        exchange = [action for name in self.order for action in (*self._inputs(name), *self._outputs(name))]
-        perform(exchange, 0.0)
-        if not self.lagged:
-            return
-        first = self.reals.copy(), self.integers.copy()
-        told = {name: len(slave.messages) for name, slave in self.slaves.items()}
-        solver = Broyden(self.reals, self.integers, self._lagged_slots())
-        self.settled = solver.settle(lambda: perform(exchange, 0.0))
-        if not self.settled:
-            self.reals[:], self.integers[:] = first
-            perform(exchange, 0.0)
-            for name, slave in self.slaves.items():
-                del slave.messages[told[name] :]  # of values that were only tried
 
     def _make_stepper(self) -> Stepper:
         """What takes the steps: the calls of all instances in their order."""
@@ -292,8 +285,7 @@ class Master:
                 if status == 1
             ]
             + [f"loop: {wire} carries the value of the step before" for wire in lagged]
-            + [f"loop: the values at the start have not settled after {MOST_EXCHANGES} exchanges"]
-            * (not self.settled)
+            + self._start_warnings
         )
 
 
