@@ -172,7 +172,9 @@ def _run(options: argparse.Namespace) -> int:
     for warning in result.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     scene = result.scene
-    if scene.step is None:
+    if result.ended:
+        print(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
+    elif scene.step is None:
         print(
             f"{scene.title}: {scene.revolutions:g} revolutions at {units.show(scene.speed, 'rev/min')},"
             f" {result.steps} steps"
@@ -264,7 +266,8 @@ def _summarise(path: str) -> int:
 
     with Trace(path) as trace:
         attributes = trace.attributes
-        print(f"{attributes['title']} ({attributes['software']}, {trace.status})")
+        ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
+        print(f"{attributes['title']} ({attributes['software']}, {trace.status}{ended})")
         turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
         end = trace.time[-1] if trace.rows else 0.0
         print(f"{trace.rows} samples over {end:.6g} s, {turned:.4g} revolutions")

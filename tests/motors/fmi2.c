@@ -12,11 +12,15 @@
 #define LATE 0
 #endif
 
+#ifndef ENDS_AT /* s: when it ends the simulation */
+#define ENDS_AT 1.0e300
+#endif
+
 typedef struct {
     Motor motor;
     const fmi2CallbackFunctions *functions;
     char name[64];
-    int running, touched; /* out of initialization; given an input since the last step */
+    int running, touched, ended; /* out of initialization; given an input since the last step; at ENDS_AT */
 } Instance;
 
 static int alive = 0;
@@ -145,8 +149,26 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real h, fmi2Boolean ke
                              "stalled by %g N.m at %g s", i->motor.load, time);
         return fmi2Discard;
     }
-    motor_step(&i->motor, h);
+    i->ended = time + h > ENDS_AT - 1e-12;
+    motor_step(&i->motor, i->ended ? ENDS_AT - time : h);
+    return i->ended ? fmi2Discard : fmi2OK;
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
+{
+    Instance *i = c;
+    if (kind != fmi2Terminated || !i->ended) {
+        i->functions->logger(i->functions->componentEnvironment, i->name, fmi2Error, "error", "it has not ended");
+        return fmi2Error;
+    }
+    *value = fmi2True;
     return fmi2OK;
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
+{
+    *value = ((Instance *)c)->motor.time;
+    return kind == fmi2LastSuccessfulTime ? fmi2OK : fmi2Error;
 }
 
 /* what the standard wants to be there and the motor has not */
@@ -167,7 +189,5 @@ NOT_THERE(fmi2SetRealInputDerivatives)
 NOT_THERE(fmi2GetRealOutputDerivatives)
 NOT_THERE(fmi2CancelStep)
 NOT_THERE(fmi2GetStatus)
-NOT_THERE(fmi2GetRealStatus)
 NOT_THERE(fmi2GetIntegerStatus)
-NOT_THERE(fmi2GetBooleanStatus)
 NOT_THERE(fmi2GetStringStatus)

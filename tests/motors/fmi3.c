@@ -9,6 +9,10 @@
 #define LATE 0
 #endif
 
+#ifndef ENDS_AT /* s: when it ends the simulation */
+#define ENDS_AT 1.0e300
+#endif
+
 typedef struct {
     Motor motor;
     fmi3LogMessageCallback log;
@@ -135,7 +139,8 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boole
     Instance *i = c;
     (void)keep;
     *event = *early = false;
-    *terminate = i->motor.load > i->motor.stall_torque;
+    *terminate = i->motor.load > i->motor.stall_torque || time + h > ENDS_AT - 1e-12;
+    h = time + h > ENDS_AT - 1e-12 ? ENDS_AT - time : h;
     *reached = time + h;
     if (i->motor.verbose && i->motor.steps < i->motor.verbose) {
         i->log(i->environment, fmi3Warning, "load", "it turns, 100 %s of it");

@@ -48,6 +48,7 @@ class Fmi3Slave(Slave):
         self.pooled = fmu.ours
         if not fmu.ours:  # it may have threads that log: they need Python's lock
             self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+        self._reached: float | None = None  # when it ended the simulation
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
 
     def _open(self) -> Any:
@@ -84,6 +85,9 @@ class Fmi3Slave(Slave):
     def finish_initialization(self) -> None:
         """Leave the initialization."""
         self._do(self._slave.exitInitializationMode)
+
+    def _ended(self) -> float | None:
+        return self._reached
 
     # ---- prepared calls
 
@@ -125,17 +129,19 @@ class Fmi3Slave(Slave):
         return Call(converted, (self._component, array, size, between, size), base_type, plain=False)
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
-        """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation has not stepped."""
+        """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation says Discard."""
         function = self._library["fmi3DoStep"]
         event, terminate, early = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_bool()
         reached = ctypes.c_double()
         told = [ctypes.byref(told) for told in (event, terminate, early, reached)]
 
         def stepped(*arguments: Any) -> int:
+            reached.value = time.value
             status = int(function(*arguments))
-            if terminate.value or early.value:
-                self.messages.append((DISCARD, "it ended the simulation before the end of the step"))
-                return max(status, DISCARD)
-            return status
+            if terminate.value:
+                self._reached = reached.value
+            elif early.value:
+                self.messages.append((DISCARD, "it returned before the end of the step, which it must not"))
+            return max(status, DISCARD) if terminate.value or early.value else status
 
         return Call(stepped, (self._component, time, step_size, ctypes.c_bool(True), *told), plain=False)

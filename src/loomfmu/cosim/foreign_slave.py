@@ -6,6 +6,7 @@ it is called, since it may have threads of its own that log.
 """
 
 import ctypes
+import math
 from typing import Any
 from weakref import WeakValueDictionary
 
@@ -26,6 +27,7 @@ from ..errors import LoomfmuError
 from .fmus import Fmu
 from .slave import FATAL, WARNING, Slave
 
+LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # of fmi2StatusKind
 MOST_MESSAGES = 50  # the last ones are kept: some FMUs log at every step
 
 _instances: "WeakValueDictionary[int, ForeignSlave]" = WeakValueDictionary()
@@ -88,6 +90,18 @@ class ForeignSlave(Slave):
     def finish_initialization(self) -> None:
         """Leave the initialization."""
         self._do(self._slave.exitInitializationMode)
+
+    def _ended(self) -> float | None:
+        kept = list(self.messages)  # it may complain of being asked
+        ended, time = ctypes.c_int(), ctypes.c_double(-math.inf)
+        try:
+            status = self._library.fmi2GetBooleanStatus(self._component, TERMINATED, ctypes.byref(ended))
+            if status <= WARNING and ended.value:
+                self._library.fmi2GetRealStatus(self._component, LAST_SUCCESSFUL_TIME, ctypes.byref(time))
+        except AttributeError:  # the library lacks a function that it should have
+            return None
+        self.messages[:] = kept
+        return time.value if ended.value else None
 
 
 def _resources(fmu: Fmu) -> str:

@@ -23,7 +23,7 @@ from .grid import Grid, Span, uniform
 from .lean import ConstantShaft
 from .loops import Iteration, Swing
 from .scene import ITERATED, Scene
-from .slave import Slave, borrow, give_back
+from .slave import Ended, Slave, borrow, give_back
 from .start import Slot, Start
 from .steppers import Action, Memory, Stepper, stepper
 
@@ -41,6 +41,8 @@ class Interrupted(Exception):
 
 class Master:
     """The instances of a scene, coupled. Use it in a `with` statement: it gives them back.
+
+    `steps` are those that a run has taken, `ended` tells of an FMU that ended it before its time.
 
     `fetched` are the outputs that are read from the FMUs, all by default; `shafts` the main shafts that
     need no FMU; `compiled` tells whether the steps are taken in C: where that can be had, by default. Within
@@ -67,6 +69,8 @@ class Master:
         self.slaves: dict[str, Slave] = {}
         self.interrupted = ctypes.c_int32(0)
         self._compiled = compiled
+        self.steps = 0
+        self.ended: Ended | None = None
         self._start_warnings: list[str] = []
         self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
         self._swing = Swing(self.lagged, self._lagged_slots())
@@ -219,7 +223,7 @@ class Master:
     # ---- stepping
 
     def run(self, rows: int, write: Block, progress: Callable[[int], None]) -> None:
-        """Step to the end; hand over every `rows` samples, and what there is when it ends early.
+        """Step to the end, the run's or that which an FMU makes of it; hand over every `rows` samples.
 
         Raises:
             LoomfmuError: an FMU failed, or gave a value that is not finite, or a loop swings up
@@ -250,7 +254,10 @@ class Master:
         finally:
             if filled:
                 self._hand_over(times[:filled], reals[:filled], integers[:filled], write)
-        if failure:
+        self.steps = step
+        if isinstance(failure, Ended):
+            self.ended = failure if step < self.grid.steps else None
+        elif failure:
             raise failure
         progress(self.grid.steps)
 
@@ -286,6 +293,7 @@ class Master:
             ]
             + [f"loop: {wire} carries the value of the step before" for wire in lagged]
             + self._start_warnings
+            + [f"{self.ended}; the run would have gone on to {self.grid.stop_time:.9g} s"] * bool(self.ended)
         )
 
 

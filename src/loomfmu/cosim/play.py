@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from .grid import Grid
 from .lean import Lean, lean
 from .master import Integers, Interrupted, Master, Reals
 from .scene import Scene
+from .slave import Ended
 
 
 class Keeper(Protocol):
@@ -75,8 +76,18 @@ def play(master: Master, keeper: Keeper, progress: Callable[[int], None]) -> Non
     master.run(ROWS, write, progress)
 
 
-def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> tuple[Recording, Lean, list[str]]:
-    """A run that is kept in memory, what was needed for it, and what its FMUs warned of."""
+class Remembered(NamedTuple):
+    """A run that is kept in memory: how it was stepped, how far, and what its FMUs warned of."""
+
+    recording: Recording
+    plan: Plan
+    steps: int
+    ended: Ended | None
+    warnings: list[str]
+
+
+def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> Remembered:
+    """Run a scene and keep these signals in memory."""
     plan = Plan(scene, lean(scene, signals), grid)
     with plan.master() as master:
         master.initialize()
@@ -85,4 +96,4 @@ def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> tuple[Record
             play(master, recording, lambda _step: None)
         except Interrupted:
             raise KeyboardInterrupt("interrupted") from None
-        return recording, plan.lean, master.warnings()
+        return Remembered(recording, plan, master.steps, master.ended, master.warnings())

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -21,6 +21,7 @@ from .lean import lean
 from .master import Interrupted, Master
 from .play import Plan, channels, play, remembered
 from .scene import WINDOWS, Scene
+from .slave import Ended
 from .verdict import Verdict
 from .windows import window_grid
 
@@ -32,7 +33,7 @@ class _Judged:
     """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
 
     `skipped` are lines that say what was not run or not read and why, and what that saved; `steps` is the
-    number of communication steps.
+    number of communication steps. `ended` tells which FMU ended the run before its time, and when.
     """
 
     scene: Scene
@@ -40,6 +41,7 @@ class _Judged:
     warnings: tuple[str, ...]
     skipped: tuple[str, ...]
     steps: int
+    ended: str = field(default="", kw_only=True)
 
     @property
     def holds(self) -> bool:
@@ -113,7 +115,9 @@ def run(
             writer.abandon("failed")
             raise
         warnings = (*scene.notes, *master.warnings())
-    return Result(scene, _finish(scene, writer), warnings, explained(plan), plan.grid.steps, path)
+    ended = _told(master.ended)
+    verdicts = _finish(scene, writer, ended)
+    return Result(scene, verdicts, warnings, explained(plan), master.steps, path, ended=ended)
 
 
 def evaluate(
@@ -136,10 +140,13 @@ def evaluate(
     scene = _checked(scene, set, flavour)
     wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
     grid = _grid(scene, wanted)
-    recording, needed, warnings = remembered(scene, wanted, grid)
-    verdicts = tuple(judge(recording, **claim) for claim in scene.claims)
-    skipped = explained(Plan(scene, needed, grid))
-    return Evaluation(scene, verdicts, (*scene.notes, *warnings), skipped, grid.steps, recording)
+    found = remembered(scene, wanted, grid)
+    verdicts = tuple(judge(found.recording, **claim) for claim in scene.claims)
+    warnings = (*scene.notes, *found.warnings)
+    return Evaluation(
+        scene, verdicts, warnings, explained(found.plan), found.steps, found.recording,
+        ended=_told(found.ended),
+    )  # fmt: skip
 
 
 def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
@@ -199,10 +206,15 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
     return replace(scene, instances=instances)
 
 
-def _finish(scene: Scene, writer: TraceWriter) -> tuple[Verdict, ...]:
+def _told(ended: Ended | None) -> str:
+    """Which FMU ended the run before its time, and when."""
+    return f"{ended.name} at {ended.time:.9g} s" if ended else ""
+
+
+def _finish(scene: Scene, writer: TraceWriter, ended: str) -> tuple[Verdict, ...]:
     """Seal the trace, judge it, store the verdicts and give it its final name."""
     try:
-        writer.seal("complete")
+        writer.seal("complete", ended)
         with Trace(writer.partial) as trace:
             verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
         writer.complete([verdict.as_dict() for verdict in verdicts])

@@ -28,7 +28,16 @@ from ..errors import LoomfmuError
 from .fmus import Fmu, Value
 
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
+REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
+
+
+class Ended(LoomfmuError):
+    """An FMU ended the simulation itself, at `time` [s]."""
+
+    def __init__(self, name: str, time: float):
+        super().__init__(f"{name} ended the simulation at {time:.9g} s")
+        self.name, self.time = name, time
 
 
 class Call(NamedTuple):
@@ -176,11 +185,21 @@ class Slave:
             raise LoomfmuError(f"{self.name}: {self.fmu.path} has no {name}") from None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
-        """What to raise for a status that is not OK."""
+        """What to raise for a status that is not OK, of a call in the step from `time` on."""
         self.fatal = self.fatal or status == FATAL
+        if status == REFUSED:
+            return LoomfmuError(f"{self.name} at {time:.9g} s: {self._reason()}")
+        if status == DISCARD and action == "fmi2DoStep":
+            ended = self._ended()
+            if ended is not None:
+                return Ended(self.name, ended if ended >= time else time)
         kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
         action = action.replace("fmi2", self.standard)
         return LoomfmuError(f"{self.name} at {time:.9g} s: {action} gave {kind}: {self._reason()}")
+
+    def _ended(self) -> float | None:
+        """When the FMU ended the simulation, if that is why it has not made a step: ours never do."""
+        return None
 
     # ---- end
 

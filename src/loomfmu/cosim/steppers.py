@@ -6,6 +6,7 @@ FMUs whose values must be converted on their way.
 """
 
 import ctypes
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +20,7 @@ from ..errors import LoomfmuError
 from ..fmi import native_builder
 from .fmus import cache_directory
 from .grid import Span
-from .slave import WARNING, Call, Slave
+from .slave import WARNING, Call, Ended, Slave
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -45,7 +46,8 @@ class Stepper(Protocol):
         """Take the steps of a span; `driven` are the driven inputs, `reals` and `integers` rows to fill.
 
         Returns:
-            the number of steps taken, fewer when interrupted, and what an FMU failed with, if one did
+            the number of steps taken, fewer when interrupted, and what an FMU failed with or ended the run
+        with, if one did
         """
 
 
@@ -64,6 +66,33 @@ class Memory:
     integers: Integers
     driven: Sequence[int]
     interrupted: ctypes.c_int32
+
+
+def stopped(
+    actions: Sequence[Action], status: int, span: Span, step: int, memory: Memory, reals: Floats,
+    integers: Integers,
+) -> Advanced:  # fmt: skip
+    """What comes of a step one of whose calls had a status that is not OK; that call and those after it.
+
+    Where an FMU ends the simulation at the end of the step the others still make it: it counts. Else it does
+    not.
+    """
+    failures = []
+    for place, action in enumerate(actions):
+        status = action.call.function(*action.call.arguments) if place else status
+        if status > WARNING:
+            failures.append(action.slave.failed(status, action.name, float(span.starts[step])))
+            if not _at_end(failures[-1], span, step):
+                return step, failures[-1]
+    reals[step] = memory.reals
+    integers[step] = memory.integers
+    return step + 1, failures[0]
+
+
+def _at_end(failure: LoomfmuError, span: Span, step: int) -> bool:
+    """Whether it is an FMU that ended the simulation at the end of a step."""
+    size, end = float(span.sizes[step]), float(span.ends[step])
+    return isinstance(failure, Ended) and math.isclose(failure.time, end, rel_tol=1e-9, abs_tol=1e-6 * size)
 
 
 class PythonStepper:
@@ -89,8 +118,10 @@ class PythonStepper:
                 memory.reals[slots] = driven[step]
             for function, arguments in self._calls:
                 if (status := function(*arguments)) > WARNING:
-                    action = next(each for each in self._actions if each.call.arguments is arguments)
-                    return step, action.slave.failed(status, action.name, time.value)
+                    done = next(
+                        place for place, each in enumerate(self._actions) if each.call.arguments is arguments
+                    )
+                    return stopped(self._actions[done:], status, span, step, memory, reals, integers)
             reals[step] = memory.reals
             integers[step] = memory.integers
         return len(span), None
@@ -128,13 +159,17 @@ class _Outcome(ctypes.Structure):
 class CompiledStepper:
     """Makes the same calls in C."""
 
-    def __init__(self, library: Path, actions: Sequence[Action], memory: Memory):
+    def __init__(
+        self, library: Path, actions: Sequence[Action], memory: Memory, time: ctypes.c_double,
+        size: ctypes.c_double,
+    ):  # fmt: skip
         # Python's lock is kept, unless an FMU of another maker may have threads that log
         ours = all(action.slave.fmu.ours for action in actions)
         self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
         self._advance.restype = ctypes.c_int64
         self._actions = actions
         self._memory = memory
+        self._time, self._size = time, size
         self._driven = np.array(memory.driven, dtype=np.int64)
         self._calls = (_Call * len(actions))(*(_prepared(action.call) for action in actions))
         self._plan = _Plan(
@@ -161,9 +196,9 @@ class CompiledStepper:
         )
         if not self._outcome.status:
             return taken, None
-        action = self._actions[self._outcome.call]
-        start = float(span.starts[taken])
-        return taken, action.slave.failed(self._outcome.status, action.name, start)
+        self._time.value, self._size.value = span.starts[taken], span.sizes[taken]
+        left = self._actions[self._outcome.call :]
+        return stopped(left, self._outcome.status, span, taken, self._memory, reals, integers)
 
 
 KINDS = {"Real": 0, "Integer": 1, "Boolean": 1, "": 2}  # as stepper.c numbers them
@@ -190,9 +225,9 @@ def stepper(
     library = _library() if compiled or (compiled is None and plain) else None
     if compiled and (library is None or not plain):
         raise LoomfmuError("the compiled stepper is not to be had: pip install 'loomfmu[native]'")
-    return (
-        CompiledStepper(library, actions, memory) if library else PythonStepper(actions, memory, time, size)
-    )
+    if library:
+        return CompiledStepper(library, actions, memory, time, size)
+    return PythonStepper(actions, memory, time, size)
 
 
 @cache

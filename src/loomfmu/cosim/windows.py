@@ -68,8 +68,8 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
         return replace(uniform(scene), notes=(f"steps: the scene's own everywhere{why}",))
     points, scouted = _equal(scene, coarse), 0
     for _ in range(SCOUTS):
-        recording, needed, _warnings = remembered(scene, _watched(scene), chosen(scene, points))
-        scouted += len(needed.scene.instances) * (len(points) - 1)
+        recording, plan, steps, _ended, _warnings = remembered(scene, _watched(scene), chosen(scene, points))
+        scouted += len(plan.lean.scene.instances) * steps
         places = Places(period(scene), longest)
         for claim in scene.claims:
             arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}

@@ -108,6 +108,11 @@ class Trace(Signals):
         return str(self._file.attrs["status"])
 
     @property
+    def ended_by(self) -> str:
+        """Which FMU ended the run before its time, and when; empty for one that went to its end."""
+        return str(self._file.attrs.get("ended_by", ""))
+
+    @property
     def verdicts(self) -> list[dict[str, Any]]:
         """The verdicts stored with the run."""
         return list(json.loads(self._file.attrs.get("claims", "[]")))

@@ -132,9 +132,11 @@ class TraceWriter:
             dataset.id.set_extent((end,))
             dataset.id.write_direct_chunk((start,), chunk)
 
-    def seal(self, status: str) -> None:
-        """Close the file under its provisional name, marked with its status."""
+    def seal(self, status: str, ended_by: str = "") -> None:
+        """Close the file under its provisional name, marked with its status, and with who ended the run."""
         self._file.close()
+        if ended_by:
+            self._annotate("ended_by", ended_by)
         self._annotate("status", status)
 
     def complete(self, verdicts: Sequence[dict[str, Any]]) -> Path:
