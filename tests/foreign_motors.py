@@ -87,6 +87,20 @@ FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
+HELD = ("Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64")
+# the motor of FMI 3.0 with an input and an output of each of these types, the output equal to the input
+WHOLE = FMI3.replace(
+    '<Boolean name="at_speed"',
+    "".join(
+        f'<{each} name="to_{each}" valueReference="{70 + 2 * place}" causality="input" start="0"/>\n'
+        f'<{each} name="{each}" valueReference="{71 + 2 * place}" causality="output"/>\n'
+        for place, each in enumerate(HELD)
+    )
+    + '<Boolean name="at_speed"',
+)
+BLANKS = FMI3.replace('"both_ways"', '"both ways"').replace('"no_way_back"', '"no way-back"')
+
+
 def gcc() -> str:
     """The compiler, or no test."""
     found = shutil.which("gcc")
@@ -144,7 +158,7 @@ def motor2(
     return packed(directory / f"{name}.fmu", description2(name, **options), binary, "Motor")  # type: ignore[arg-type]
 
 
-def motor3(directory: Path, *, defines: tuple[str, ...] = ()) -> Path:
+def motor3(directory: Path, *, defines: tuple[str, ...] = (), description: str = FMI3) -> Path:
     """The motor as an FMI 3.0 FMU."""
     binary = library("fmi3.c", directory / "Motor3.so", *(f"-D{macro}" for macro in defines))
-    return packed(directory / "Motor3.fmu", FMI3.format(fixed=FIXED), binary, "Motor3", "x86_64-linux")
+    return packed(directory / "Motor3.fmu", description.format(fixed=FIXED), binary, "Motor3", "x86_64-linux")

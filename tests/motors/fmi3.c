@@ -17,6 +17,12 @@ typedef struct {
     Motor motor;
     fmi3LogMessageCallback log;
     fmi3InstanceEnvironment environment;
+    fmi3Int8 Int8; /* of each type one: what is set and read by any reference */
+    fmi3UInt8 UInt8;
+    fmi3Int16 Int16;
+    fmi3UInt16 UInt16;
+    fmi3UInt32 UInt32;
+    fmi3UInt64 UInt64;
 } Instance;
 
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -106,6 +112,28 @@ fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, 
     return fmi3OK;
 }
 
+#define HELD(type)                                                                                              \
+    fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3##type v[], size_t k)    \
+    {                                                                                                             \
+        (void)r;                                                                                                  \
+        for (size_t j = 0; j < n && j < k; j++) v[j] = ((Instance *)c)->type;                                     \
+        return fmi3OK;                                                                                            \
+    }                                                                                                             \
+    fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3##type v[],        \
+                             size_t k)                                                                            \
+    {                                                                                                             \
+        (void)r;                                                                                                  \
+        for (size_t j = 0; j < n && j < k; j++) ((Instance *)c)->type = v[j];                                     \
+        return fmi3OK;                                                                                            \
+    }
+
+HELD(Int8)
+HELD(UInt8)
+HELD(Int16)
+HELD(UInt16)
+HELD(UInt32)
+HELD(UInt64)
+
 fmi3Status fmi3GetFloat32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float32 v[], size_t k)
 {
     (void)r;
@@ -157,22 +185,10 @@ NOT_THERE(fmi3SetDebugLogging)
 NOT_THERE(fmi3InstantiateModelExchange)
 NOT_THERE(fmi3InstantiateScheduledExecution)
 NOT_THERE(fmi3EnterEventMode)
-NOT_THERE(fmi3GetInt8)
-NOT_THERE(fmi3GetUInt8)
-NOT_THERE(fmi3GetInt16)
-NOT_THERE(fmi3GetUInt16)
-NOT_THERE(fmi3GetUInt32)
-NOT_THERE(fmi3GetUInt64)
 NOT_THERE(fmi3GetString)
 NOT_THERE(fmi3GetBinary)
 NOT_THERE(fmi3GetClock)
 NOT_THERE(fmi3SetFloat32)
-NOT_THERE(fmi3SetInt8)
-NOT_THERE(fmi3SetUInt8)
-NOT_THERE(fmi3SetInt16)
-NOT_THERE(fmi3SetUInt16)
-NOT_THERE(fmi3SetUInt32)
-NOT_THERE(fmi3SetUInt64)
 NOT_THERE(fmi3SetString)
 NOT_THERE(fmi3SetBinary)
 NOT_THERE(fmi3SetClock)

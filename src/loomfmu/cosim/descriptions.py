@@ -95,8 +95,8 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         causality=variable.causality,
         unit=unit or "1",
         display=shown_in(unit or "1", said("displayUnit") or ""),
-        minimum=min(values) if values else _limit(said("min")),
-        maximum=max(values) if values else _limit(said("max")),
+        minimum=min(values) if values else _limit(kind, said("min")),
+        maximum=max(values) if values else _limit(kind, said("max")),
         start=None if variable.start is None else _start(kind, variable.start),
         description=variable.description or "",
         choices=tuple(item.name for item in items) if in_a_row else (),
@@ -109,8 +109,10 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
     )
 
 
-def _limit(text: str | None) -> float | None:
+def _limit(kind: str, text: str | None) -> float | None:
     """A limit that is one: tools write the largest numbers there are where there is none."""
+    if kind == "Integer" and text is not None:
+        return int(text)
     value = None if text is None else float(text)
     return None if value is None or math.isinf(value) else value
 

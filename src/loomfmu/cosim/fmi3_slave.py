@@ -5,6 +5,7 @@ mode and without early return: it steps as an FMI 2.0 one does.
 """
 
 import ctypes
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -14,7 +15,8 @@ from fmpy.fmi3 import FMU3Slave
 from ..errors import LoomfmuError
 from .fmus import Fmu, Value
 from .foreign_slave import MOST_MESSAGES
-from .slave import DISCARD, ERROR, FATAL, WARNING, Call, Slave
+from .ports import CARRIED, RANGES
+from .slave import DISCARD, FATAL, REFUSED, WARNING, Call, Slave
 
 C_TYPES: dict[str, Any] = {
     "Float64": ctypes.c_double,
@@ -24,7 +26,7 @@ C_TYPES: dict[str, Any] = {
     **{f"Int{size}": getattr(ctypes, f"c_int{size}") for size in (8, 16, 32, 64)},
     **{f"UInt{size}": getattr(ctypes, f"c_uint{size}") for size in (8, 16, 32, 64)},
 }
-LARGEST = 2**31 - 1  # what the master's vector of integers holds
+EVERYTHING = (-math.inf, math.inf)
 FUNCTIONS = {"Enumeration": "Int64"}  # where the functions are not called as the type
 
 
@@ -34,7 +36,13 @@ def _in_vector(base_type: str) -> Any:
 
 
 def _one_by_one(calls: list[Call]) -> int:
-    return max(call.function(*call.arguments) for call in calls)
+    """Make some calls, up to the first that is refused; the worst status."""
+    worst = 0
+    for call in calls:
+        worst = max(worst, call.function(*call.arguments))
+        if worst > WARNING:
+            break
+    return worst
 
 
 class Fmi3Slave(Slave):
@@ -50,6 +58,7 @@ class Fmi3Slave(Slave):
             self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._reached: float | None = None  # when it ended the simulation
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
+        self._names = {port.reference: port.name for port in fmu.ports.values()}
 
     def _open(self) -> Any:
         slave = FMU3Slave(
@@ -101,32 +110,51 @@ class Fmi3Slave(Slave):
                 size = ctypes.sizeof(_in_vector(base_type))
                 calls.append(self._typed(action, base_type, references[start:end], address + start * size))
                 start = end
-        return calls[0] if len(calls) == 1 else Call(_one_by_one, (calls,), kind, plain=False)
+        if len(calls) == 1:
+            return calls[0]
+        return Call(_one_by_one, (calls,), " or ".join(call.name for call in calls), kind, plain=False)
 
     def _typed(self, action: str, base_type: str, references: Sequence[int], address: int) -> Call:
         """One FMI call; where the types differ in width, by way of an array of the FMU's own type."""
         count = len(references)
         own, masters = C_TYPES[base_type], _in_vector(base_type)
-        function = self._library[f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}"]
+        name = f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}"
+        function = self._library[name]
         array, size = (ctypes.c_uint32 * count)(*references), ctypes.c_size_t(count)
         if own is masters:
             arguments = (self._component, array, size, ctypes.c_void_p(address), size)
-            return Call(function, arguments, base_type, plain=False)
+            return Call(function, arguments, name, base_type, plain=False)
         between = (own * count)()
         values = (masters * count).from_address(address)
 
         def converted(*arguments: Any) -> int:
-            if action == "Set":
-                between[:] = values[:]
+            if action == "Set" and not self._moved(values, between, references, base_type):
+                return REFUSED
             status = int(function(*arguments))
-            if action == "Get":
-                if masters is ctypes.c_int32 and any(abs(value) > LARGEST for value in between):
-                    self.messages.append((ERROR, f"an integer of {max(between, key=abs)} is too large"))
-                    return ERROR
-                values[:] = between[:]
+            if action == "Get" and status <= WARNING and not self._moved(between, values, references, ""):
+                return REFUSED
             return status
 
-        return Call(converted, (self._component, array, size, between, size), base_type, plain=False)
+        return Call(converted, (self._component, array, size, between, size), name, base_type, plain=False)
+
+    def _moved(self, source: Any, target: Any, references: Sequence[int], base_type: str) -> bool:
+        """Copy values to where there is room for an FMI type, or for what the master has; none if one does
+        not fit."""
+        carried = CARRIED if target._type_ is ctypes.c_int32 and not base_type else EVERYTHING
+        low, high = RANGES.get(base_type, carried)
+        for reference, value in zip(references, source, strict=True):
+            if value < low or value > high:
+                whose = (
+                    f"what {base_type} holds"
+                    if base_type
+                    else "the integers that a run carries; leave it out of record"
+                )
+                self.messages.append(
+                    (REFUSED, f"{self._names[reference]} = {value} is outside [{low}, {high}], {whose}")
+                )
+                return False
+        target[:] = source[:]
+        return True
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation says Discard."""
@@ -144,4 +172,5 @@ class Fmi3Slave(Slave):
                 self.messages.append((DISCARD, "it returned before the end of the step, which it must not"))
             return max(status, DISCARD) if terminate.value or early.value else status
 
-        return Call(stepped, (self._component, time, step_size, ctypes.c_bool(True), *told), plain=False)
+        arguments = (self._component, time, step_size, ctypes.c_bool(True), *told)
+        return Call(stepped, arguments, "fmi3DoStep", plain=False)

@@ -154,7 +154,7 @@ class Master:
         actions = {
             name: [
                 *self._inputs(name),
-                Action(self.slaves[name], "fmi2DoStep", self.slaves[name].step_call(self._time, self._size)),
+                Action(self.slaves[name], self.slaves[name].step_call(self._time, self._size)),
                 *self._outputs(name),
             ]
             for name in self.order
@@ -198,9 +198,7 @@ class Master:
             else:
                 runs.append((kind, slot, [reference]))
         return [
-            Action(
-                slave, f"fmi2Set{kind}", slave.value_call("Set", kind, references, self._address(kind, slot))
-            )
+            Action(slave, slave.value_call("Set", kind, references, self._address(kind, slot)))
             for kind, slot, references in runs
         ]
 
@@ -217,7 +215,7 @@ class Master:
             if mine:
                 address = self._address(kind, mine[0][0])
                 call = slave.value_call("Get", kind, [reference for _, reference in mine], address)
-                actions.append(Action(slave, f"fmi2Get{kind}", call))
+                actions.append(Action(slave, call))
         return actions
 
     # ---- stepping

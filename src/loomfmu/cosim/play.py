@@ -47,7 +47,7 @@ def channels(plan: Plan, master: Master) -> list[Channel]:
         port = output_port(plan.scene, signal, "record")
         instance, variable = signal.split(".")
         kind, slot = master.slots[instance, variable]
-        meanings = ("no", "yes") if kind == "Boolean" else port.choices
+        meanings = ("no", "yes") if kind == "Boolean" else port.meanings
         found.append(
             Channel(
                 instance=instance,

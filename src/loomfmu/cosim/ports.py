@@ -1,6 +1,7 @@
 """Variables of FMUs: their names, types, units and limits, and which of them may be wired."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,6 +9,16 @@ from .. import units
 from ..errors import LoomfmuError, suggestion
 
 Value = float | int | bool
+_WHOLE = re.compile(r"\s*[-+]?\d+\s*")
+CARRIED = (-(2**31), 2**31 - 1)  # the integers that a master carries: those of FMI 2.0
+# what variables of an FMI type can hold; the others hold any finite number
+RANGES: dict[str, tuple[float, float]] = {
+    "Integer": CARRIED,
+    "Enumeration": CARRIED,
+    **{f"Int{size}": (-(2 ** (size - 1)), 2 ** (size - 1) - 1) for size in (8, 16, 32, 64)},
+    **{f"UInt{size}": (0, 2**size - 1) for size in (8, 16, 32, 64)},
+    "Float32": (-3.4028234663852886e38, 3.4028234663852886e38),
+}
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -99,15 +110,29 @@ class Port:
                 raise LoomfmuError(f"{where} = {given!r} is neither true nor false")
             return str(given).lower() == "true"
         if self.choices and isinstance(given, str) and not given.isdigit():
-            choice = given.replace("-", "_").replace(" ", "_")
-            if choice not in self.choices:
-                raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(choice, self.choices)}")
-            return self.choices.index(choice) + self.first_choice
+            return self._choice(given, where)
+        if self.kind == "Integer" and isinstance(given, str) and _WHOLE.fullmatch(given):
+            given = int(given)
+        if self.kind == "Integer" and isinstance(given, int) and not isinstance(given, bool):
+            return self._within(given, where)  # as a real it might become another one
         try:
             value = self._quantity(given)
         except units.UnitError as error:
             raise LoomfmuError(f"{where}: {error}") from None
         return self._within(value, where)
+
+    @property
+    def meanings(self) -> tuple[str, ...]:
+        """The choices without blanks, as lists in files have them, which blanks separate."""
+        return tuple(_joined(choice) for choice in self.choices)
+
+    def _choice(self, given: str, where: str) -> int:
+        """The number of a choice, whichever of blank, - and _ its name is written with."""
+        alike = [choice for choice in self.choices if _joined(choice) == _joined(given)]
+        found = given if given in self.choices else alike[0] if len(alike) == 1 else None
+        if found is None:
+            raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(given, self.choices)}")
+        return self.choices.index(found) + self.first_choice
 
     def _quantity(self, given: Any) -> float:
         if self.unit in units.UNITS:
@@ -117,16 +142,17 @@ class Port:
         return units.parse(given, "1")
 
     def _within(self, value: float, where: str) -> Value:
-        low = -float("inf") if self.minimum is None else self.minimum
-        high = float("inf") if self.maximum is None else self.maximum
-        if not low <= value <= high or abs(value) == float("inf"):
+        low, high = RANGES.get(self.base_type, (-math.inf, math.inf))
+        low = low if self.minimum is None else max(low, self.minimum)
+        high = high if self.maximum is None else min(high, self.maximum)
+        if not low <= value <= high or abs(value) == math.inf:
             factor = units.unit(self.display).factor
-            shown = self.unit if self.display == "1" else self.display
-            label = "" if shown == "1" else f" {shown}"
-            raise LoomfmuError(
-                f"{where} = {value / factor:.7g}{label} is outside"
-                f" [{low / factor:.7g}, {high / factor:.7g}]{label}"
+            unit = self.unit if self.display == "1" else self.display
+            label = "" if unit == "1" else f" {unit}"
+            shown, lowest, highest = (
+                str(each) if isinstance(each, int) else f"{each / factor:.7g}" for each in (value, low, high)
             )
+            raise LoomfmuError(f"{where} = {shown}{label} is outside [{lowest}, {highest}]{label}")
         if self.kind == "Integer":
             if value != int(value):
                 raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
@@ -144,6 +170,11 @@ class Port:
         if self.has_unit and _differ(self, stated):
             raise LoomfmuError(f"{where} = {unit!r}: the FMU itself says {self.unit}")
         return self if self.has_unit else stated
+
+
+def _joined(choice: str) -> str:
+    """The name of a choice in one word."""
+    return "_".join(re.split(r"[\s_-]+", choice.strip()))
 
 
 def _differ(one: Port, other: Port) -> bool:

@@ -41,11 +41,15 @@ class Ended(LoomfmuError):
 
 
 class Call(NamedTuple):
-    """A prepared call. `kind` is the type of the values it moves, empty for a step; `plain` one that is the
-    FMU's own function."""
+    """A prepared call.
+
+    `name` is that of the FMU's function, `kind` the type of the values it moves, empty for a step; `plain` one
+    that is the FMU's own function.
+    """
 
     function: Callable[..., int]
     arguments: tuple[Any, ...]
+    name: str
     kind: str = ""
     plain: bool = True
 
@@ -146,14 +150,15 @@ class Slave:
 
     def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
         """`fmi2GetReal` and its kin, moving values between the FMU and the memory at an address."""
-        function = self._library[f"fmi2{action}{kind}"]
+        name = f"fmi2{action}{kind}"
         array = (ctypes.c_uint * len(references))(*references)
         size, values = ctypes.c_size_t(len(references)), ctypes.c_void_p(address)
-        return Call(function, (self._component, array, size, values), kind)
+        return Call(self._library[name], (self._component, array, size, values), name, kind)
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi2DoStep` over the step that `time` and `step_size` hold when it is called."""
-        return Call(self._library["fmi2DoStep"], (self._component, time, step_size, ctypes.c_int(1)))
+        arguments = (self._component, time, step_size, ctypes.c_int(1))
+        return Call(self._library["fmi2DoStep"], arguments, "fmi2DoStep")
 
     # ---- rollback
 
@@ -189,12 +194,11 @@ class Slave:
         self.fatal = self.fatal or status == FATAL
         if status == REFUSED:
             return LoomfmuError(f"{self.name} at {time:.9g} s: {self._reason()}")
-        if status == DISCARD and action == "fmi2DoStep":
+        if status == DISCARD and action.endswith("DoStep"):
             ended = self._ended()
             if ended is not None:
                 return Ended(self.name, ended if ended >= time else time)
         kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
-        action = action.replace("fmi2", self.standard)
         return LoomfmuError(f"{self.name} at {time:.9g} s: {action} gave {kind}: {self._reason()}")
 
     def _ended(self) -> float | None:

@@ -86,7 +86,7 @@ def _value(port: Port, given: Given, where: str) -> float | bool | str:
     """A value in the unit of its variable."""
     if given.kind == "Boolean":
         return given.text in ("true", "1")
-    if given.kind == "Enumeration":
+    if given.kind in ("Enumeration", "Integer"):
         return given.text
     try:
         value = float(given.text)

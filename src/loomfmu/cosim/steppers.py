@@ -29,10 +29,9 @@ SOURCE = Path(__file__).with_name("native") / "stepper.c"
 
 @dataclass(frozen=True)
 class Action:
-    """A prepared call with whom it goes to and what it is called."""
+    """A prepared call with whom it goes to."""
 
     slave: Slave
-    name: str
     call: Call
 
 
@@ -55,7 +54,7 @@ def perform(actions: Iterable[Action], time: float) -> None:
     """Make some calls. Raises LoomfmuError for the first that an FMU refuses."""
     for action in actions:
         if (status := action.call.function(*action.call.arguments)) > WARNING:
-            raise action.slave.failed(status, action.name, time)
+            raise action.slave.failed(status, action.call.name, time)
 
 
 @dataclass
@@ -81,7 +80,7 @@ def stopped(
     for place, action in enumerate(actions):
         status = action.call.function(*action.call.arguments) if place else status
         if status > WARNING:
-            failures.append(action.slave.failed(status, action.name, float(span.starts[step])))
+            failures.append(action.slave.failed(status, action.call.name, float(span.starts[step])))
             if not _at_end(failures[-1], span, step):
                 return step, failures[-1]
     reals[step] = memory.reals

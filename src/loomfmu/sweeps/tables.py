@@ -95,7 +95,7 @@ def _axis(axis: Axis) -> Any:
 def _value(signal: str, port: Port) -> Any:
     about = _about(port.unit, port.display, port.description)
     if port.choices:
-        about["meanings"] = " ".join(port.choices)
+        about["meanings"] = " ".join(port.meanings)
         about["first_meaning"] = str(port.first_choice)
     return pa.field(signal, TYPES[port.kind], metadata=about)
 
