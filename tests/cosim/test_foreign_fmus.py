@@ -1,19 +1,21 @@
 """FMUs of other makers, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
 
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_motors import motor2, motor3
+from foreign_motors import description2, library, motor2, motor3, packed
 from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
 
-from loomfmu import LoomfmuError, Trace
+from loomfmu import LoomfmuError, Trace, evaluate, run
 from loomfmu.cli import main
 from loomfmu.components import WeftInsertion
 from loomfmu.cosim import fmus, slave
 from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scene import Scene
 from loomfmu.machines import parameters
 
 __all__ = ["fmu_cache"]
@@ -236,6 +238,42 @@ def test_messages_with_arguments_are_told_whole_and_to_the_right_instance(
         for step in range(3)
     )
     assert len(ran(place, text, tmp_path, duration="1 s").warnings) == 100  # the last fifty of each
+
+
+def test_one_without_outputs_runs_for_what_it_does(tmp_path: Path) -> None:
+    binary = library("fmi2.c", tmp_path / "Motor.so")
+    sink = description2().replace('causality="output"', 'causality="local"')
+    packed(tmp_path / "Motor.fmu", sink, binary, "Motor")
+    told = [f"motor: motor carries 7.500 N.m, step {step}" for step in range(3)]
+    text = MOTOR + 'verbose = true\n"load.tau" = 7.5\n'
+    alone = ran(tmp_path, text, tmp_path, duration="3 ms")
+    assert list(alone.warnings) == told and alone.trace.rows == 4 and list(alone.trace) == []
+    # nothing that is recorded or claimed depends on it, and it depends on what is recorded nowhere
+    text = 'record = ["weft.stroke"]\n' + text + '[weft]\n[wires]\n"motor.load.tau" = "weft.shaft_torque"\n'
+    scene = scenes.parse(text, "x", {"duration": "3 ms"}, tmp_path)
+    carried = [f"motor: motor carries {torque:.3f} N.m, step" for torque in torques(scene)]
+    for result in (run(scene, output=tmp_path / "x.h5"), evaluate(scene)):
+        assert [warning.rpartition(" ")[0] for warning in result.warnings] == carried
+
+
+def torques(scene: Scene) -> list[float]:
+    """What the weft's torque is at the end of each step."""
+    trace = evaluate(scene, values=["weft.shaft_torque"]).trace
+    return [float(value) for value in trace["weft.shaft_torque"][1:]]
+
+
+def test_one_that_says_it_needs_its_tool_is_tried(tmp_path: Path) -> None:
+    motor2(tmp_path, flags='needsExecutionTool="true"')
+    result = ran(tmp_path, MOTOR, tmp_path)
+    said = "it says that it needs the tool that made it: needsExecutionTool = true"
+    assert result.holds and result.warnings == (f"motor: {said}",)
+    with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
+        description = archive.read("modelDescription.xml").decode()
+    binary = library("fmi2.c", tmp_path / "Motor.so")
+    packed(tmp_path / "Motor.fmu", description.replace("{motor-2}", "{other}"), binary, "Motor")
+    with pytest.raises(LoomfmuError) as raised:
+        ran(tmp_path, MOTOR, tmp_path)
+    assert str(raised.value).endswith(f"cannot be instantiated: {{other}}: 0 alive ({said})")
 
 
 def test_what_they_refuse_is_told_in_one_line(place: Path, tmp_path: Path) -> None:

@@ -43,7 +43,8 @@ class Fmu:
 
     `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
     a process may have one instance of. `flavour` is that of one which is built when its file is first
-    needed, and empty for one that was given as a file. `fixed_step` is one that takes equal steps only.
+    needed, and empty for one that was given as a file. `fixed_step` is one that takes equal steps only,
+    `needs_tool` one that says it needs the tool that made it.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Fmu:
     ours: bool = True
     single: bool = False
     fixed_step: bool = False
+    needs_tool: bool = False
     flavour: str = ""
     given: Unpacked | None = field(default=None, repr=False)
 
@@ -94,6 +96,18 @@ class Fmu:
     def version(self) -> str:
         """Its maker's version of it."""
         return self.file.version
+
+    def check_platform(self, where: str) -> None:
+        """Refuse a file that has no library for this machine, naming the platforms that it has."""
+        if self.given is None:
+            return
+        here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
+        libraries = self.directory / "binaries"
+        if (libraries / here / f"{self.identifier}{fmpy.sharedLibraryExtension}").exists():
+            return
+        found = sorted({each.parent.name for each in libraries.glob(f"*/{self.identifier}.*")})
+        known = f"it has {', '.join(found)}" if found else "it has none at all"
+        raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
 
     def name_of(self, variable: str) -> str:
         """What scenes call a variable, given that name or the FMU's own."""
@@ -173,7 +187,7 @@ def load(path: Path) -> Fmu:
     return Fmu(
         name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
         ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
-        fixed_step=not kind.canHandleVariableCommunicationStepSize,
+        fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
@@ -192,10 +206,6 @@ def _check_runnable(path: Path, description: Any) -> None:
     if kind is None:
         raise LoomfmuError(
             f"{path}: it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run"
-        )
-    if kind.needsExecutionTool:
-        raise LoomfmuError(
-            f"{path}: it needs the tool that made it (needsExecutionTool), which is not started"
         )
 
 

@@ -2,6 +2,7 @@
 
 An instance that nothing asked for depends on is not run, an output that nobody reads is not fetched, and a
 main shaft of constant speed needs no FMU: its angle is a product, and what follows it can turn by itself.
+FMUs of other makers always run: they may be there for what they do, such as to log or to send.
 """
 
 from collections.abc import Iterable
@@ -53,7 +54,9 @@ def lean(scene: Scene, signals: Iterable[str]) -> Lean:
     signals = tuple(signals)
     shafts = {name: _constant(each) for name, each in scene.instances.items() if _is_constant(scene, name)}
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
-    needed = _upstream({signal.split(".")[0] for signal in signals} - set(shafts), wires)
+    asked = {signal.split(".")[0] for signal in signals} - set(shafts)
+    theirs = {name for name, each in scene.instances.items() if not each.fmu.ours}
+    needed = _upstream(asked | theirs, wires)
     wires = [wire for wire in wires if wire.sink[0] in needed]
     instances = {name: _turning(scene, name, shafts) for name in scene.instances if name in needed}
     fetched = {wire.source for wire in wires}

@@ -23,7 +23,7 @@ from .grid import Grid, Span, uniform
 from .lean import ConstantShaft
 from .loops import Iteration, Swing
 from .scene import ITERATED, Scene
-from .slave import Ended, Slave, borrow, give_back
+from .slave import NEEDS_TOOL, Ended, Slave, borrow, give_back
 from .start import Slot, Start
 from .steppers import Action, Memory, Stepper, stepper
 
@@ -289,6 +289,7 @@ class Master:
                 for status, text in slave.messages
                 if status == 1
             ]
+            + [f"{slave.name}: {NEEDS_TOOL}" for slave in self.slaves.values() if slave.fmu.needs_tool]
             + [f"loop: {wire} carries the value of the step before" for wire in lagged]
             + self._start_warnings
             + [f"{self.ended}; the run would have gone on to {self.grid.stop_time:.9g} s"] * bool(self.ended)

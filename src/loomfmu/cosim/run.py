@@ -154,6 +154,8 @@ def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavou
     place = "" if isinstance(scene, Scene) else f"{scene}: "
     scene = _in_flavour(_read(scene, overrides), flavour)
     try:
+        for name, instance in scene.instances.items():
+            instance.fmu.check_platform(name)
         check_claims(scene)
     except LoomfmuError as error:
         raise LoomfmuError(f"{place}{error}") from None

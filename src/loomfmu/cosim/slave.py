@@ -29,6 +29,7 @@ from .fmus import Fmu, Value
 
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
 REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
+NEEDS_TOOL = "it says that it needs the tool that made it: needsExecutionTool = true"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 
 
@@ -43,8 +44,8 @@ class Ended(LoomfmuError):
 class Call(NamedTuple):
     """A prepared call.
 
-    `name` is that of the FMU's function, `kind` the type of the values it moves, empty for a step; `plain` one
-    that is the FMU's own function.
+    `name` is that of the FMU's function, `kind` the type of the values it moves, empty for a step; `plain`
+    one that is the FMU's own function.
     """
 
     function: Callable[..., int]
@@ -71,7 +72,10 @@ class Slave:
         try:
             self._slave = self._open()
         except Exception as error:
-            raise LoomfmuError(f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}") from None
+            hint = f" ({NEEDS_TOOL})" if fmu.needs_tool else ""
+            raise LoomfmuError(
+                f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}{hint}"
+            ) from None
         self._library: Any = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._component = ctypes.c_void_p(self._slave.component)
 
