@@ -68,9 +68,20 @@ UNITS = {
     "kg.m2": Unit(kg=1, m=2),
 }
 
-ALIASES = {"": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
+ALIASES = {"": "1", "-": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+
+
+def canonical(name: str) -> str:
+    """What we call a unit, given a name that tools write for it.
+
+    >>> canonical("rpm"), canonical("[m]"), canonical("[-]"), canonical("V")
+    ('rev/min', 'm', '1', 'V')
+    """
+    bare = name.strip()
+    bare = bare[1:-1].strip() if bare.startswith("[") and bare.endswith("]") else bare
+    return ALIASES.get(bare, bare)
 
 
 def unit(name: str) -> Unit:
@@ -79,7 +90,7 @@ def unit(name: str) -> Unit:
     Raises:
         UnitError: there is none; the message names the nearest.
     """
-    known = UNITS.get(ALIASES.get(name, name))
+    known = UNITS.get(canonical(name))
     if known is None:
         raise UnitError(f"unknown unit {name!r}{suggestion(name, [*UNITS, *ALIASES])}")
     return known

@@ -175,12 +175,35 @@ def test_degrees_are_not_radians(tmp_path: Path) -> None:
 def test_a_unit_that_is_not_there_is_asked_for(unitless: Path, tmp_path: Path) -> None:
     assert refused(unitless, MOTOR + WEFT) == (
         "wire motor.flange.phi -> weft.shaft_angle: motor.flange.phi has no unit, weft.shaft_angle is in rad;"
-        ' say what it is: [motor] units = {flange_phi = "..."}'
+        ' say what it is: [motor] units = {flange_phi = "..."} in a scene,'
+        " or --set motor.units.flange_phi=..."
     )
+    by_hand = {"motor.units.flange.phi": "rad", "motor.units.flange_w": "rad/s"}
+    stated = MOTOR + 'units = {flange_a = "rad/s2"}\n' + WEFT
+    scene = scenes.parse(stated, "x", by_hand, unitless)
+    ports = scene.instances["motor"].fmu.ports
+    assert [ports[f"flange_{x}"].unit for x in ("phi", "w", "a")] == ["rad", "rad/s", "rad/s2"]
+    with pytest.raises(LoomfmuError, match=r"^motor\.units: Motor has no variable 'x'"):
+        scenes.parse(MOTOR, "x", {"motor.units.x": "rad"}, unitless)
     units = 'units = {"flange.phi" = "rad", flange_w = "rad/s", flange_a = "rad/s2"}\n'
     trace = ran(unitless, MOTOR + units + WEFT, tmp_path).trace
     assert trace.unit("motor.flange_w") == "rad/s"
     np.testing.assert_allclose(trace["motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-12)
+
+
+def test_units_as_they_are_written_in_the_wild(tmp_path: Path) -> None:
+    written = description2(units=False)
+    for name, unit in (
+        ("flange.phi", "[rad]"),
+        ("flange.w", "[rad/s]"),
+        ("flange.a", "[rad/s2]"),
+        ("time", "-"),
+    ):
+        before, named, after = written.partition(f'name="{name}"')
+        written = before + named + after.replace("<Real ", f'<Real unit="{unit}" ', 1)
+    packed(tmp_path / "Motor.fmu", written, library("fmi2.c", tmp_path / "Motor.so"), "Motor")
+    trace = ran(tmp_path, MOTOR + WEFT, tmp_path).trace
+    assert [trace.unit(f"motor.{x}") for x in ("flange_phi", "time_")] == ["rad", "1"]
 
 
 def test_two_that_both_have_none_can_be_wired(unitless: Path, tmp_path: Path) -> None:

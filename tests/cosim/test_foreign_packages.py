@@ -174,8 +174,10 @@ def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: P
     with zipfile.ZipFile(path) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     files["resources/Motor.fmu"] = motor
+    bare = rewritten(path, files)
     with pytest.raises(LoomfmuError, match=r"w_free = 572\.957795130823 rpm, but the variable has no unit"):
-        run(rewritten(path, files), output=tmp_path / "x.h5")
+        run(bare, output=tmp_path / "x.h5")
+    follow_the_hints(bare, tmp_path)
     start = b'source="resources/Motor.fmu">'
     assert start in files["SystemStructure.ssd"]
     connectors = f"<ssd:Connectors>{stated}</ssd:Connectors>".encode()
@@ -183,6 +185,43 @@ def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: P
     result = run(rewritten(path, files), output=tmp_path / "x.h5")
     assert result.trace.unit("drive_motor.flange_w") == "rad/s"
     assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
+
+
+def follow_the_hints(path: Path, tmp_path: Path) -> None:
+    """Whatever unit is asked for can be given in the way that is said, one after the other."""
+    units = {"w_free": "rad/s", "flange_phi": "rad", "flange_w": "rad/s"}
+    asked = []
+    overrides: dict[str, str] = {}
+    while True:
+        try:
+            result = run(path, set=overrides, output=tmp_path / "x.h5")
+            break
+        except LoomfmuError as error:
+            key = str(error).rpartition("--set ")[2].removesuffix("=...")
+            asked.append(key)
+            assert asked.count(key) == 1
+            overrides[key] = units[key.rpartition(".")[2]]
+    assert asked == [f"drive_motor.units.{name}" for name in units]
+    assert result.trace.unit("drive_motor.flange_w") == "rad/s"
+    assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
+    with pytest.raises(LoomfmuError, match=r"drive_motor\.units: .* variable 'x'"):
+        run(path, set={"drive_motor.units.x": "m"}, output=tmp_path / "x.h5")
+
+
+def test_a_plain_number_is_one_for_a_variable_without_unit(tmp_path: Path) -> None:
+    more = '<ssv:Parameter name="tau_stall"><ssv:Real value="130" unit="-"/></ssv:Parameter>'
+    more += '<ssv:Parameter name="w_free"><ssv:Real value="50"/></ssv:Parameter>'
+    path = package(tmp_path, more=more)
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["resources/Motor.fmu"] = motor2(tmp_path, units=False).read_bytes()
+    stated = {
+        f"drive_motor.units.{name}": unit
+        for name, unit in (("w_free", "rad/s"), ("flange_phi", "rad"), ("flange_w", "rad/s"))
+    }
+    result = run(rewritten(path, files), set=stated, output=tmp_path / "x.h5")
+    assert result.scene.instances["drive_motor"].values["tau_stall"] == 130.0
+    assert result.scene.instances["drive_motor"].values["w_free"] == 50.0
 
 
 def rewritten(path: Path, files: dict[str, bytes]) -> Path:

@@ -129,10 +129,20 @@ def members(key: str, given: Iterable[str]) -> list[str]:
 def override(tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any) -> None:
     """Let one value of the scene be another."""
     for member, variable in overridden(given, key):
-        if member:
+        about = unit_of(variable)
+        if about:
+            stated = given[member].get("units", {})
+            value = {**stated, about: value} if isinstance(stated, dict) else stated
+            given[member] = given[member] | {"units": value}
+        elif member:
             given[member] = given[member] | {variable: value}
         else:
             tables[variable] = value
+
+
+def unit_of(key: str) -> str:
+    """The variable whose unit a key of an instance states, such as `units.flange.w`; nothing for others."""
+    return key.removeprefix("units.") if key.startswith("units.") else ""
 
 
 def overridden(given: Iterable[str], key: str) -> list[tuple[str, str]]:

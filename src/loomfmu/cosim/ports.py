@@ -52,7 +52,7 @@ def own_name(name: str, definition: Definition | None) -> str:
     >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("V", None)
     ('m/s2', 'rev/min', '')
     """
-    usual = units.ALIASES.get(name, name)
+    usual = units.canonical(name)
     if usual in units.UNITS:
         own = own_definition(usual)
         # rad is 1 in SI: many tools leave it out of rad/s
@@ -70,6 +70,7 @@ def shown_in(name: str, display: str = "") -> str:
     known = units.UNITS.get(name)
     if known is None or known.factor != 1.0:
         return "1"
+    display = units.canonical(display)
     wanted = units.UNITS.get(display)
     return display if wanted is not None and wanted.dimension == known.dimension else name
 
@@ -196,7 +197,8 @@ def mismatch(source: str, origin: Port, sink: str, to: Port) -> str:
         instance = lacking.split(".")[0]
         return (
             f"{lacking} has no unit, {other} is in {unit};"
-            f' say what it is: [{instance}] units = {{{port.name} = "..."}}'
+            f' say what it is: [{instance}] units = {{{port.name} = "..."}} in a scene,'
+            f" or --set {instance}.units.{port.name}=..."
         )
     if not _differ(origin, to):
         return ""

@@ -9,7 +9,7 @@ import hashlib
 import posixpath
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from . import fmus
 from .descriptions import plain_names
 from .fmus import Fmu, cache_directory
 from .graph import Wire
-from .instances import TIMES, Instance, as_shaft, check_name, overridden, with_units
+from .instances import TIMES, Instance, as_shaft, check_name, overridden, override, unit_of, with_units
 from .scene import Scene, assemble, toml, wire
 from .ssp_values import apply, bound
 from .ssp_xml import FMU, OSP, OURS, SSD_FILE, full, read_units, said
@@ -89,7 +89,11 @@ class _Package:
         found = list(_components(system))
         names = _names(found)
         text = None if annotation is None else toml(annotation.text or "")
-        instances = {name: self._instance(name, each, text) for name, each in names.items()}
+        stated = _stated(names, text or {}, overrides)
+        instances = {
+            name: self._instance(name, each, stated[name], ours=text is not None)
+            for name, each in names.items()
+        }
         wires = _wires(system, instances, {each.path: name for name, each in names.items()})
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         _override(tables, instances, overrides)
@@ -99,14 +103,13 @@ class _Package:
 
     # ---- instances
 
-    def _instance(self, name: str, found: _Found, text: dict[str, Any] | None) -> Instance:
-        """An instance with its values; `text` are the tables of the scene, if the package is ours."""
+    def _instance(self, name: str, found: _Found, stated: Any, ours: bool) -> Instance:
+        """An instance with its values; `stated` are units, `ours` tells whether we made the package."""
         element = found.element
         check_name(name)
         source = said(element, "source")
         if element.get("type", FMU) != FMU:
             raise LoomfmuError(f"{name}: {source} is no FMU but {element.get('type')}")
-        stated = (text or {}).get(name, {}).get("units", {})
         fmu = self._with_units(with_units(self._fmu(source), stated, name), element, name)
         if name == "shaft" and "angle" in fmu.ports:
             fmu = as_shaft(fmu)
@@ -117,7 +120,7 @@ class _Package:
                 if given.name.startswith(start):
                     own = replace(given, name=given.name.removeprefix(start))
                     self.notes += [note for note in [apply(instance, own)] if note]
-        if fmu.ours and text is None:  # whatever was meant for another master: ours works in dependency order
+        if fmu.ours and not ours:  # whatever was meant for another master: ours works in dependency order
             instance.values.pop("inputs_at_step_end", None)
         instance.settle()
         return instance
@@ -266,10 +269,21 @@ def _check_plain(connection: Element, ends: list[Node]) -> None:
             raise LoomfmuError(f"connection {shown} transforms its value: that is not done")
 
 
+def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
+    """The units that the text of our scene states for each instance, and those that are set."""
+    tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
+    for key, value in overrides.items():
+        if unit_of(key.partition(".")[2]):
+            override({}, tables, key, value)
+    return {name: table["units"] for name, table in tables.items()}
+
+
 def _override(tables: dict[str, Any], instances: dict[str, Instance], overrides: dict[str, Any]) -> None:
     """Let some values be others."""
     for key, value in overrides.items():
         for name, variable in overridden(instances, key):
+            if unit_of(variable):  # known from the beginning
+                continue
             if name:
                 instances[name].set(variable, value)
             else:

@@ -4,10 +4,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
+from .. import units
 from ..errors import LoomfmuError
 from .fmus import Port
 from .instances import Instance
-from .ports import Definition, own_name
+from .ports import Definition, own_definition, own_name
 from .ssp_xml import full, read_units, said
 
 Read = Callable[[str], Element]  # the root of an XML file in the package
@@ -95,8 +96,15 @@ def _value(port: Port, given: Given, where: str) -> float | bool | str:
     name = own_name(given.unit, given.definition) or given.unit
     if not given.unit or (port.has_unit and name == port.unit):
         return value
-    here, there = given.definition, port.definition
+    if not port.has_unit:
+        if name == "1":
+            return value
+        hint = f"--set {where.partition('.')[0]}.units.{port.name}=..."
+        raise LoomfmuError(
+            f"{where} = {given.text} {given.unit}, but the variable has no unit; say what it is: {hint}"
+        )
+    known = own_definition(name) if name in units.UNITS else None
+    here, there = given.definition or known, port.definition
     if here and there and here.exponents == there.exponents and here.offset == there.offset == 0.0:
         return value * here.factor / there.factor
-    reason = f"which is no unit of {port.unit}" if port.has_unit else "but the variable has no unit"
-    raise LoomfmuError(f"{where} = {given.text} {given.unit}, {reason}")
+    raise LoomfmuError(f"{where} = {given.text} {given.unit}, which is no unit of {port.unit}")

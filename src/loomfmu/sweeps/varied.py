@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.fmus import Port
-from ..cosim.instances import COARSE, FILES, PARAMETER_SETS, TIMES, WHOLE, Instance, overridden
+from ..cosim.instances import COARSE, FILES, PARAMETER_SETS, TIMES, WHOLE, Instance, overridden, unit_of
 from ..cosim.scene import Scene
 from ..errors import LoomfmuError, suggestion
 from ..machines import HEAD_MASS, HEADS, MACHINE_COLUMNS, MACHINES
@@ -109,7 +109,7 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
     """A parameter of an instance, the start of an input, or a name that an instance goes by."""
     fmu = scene.instances[instance].fmu
     name = fmu.name_of(variable)
-    if name not in fmu.ports and variable in (*PARAMETER_SETS, *FILES):
+    if name not in fmu.ports and (variable in (*PARAMETER_SETS, *FILES) or unit_of(variable)):
         return Varied(key, (key,), "Text", "1", "1", variable, _text(key), needs_scene=True)
     if any((drive.instance, drive.variable) == (instance, name) for drive in scene.drives):
         raise LoomfmuError(f"{instance}.{variable} is driven by the scene's inputs and cannot be varied")
