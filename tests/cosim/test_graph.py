@@ -65,3 +65,22 @@ def test_a_loop_does_not_hold_up_what_does_not_depend_on_it() -> None:
     order, lagged = step_order(["a", "b", "c", "d"], wiring)
     assert order == ["d", "c", "a", "b"]
     assert [str(wire) for wire in lagged] == ["b.y -> a.u"]
+
+
+@given(wirings, st.permutations(NAMES))
+def test_only_wires_within_a_loop_lag(pairs: list[tuple[str, str]], scene: list[str]) -> None:
+    wiring = wires(pairs)
+    _order, lagged = step_order(scene, wiring)
+    for wire in lagged:  # its source is fed, near or far, by its sink
+        reached, front = set(), {wire.sink[0]}
+        while front:
+            reached |= front
+            front = {each.sink[0] for each in wiring if each.source[0] in front} - reached
+        assert wire.source[0] in reached
+
+
+def test_what_a_loop_feeds_comes_after_it() -> None:
+    wiring = [Wire(("a", "y"), ("b", "u")), Wire(("b", "y"), ("a", "u")), Wire(("a", "y"), ("c", "u"))]
+    order, lagged = step_order(["c", "a", "b"], wiring)
+    assert order == ["a", "c", "b"]
+    assert [str(wire) for wire in lagged] == ["b.y -> a.u"]

@@ -18,8 +18,8 @@ class Wire:
 def step_order(instances: Iterable[str], wires: Iterable[Wire]) -> tuple[list[str], list[Wire]]:
     """Instances so that sources come before sinks, and the wires that close a loop.
 
-    Where only loops are left, the first of the remaining instances in the scene's order goes next, and
-    its wires from instances that have not been stepped yet carry the values of the step before.
+    Where only loops are left, the first instance of the scene that lies on a loop fed by nothing but itself
+    goes next; its wires from instances that have not been stepped yet carry the values of the step before.
 
     >>> step_order(["a", "b"], [Wire(("b", "y"), ("a", "u"))])
     (['b', 'a'], [])
@@ -27,18 +27,33 @@ def step_order(instances: Iterable[str], wires: Iterable[Wire]) -> tuple[list[st
     waiting: Mapping[str, list[Wire]] = {name: [] for name in instances}
     for wire in wires:
         waiting[wire.sink[0]].append(wire)
-    order: list[str] = []
+    order: dict[str, None] = {}
     lagged: list[Wire] = []
-    remaining = list(waiting)
+    remaining = dict.fromkeys(waiting)
     while remaining:
-        ready = [
-            name
-            for name in remaining
-            if all(w.source[0] in order or w.source[0] == name for w in waiting[name])
-        ]
         # an instance wired to itself is a loop of its own
-        name = ready[0] if ready else remaining[0]
+        sources = {
+            name: {w.source[0] for w in waiting[name]} & remaining.keys() - {name} for name in remaining
+        }
+        ready = [name for name in remaining if not sources[name]]
+        name = ready[0] if ready else _first_in_a_loop(sources)
         lagged += [wire for wire in waiting[name] if wire.source[0] not in order]
-        order.append(name)
-        remaining.remove(name)
-    return order, lagged
+        order[name] = None
+        del remaining[name]
+    return list(order), lagged
+
+
+def _first_in_a_loop(sources: Mapping[str, set[str]]) -> str:
+    """The first instance that lies upstream of everything upstream of it: no other loop feeds its own."""
+    upstream = {name: _upstream(name, sources) for name in sources}
+    return next(name for name in sources if all(name in upstream[other] for other in upstream[name]))
+
+
+def _upstream(name: str, sources: Mapping[str, set[str]]) -> set[str]:
+    """All that feeds an instance, near or far; itself if it lies on a loop."""
+    found: set[str] = set()
+    front = set(sources[name])
+    while front:
+        found |= front
+        front = set().union(*(sources[each] for each in front)) - found
+    return found
