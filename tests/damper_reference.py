@@ -4,7 +4,7 @@ Equations and contact rules stand here a second time, as an initial value proble
 the component or of `loomfmu.physics.damper` is used but the damping ratio of a stop.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import copysign, log2, pi, sqrt
 from typing import Any
@@ -48,12 +48,16 @@ def knots(speed: float, turns: int) -> list[float]:
 
 @dataclass(frozen=True)
 class Trace:
-    """Displacement, rate and transmitted force at given times, and the contacts with a stop on the way."""
+    """Displacement, rate and transmitted force at given times, and the contacts with a stop on the way.
+
+    `edges` are times and forces where a stop has just begun or ended to press: the force may jump there.
+    """
 
     displacement: np.ndarray
     rate: np.ndarray
     force: np.ndarray
     contacts: int
+    edges: tuple[tuple[float, float], ...] = ()
 
     @property
     def peak(self) -> float:
@@ -113,12 +117,22 @@ class Carrier:
     def integrate(
         self, speed: float, turns: int, times: np.ndarray, law: int = SLOPED_SINE, load: Load = unloaded
     ) -> Trace:
-        """Trace at sorted times from 0 to the end of the turns."""
-        end = 2.0 * pi * turns / speed
+        """Trace behind a frame of a loom, at sorted times from 0 to the end of the turns."""
+
+        def acceleration(time: float) -> float:
+            return frame(time, speed, law)[2]
+
+        return self.follow(acceleration, [*knots(speed, turns), 2.0 * pi * turns / speed], times, load)
+
+    def follow(
+        self, acceleration: Load, stops: Sequence[float], times: np.ndarray, load: Load = unloaded
+    ) -> Trace:
+        """Trace at sorted times from 0 to the last stop; the frame's acceleration is smooth between these."""
         state, contact, side, contacts = np.array(self.start), FREE, 0.0, 0
         rows = np.zeros((len(times), 3))
+        edges: list[tuple[float, float]] = []
         begin = 0.0
-        for stop in [*knots(speed, turns), end]:
+        for stop in stops:
             while begin < stop:
 
                 def motion(
@@ -126,7 +140,7 @@ class Carrier:
                 ) -> tuple[float, float]:
                     z, v = state
                     force = load(time) - self.force(contact, side, z, v)
-                    return v, force / self.mass - frame(time, speed, law)[2]
+                    return v, force / self.mass - acceleration(time)
 
                 # a step of 0.2 ms keeps the interpolation between scipy's steps as exact as the steps
                 run = solve_ivp(
@@ -142,8 +156,10 @@ class Carrier:
                 if run.status == 1:
                     which = next(index for index, found in enumerate(run.t_events) if len(found))
                     contacts += contact == FREE
+                    edges.append((until, self.force(contact, side, *state)))
                     contact, side = self.after(contact, side, which, state[0])
-        return Trace(*rows.T, contacts)
+                    edges.append((until, self.force(contact, side, *state)))
+        return Trace(*rows.T, contacts, tuple(edges))
 
 
 def simulated(

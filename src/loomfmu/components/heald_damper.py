@@ -4,16 +4,8 @@ from dataclasses import dataclass
 from math import fabs, sqrt
 from typing import ClassVar
 
-from ..physics.damper import (
-    CONTACT_CHANGE,
-    LOAD_RATE,
-    RATE,
-    contact_change,
-    locate,
-    next_contact,
-    propagate,
-    stop_damping_ratio,
-)
+from ..physics.damper import propagate, stop_damping_ratio
+from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
 from ..physics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
 from ..variables import Component, Problem, input_, output, parameter, state
 
@@ -21,6 +13,7 @@ from ..variables import Component, Problem, input_, output, parameter, state
 SHORTEST = 1e-15
 # Pieces of motion in one step: some 10 us each in Python
 MOST_PIECES = 100000
+MOST_TURNS = 6  # of a load in one piece: four, and two by rounding where it starts at one
 MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
 
@@ -257,66 +250,65 @@ class HealdDamper(Component):
         u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float, piece: float,
     ) -> float:  # fmt: skip
         """Move over one piece, or up to the change of contact within it; the time that took."""
-        z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, piece)
-        change = contact_change(self.contact, z, v, self.free_travel, self.stop_stiffness, self.stop_damping)
+        position = self.displacement
+        rate = self.rate
+        acceleration = u0 - stiffness * position - damping * rate
+        jerk = u1 - stiffness * rate - damping * acceleration
+        most_acceleration, most_jerk, most_snap = rate_bounds(
+            acceleration, jerk, stiffness, damping, u2, u3, piece
+        )
         taken = piece
-        if change <= 0.0 and self.contact == 0 and self.rate * v < 0.0:
-            # it may have been at a stop and come back
-            reach = fabs(self.displacement) + piece * (fabs(self.rate) + fabs(v))
-            if reach > self.free_travel:
-                turn = locate(
-                    RATE, 0, self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3,
-                    self.free_travel, self.stop_stiffness, self.stop_damping, piece,
-                )  # fmt: skip
-                farthest, _rate = propagate(
-                    self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, turn
-                )
-                if fabs(farthest) > self.free_travel:
-                    taken = turn
-                    change = 1.0
-        if change > 0.0:
-            taken = locate(
-                CONTACT_CHANGE, self.contact, self.displacement, self.rate, stiffness, damping,
-                u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, taken,
+        farthest = fabs(position) + piece * (fabs(rate) + 0.5 * piece * most_acceleration)
+        before = self.contact
+        if before != 0 or farthest >= self.free_travel:
+            taken, self.contact = contact_change(
+                before, position, rate, stiffness, damping, u0, u1, u2, u3,
+                self.free_travel, self.stop_stiffness, self.stop_damping, most_acceleration, most_jerk, piece,
             )  # fmt: skip
-            z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, taken)
-        self.note_peaks(stiffness, damping, preload, u0, u1, u2, u3, load, load_rate, taken, z, v)
-        self.displacement = z
-        self.rate = v
-        if change > 0.0:
-            before = self.contact
-            self.contact = next_contact(
-                before, z, v, self.free_travel, self.stop_stiffness, self.stop_damping
-            )
-            if before == 0 and self.stop_contacts < MOST_CONTACTS:
+            if before == 0 and self.contact != 0 and self.stop_contacts < MOST_CONTACTS:
                 self.stop_contacts = self.stop_contacts + 1
+        self.displacement, self.rate = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, taken)
+        first = stiffness * position + damping * rate - preload
+        last = stiffness * self.displacement + damping * self.rate - preload
+        # the curve lies no farther than that beyond the line between its ends
+        bulge = 0.125 * taken * taken * (stiffness * most_acceleration + damping * most_jerk)
+        bend = stiffness * most_jerk + damping * most_snap
+        if self.carrier_mass * (larger(first, last) + bulge) > self.peak_load:
+            self.note_turns(
+                0.0, bend, position, rate, stiffness, damping, preload, u0, u1, u2, u3, load, load_rate, taken
+            )
+        pull = load / self.carrier_mass
+        growth = load_rate / self.carrier_mass
+        if larger(pull - first, pull + growth * taken - last) + bulge > self.peak_carrier:
+            self.note_turns(
+                growth, bend, position, rate, stiffness, damping, preload, u0, u1, u2, u3, load, load_rate,
+                taken,
+            )  # fmt: skip
         return taken
 
-    def note_peaks(
-        self, stiffness: float, damping: float, preload: float,
-        u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float,
-        piece: float, z: float, v: float,
+    def note_turns(
+        self, growth: float, bend: float, position: float, rate: float, stiffness: float, damping: float,
+        preload: float, u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float,
+        taken: float,
     ) -> None:  # fmt: skip
-        """Bring the largest transmitted force and carrier acceleration over a piece up to date."""
-        mass = self.carrier_mass
-        end_drive = u0 + piece * (u1 + piece * (u2 + piece * u3))
-        first = stiffness * self.displacement + damping * self.rate
-        last = stiffness * z + damping * v
-        first_rate = stiffness * self.rate + damping * (u0 - first)
-        last_rate = stiffness * v + damping * (end_drive - last)
-        self.note_load(mass * (first - preload), load)
-        self.note_load(mass * (last - preload), load + load_rate * piece)
-        if first_rate * last_rate < 0.0:
-            bound = fabs(first - preload) + fabs(last - preload)
-            reach = mass * (bound + piece * (fabs(first_rate) + fabs(last_rate)))
-            pull = fabs(load) + fabs(load_rate) * piece
-            if reach > self.peak_load or reach + pull > mass * self.peak_carrier:
-                turn = locate(
-                    LOAD_RATE, self.contact, self.displacement, self.rate, stiffness, damping,
-                    u0, u1, u2, u3, self.free_travel, self.stop_stiffness, self.stop_damping, piece,
-                )  # fmt: skip
-                z, v = propagate(self.displacement, self.rate, stiffness, damping, u0, u1, u2, u3, turn)
-                self.note_load(mass * (stiffness * z + damping * v - preload), load + load_rate * turn)
+        """Keep the loads at the ends of a piece and where the transmitted one, less a growing one, turns.
+
+        Its slope is a sum of five functions, which has four zeros at most on so short a piece.
+        """
+        self.note_load(self.carrier_mass * (stiffness * position + damping * rate - preload), load)
+        transmitted = self.carrier_mass * (stiffness * self.displacement + damping * self.rate - preload)
+        self.note_load(transmitted, load + load_rate * taken)
+        turn = 0.0
+        for _ in range(MOST_TURNS):
+            turn = next_turn(
+                growth, stiffness, damping, bend, position, rate, stiffness, damping, u0, u1, u2, u3,
+                turn, taken,
+            )  # fmt: skip
+            if turn < 0.0:
+                break
+            z, v = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, turn)
+            transmitted = self.carrier_mass * (stiffness * z + damping * v - preload)
+            self.note_load(transmitted, load + load_rate * turn)
 
     def note_load(self, transmitted: float, load: float) -> None:
         """Keep the largest transmitted force and carrier acceleration."""
