@@ -4,10 +4,13 @@ A coarse run of what the claims need tells about where that is: the edges of the
 its lowest point, the edges of a dwell, the angles that a claim names. A second one, with points in the
 windows of risk, tells it so well that steps can land on it. A sample has no error of interpolation, and
 close to one it is small: so few steps do for what takes many equal ones.
+
+That holds for what follows from the sample alone. What integrates over its inputs keeps the error of every
+step, and how large that is depends on the motion: it gets the scene's own steps, and the landings.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,7 +20,7 @@ from .. import units
 from ..errors import LoomfmuError
 from ..traces import Recording
 from . import claims, curves
-from .asked import shaft_angle, with_rates
+from .asked import parameters, shaft_angle, with_rates
 from .graph import step_order
 from .grid import Grid, chosen, period, uniform
 from .lean import lean
@@ -31,10 +34,10 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
-# Least steps in a revolution for what remembers how its frame moved: a damper is then good to 2e-9 of its
-# peak in the demonstration and 3e-7 where it starts in the middle of a motion, warp threads to 2e-10
-REMEMBERING = {"HealdDamper": 48, "WarpTension": 48}
-BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit"}  # latched output -> what it follows
+WAVE = 16  # least steps in a ripple of the shaft's speed, and in its start-up
+INTEGRATING = ("HealdDamper", "WarpTension")  # over their inputs
+# latched output of a belt -> what it follows
+BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit", "buckled": "margin"}
 
 
 @dataclass
@@ -62,50 +65,76 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     """
     _check(scene)
     fine = period(scene) / scene.steps_per_revolution
-    coarse = period(scene) / scene.coarse_steps_per_revolution
-    longest, why = _longest(scene, signals, coarse, fine)
-    if longest <= fine:
-        return replace(uniform(scene), notes=(f"steps: the scene's own everywhere{why}",))
-    points, scouted = _equal(scene, coarse), 0
-    for _ in range(SCOUTS):
-        recording, plan, steps, _ended, _warnings = remembered(scene, _watched(scene), chosen(scene, points))
-        scouted += len(plan.lean.scene.instances) * steps
-        places = Places(period(scene), longest)
-        for claim in scene.claims:
-            arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
-            LOOKS.get(claim["kind"], _everywhere)(places, recording, fine, **arguments)
-        points = _merged(_equal(scene, coarse), places, APART * period(scene))
+    needed = lean(scene, signals).scene
+    coarse, why = min(_showing(scene))
+    unequal = _unequal(needed)
+    if unequal or coarse <= fine:
+        return replace(
+            uniform(scene), notes=(f"steps: the scene's own everywhere{_because(unequal or why)}",)
+        )
+    longest = coarse
+    for name, instance in needed.instances.items():
+        if instance.fmu.name in INTEGRATING and longest > fine:
+            longest, why = fine, f"{name} integrates"
+    places, scouted = _scouted(scene, signals, coarse, longest)
     points = _merged(_equal(scene, places.most), places, APART * period(scene))
     notes = (
-        f"steps: {period(scene) / places.most:.0f} in a revolution{why}, and landings where the claims look;"
-        f" {scouted} steps of FMUs to find these",
+        f"steps: {period(scene) / places.most:.0f} in a revolution{_because(why)}, and landings"
+        f" where the claims look; {scouted} steps of FMUs to find these",
     )
     return chosen(scene, points, notes, scouted)
 
 
-def _longest(scene: Scene, signals: Sequence[str], coarse: float, fine: float) -> tuple[float, str]:
-    """The longest step that all instances bear which are run, and why it is that.
+def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float) -> tuple[Places, int]:
+    """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
+    fine = period(scene) / scene.steps_per_revolution
+    # an input that the scene drives has kinks
+    kinks = [turn * period(scene) for drive in scene.drives for turn in drive.revolutions]
+    places, scouted = Places(period(scene), longest, kinks), 0
+    for _ in range(SCOUTS):
+        points = _merged(_equal(scene, coarse), places, APART * period(scene))
+        recording, plan, steps, _ended, _warnings = remembered(
+            scene, _watched(scene, signals), chosen(scene, points)
+        )
+        scouted += len(plan.lean.scene.instances) * steps
+        places = Places(period(scene), longest, list(kinks))
+        for claim in scene.claims:
+            arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
+            LOOKS.get(claim["kind"], _everywhere)(places, recording, fine, **arguments)
+        for belt, followed in _latched(scene, signals):
+            _risk(places, recording, fine, belt, followed)
+    return places, scouted
 
-    Most of ours are exact whatever the step. What integrates over what it is given is not, nor is a loop, nor
-    an FMU that we know nothing of: these take the scene's own steps throughout.
+
+def _because(why: str) -> str:
+    return f" ({why})" if why else ""
+
+
+def _unequal(needed: Scene) -> str:
+    """What in a run takes no steps but equal ones, and why: they might tell it something else.
+
+    A loop, a shaft that feels its load, an FMU that we know nothing of.
     """
-    needed = lean(scene, signals).scene
     _order, lagged = step_order(needed.instances, needed.wires)
     if lagged:
-        return fine, f" ({lagged[0]} closes a loop)"
-    longest, why = coarse, ""
+        return f"{lagged[0]} closes a loop"
     for name, instance in needed.instances.items():
-        bears = fine if not instance.fmu.ours else _bears(instance.fmu.name, scene, coarse, fine)
-        if bears < longest:
-            longest, why = bears, f" ({name} integrates)"
-    return max(longest, fine), why
+        if not instance.fmu.ours or instance.fmu.name == "DrivenShaft":
+            return f"{name} integrates"
+    return ""
 
 
-def _bears(component: str, scene: Scene, coarse: float, fine: float) -> float:
-    """The longest step with which a component of ours is as good as the landings."""
-    if component == "DrivenShaft":
-        return fine
-    return period(scene) / REMEMBERING[component] if component in REMEMBERING else coarse
+def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
+    """The longest steps that show how mechanisms move, how the shaft's speed changes, and why."""
+    yield period(scene) / scene.coarse_steps_per_revolution, ""
+    shaft = scene.instances["shaft"]
+    if shaft.fmu.ours and shaft.fmu.name == "MainShaft":
+        values = parameters(scene)["shaft"]
+        if values["ripple_amplitude"]:
+            order = values["ripple_order"]
+            yield period(scene) / (WAVE * order), f"the shaft ripples {order} times in a revolution"
+        if values["ramp_duration"]:
+            yield values["ramp_duration"] / WAVE, f"the shaft starts up in {values['ramp_duration']:.4g} s"
 
 
 def _check(scene: Scene) -> None:
@@ -133,14 +162,23 @@ def _equal(scene: Scene, longest: float) -> Floats:
     return np.linspace(0.0, end, max(1, math.ceil(end / longest - 1e-9)) + 1)
 
 
-def _watched(scene: Scene) -> list[str]:
-    """The signals that tell where the claims look."""
-    wanted = list(shaft_angle(scene))
+def _latched(scene: Scene, signals: Iterable[str]) -> list[tuple[str, str]]:
+    """Belts whose latched values are among the signals, and what these follow."""
+    parts = [signal.split(".") for signal in signals]
+    found = [(belt, BELT[name]) for belt, name in parts if name in BELT]
+    return [each for each in dict.fromkeys(found) if scene.instances[each[0]].fmu.name == "BeltMonitor"]
+
+
+def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
+    """The signals that tell where the claims look, and where what is latched in those kept comes from."""
+    wanted, belts = list(shaft_angle(scene)), list[str]()
     for claim in scene.claims:
         signals = claims.signals_of(claim, scene.instances)
         wanted += signals if LOOKS.get(claim["kind"]) not in (None, _nowhere) else []
-        for belt in _belts(scene, signals):
-            wanted += [f"{belt}.{name}" for name in ("free_length", "axial_force", *BELT.values())]
+        belts += _belts(scene, signals)
+    belts += [belt for belt, _followed in _latched(scene, kept)]
+    for belt in dict.fromkeys(belts):
+        wanted += [f"{belt}.{name}" for name in ("free_length", "axial_force", *BELT.values())]
     return with_rates(scene, wanted)
 
 
