@@ -30,7 +30,6 @@ def measure(effort: str, notes: Notes) -> list[Table]:
         f"{WHOLE}, HDF5": (Ours, demo(), "native"),
         "all claims, in memory": (Judged, demo(judged=True), "native"),
         "the belt's margin, in memory": (Judged, belt_alone(), "native"),
-        "all claims, in memory on the window grid": (Judged, demo(judged=True, grid="windows"), "native"),
         "the belt's margin, in memory on the window grid": (Judged, belt_alone(grid="windows"), "native"),
     }
     repeats, turns = SIZES[effort]

@@ -50,10 +50,10 @@ SIZES = {
     "tiny": Size((45,), 1, (45, 45, 45), 45),
 }
 SLOW = ("loomfmu, live FMUs", "fmpy")
-CLAIMS, WINDOWS = "loomfmu, native FMUs, claims alone", "loomfmu, native FMUs, window grid"
+CLAIMS = "loomfmu, native FMUs, claims alone"
 
 
-TINY = ("loomfmu, native FMUs", WINDOWS, "ecos")  # what a first look is taken at
+TINY = ("loomfmu, native FMUs", CLAIMS, "ecos")  # what a first look is taken at
 
 
 def methods() -> Configurations:
@@ -62,7 +62,6 @@ def methods() -> Configurations:
         "loomfmu, live FMUs": (Ours, demo(), "live"),
         "loomfmu, native FMUs": (Ours, demo(), "native"),
         CLAIMS: (Judged, demo(judged=True), "native"),
-        WINDOWS: (Judged, demo(judged=True, grid="windows"), "native"),
         "libcosim": (Libcosim, demo(), "native", "series"),
         "ecos": (Ecos, demo(), "native", "csv"),
         "fmpy": (Fmpy, demo(), "native"),
@@ -98,7 +97,7 @@ def _task(name: str, size: Size, steps: int, notes: Notes) -> Task:
         notes(name, f"timed {repeats} times only from {size.patient} steps in a revolution on")
     native = name.startswith("loomfmu") and not slow
     turns = max(1, math.ceil(size.least[2 if slow else 0 if native else 1] / steps))
-    return Task(repeats, steps, 1.0 + turns if name in (CLAIMS, WINDOWS) else turns)
+    return Task(repeats, steps, 1.0 + turns if name == CLAIMS else turns)
 
 
 def _errors(name: str, asked: Asked, steps: int, loom: Loom, notes: Notes) -> list[float] | None:
@@ -181,7 +180,7 @@ TARGETS = {
 }
 COLOURS = {
     "loomfmu, live FMUs": plots.SKY, "loomfmu, native FMUs": plots.BLUE, CLAIMS: plots.GREEN,
-    WINDOWS: plots.BLACK, "libcosim": plots.ORANGE, "ecos": plots.RED, "fmpy": plots.PURPLE,
+    "libcosim": plots.ORANGE, "ecos": plots.RED, "fmpy": plots.PURPLE,
 }  # fmt: skip
 
 
@@ -203,9 +202,8 @@ def section(find: Find) -> str:
         f" impulse response. Signals are compared at {PLACES} places of the revolution.",
         table(["reference", "value", "unit"], exact),
         "Each method records in the cheapest way it has: ours to HDF5, libcosim in memory, ecos to CSV, fmpy"
-        " in memory. The two that judge the claims write nothing and run no more than these need. Times are"
-        " those of a revolution without the set-up, with the judging where claims are judged, and on the"
-        " window grid with the coarse runs that look for the windows.",
+        " in memory. The one that judges the claims writes nothing and runs no more than these need. Times"
+        " are those of a revolution without the set-up, with the judging where claims are judged.",
         f"Time to reach an error, in ms for a revolution:\n\n{_reached(rows)}",
         f"Time of a revolution, in ms:\n\n{pivot(rows, STEP, 'method', TIME)}",
         *tables,
