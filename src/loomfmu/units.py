@@ -134,6 +134,16 @@ def show(value: float, name: str) -> str:
     return f"{value / unit(name).factor:.7g}" + ("" if name == "1" else f" {name}")
 
 
+def si(name: str) -> str:
+    """The SI unit of the same dimension.
+
+    >>> si("rev/min"), si("%"), si("kN")
+    ('rad/s', '1', 'N')
+    """
+    wanted = Unit(*unit(name).dimension)
+    return next(known for known, each in UNITS.items() if each == wanted)
+
+
 def udunits(name: str) -> str:
     """The UDUNITS spelling of a Modelica unit name.
 

@@ -128,7 +128,7 @@ def test_claims_on_other_makers_signals(place: Path, tmp_path: Path) -> None:
     text = MOTOR + '[[claims]]\nkind = "below"\nsignal = "motor.{}"\nbound = {}\n'
     assert ran(place, text.format("flange_w", '"600 rpm"'), tmp_path).holds
     result = ran(place, text.format("winding", "150"), tmp_path)
-    assert not result.holds and "winding = 200 at 0 s" in str(result.claims[0])
+    assert not result.holds and "winding, 200 K at 0 s" in str(result.claims[0])
     with pytest.raises(
         LoomfmuError, match=r"^claim 'below': window is a shaft angle, and the scene has no sh"
     ):

@@ -24,7 +24,10 @@ from loomfmu.sweeps.worker import Batch, Label
 
 __all__ = ["fmu_cache"]
 
-LABELS = (Label("first", "belt.lowest_margin", "1"), Label("second", "belt.lowest_speed_limit", "rev/min"))
+LABELS = (
+    Label("first", "belt.lowest_margin", "1", "1"),
+    Label("second", "belt.lowest_speed_limit", "rad/s", "rev/min"),
+)
 ROWS = 24
 
 

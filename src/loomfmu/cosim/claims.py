@@ -4,14 +4,14 @@
 claim holds: `assert judge(...)`. Scenes state the same as `[[claims]]` tables, with units.
 
 Values between the samples count: a signal whose rate is recorded is followed on the cubic that joins
-its samples, a frame's lift on the quintic of lift, velocity and acceleration. Where no rate is recorded
-the verdict says that it speaks of the samples.
+its samples, a frame's lift, the reed, the rapier and the shaft on the quintic of value, velocity and
+acceleration. Where no rate is recorded the verdict's note says so.
 """
 
 import inspect
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -21,8 +21,10 @@ from .. import units
 from ..errors import LoomfmuError, suggestion
 from ..traces import Signals
 from . import curves
+from .heald_claims import TOLERANCE as TOLERANCE
+from .heald_claims import clear_shed, dwell, dwell_contains
 from .loom_claims import locks_in_time, rapier_in_open_shed, reed_clear_of_rapier
-from .verdict import Verdict, verdict
+from .verdict import FORCE, ONE, Verdict, verdict
 
 
 def judge(trace: Signals, *, kind: str, name: str = "", **arguments: Any) -> Verdict:
@@ -76,6 +78,27 @@ def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], 
                 raise LoomfmuError(f"{where} = {quantity!r} is not finite")
             if name == "tolerance" and not 0.0 < value < 0.5:
                 raise LoomfmuError(f"{where} = {value:g} is outside (0, 0.5), shares of the stroke")
+        if name == "window":
+            _window(given, where)
+
+
+def _window(given: Sequence[float | str], where: str) -> tuple[float, float]:
+    """Where a window of shaft angles begins and how far it reaches; it may pass over 360 deg."""
+    start, end = (units.parse(edge, "rad") for edge in given)
+    width = end - start
+    if width > curves.TURN * (1.0 + 1e-12):
+        raise LoomfmuError(f"{where} = {_angles(start, end)} is longer than a revolution")
+    if width <= 0.0:
+        width %= curves.TURN
+    if min(width, curves.TURN - width if end < start else width) < 1e-12:
+        raise LoomfmuError(
+            f"{where} = {_angles(start, end)} is empty; a whole revolution is [0 deg, 360 deg]"
+        )
+    return start, min(width, curves.TURN)
+
+
+def _angles(*angles: float) -> str:
+    return "[" + ", ".join(units.show(angle, "deg") for angle in angles) + "]"
 
 
 def names_parameter(argument: str, given: Any) -> bool:
@@ -99,7 +122,6 @@ def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
     return signals
 
 
-TOLERANCE = 0.015  # of the stroke: within it a frame dwells, if nothing else is said
 PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")
 
 # arguments that are quantities, and their units; a bound's is that of its signal
@@ -122,8 +144,8 @@ NEEDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "clear_shed": ("heald", ("lift", "warp_height")),
     "peak_load": ("damper", ("transmitted_force", "peak_load")),
     "stop_contacts": ("damper", ("stop_contacts",)),
-    "locks_in_time": ("lock", ("in_time", "torque_margin", "available_time")),
-    "reed_clear_of_rapier": ("reed", ("position",)),
+    "locks_in_time": ("lock", ("in_time", "torque_margin", "speed_limit")),
+    "reed_clear_of_rapier": ("reed", ("position", "front_limit")),
 }
 
 
@@ -150,23 +172,17 @@ def below(
 def lowest_margin(trace: Signals, bound: float | str, belt: str = "belt") -> Verdict:
     """The belt's margin against buckling never falls below a bound, on the continuous curve."""
     limit = units.parse(bound, "1")
-    worst = float(trace[f"{belt}.lowest_margin"][-1])
-    place = int(np.argmin(trace[f"{belt}.margin"]))
-    return verdict(
-        trace, "lowest margin", f"{belt}.lowest_margin", worst >= limit, limit, worst, "1",
-        float(trace.time[place]),
-    )  # fmt: skip
+    signal, margin = f"{belt}.lowest_margin", trace[f"{belt}.margin"]
+    worst, time = float(trace[signal][-1]), curves.reached(trace, signal, margin)
+    return verdict(trace, "lowest margin", signal, worst >= limit, limit, worst, ONE, time)
 
 
 def peak_load(trace: Signals, damper: str, at_most: float | str) -> Verdict:
     """The force that a damper's carrier puts on its frame never exceeds a bound, on the continuous curve."""
     limit = units.parse(at_most, "N")
-    worst = float(trace[f"{damper}.peak_load"][-1])
-    reached = int(np.argmax(trace[f"{damper}.peak_load"] >= worst))
-    return verdict(
-        trace, "peak load", f"{damper}.peak_load", worst <= limit, limit, worst, "N",
-        float(trace.time[reached]),
-    )  # fmt: skip
+    signal, force = f"{damper}.peak_load", trace[f"{damper}.transmitted_force"]
+    worst, time = float(trace[signal][-1]), curves.reached(trace, signal, -np.abs(force))
+    return verdict(trace, "peak load", signal, worst <= limit, limit, worst, FORCE, time)
 
 
 def stop_contacts(trace: Signals, damper: str, at_most: float | str) -> Verdict:
@@ -176,54 +192,7 @@ def stop_contacts(trace: Signals, damper: str, at_most: float | str) -> Verdict:
     worst = float(counted[-1])
     over = np.flatnonzero(counted > limit)
     time = float(trace.time[over[0]]) if len(over) else math.nan
-    return verdict(trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, "1", time)
-
-
-def dwell(trace: Signals, heald: str, at_least: float | str, tolerance: float | str = TOLERANCE) -> Verdict:
-    """Every whole dwell of a frame, within a share of its stroke from an end, lasts that shaft angle."""
-    share = units.parse(tolerance, "1")
-    stroke = trace.parameter(f"{heald}.stroke")
-    lift = curves.Motion(trace, f"{heald}.lift")
-    spans = curves.spans_within(lift, share * stroke, stroke)
-    return _shortest(trace, f"dwell within {100 * share:g} % of the stroke", f"{heald}.lift", spans, at_least)
-
-
-def clear_shed(trace: Signals, heald: str, clearance: float | str, at_least: float | str) -> Verdict:
-    """Every whole time that a frame's warp is beyond a height, either way, lasts that shaft angle."""
-    height = units.parse(clearance, "m")
-    stroke = trace.parameter(f"{heald}.stroke")
-    ratio = trace.parameter(f"{heald}.warp_ratio")
-    if not 0.0 < height < 0.5 * stroke * ratio:
-        raise LoomfmuError(
-            f"clear_shed of {heald}: clearance = {1e3 * height:.7g} mm is outside"
-            f" (0, {500 * stroke * ratio:.7g}) mm, the warp's way to either side"
-        )
-    lift = curves.Motion(trace, f"{heald}.lift")
-    spans = curves.spans_within(lift, 0.5 * stroke - height / ratio, stroke)
-    return _shortest(trace, f"warp beyond {1e3 * height:g} mm", f"{heald}.warp_height", spans, at_least)
-
-
-def dwell_contains(
-    trace: Signals, heald: str, angles: list[float | str], tolerance: float | str = TOLERANCE
-) -> Verdict:
-    """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
-    limit = units.parse(tolerance, "1")
-    stroke = trace.parameter(f"{heald}.stroke")
-    lift = curves.Motion(trace, f"{heald}.lift")
-    worst, time = -1.0, math.nan
-    for angle in angles:
-        for moment in curves.times_at(trace, units.parse(angle, "rad")):
-            value = lift.at(moment)
-            away = min(abs(value), abs(stroke - value)) / stroke
-            if away > worst:
-                worst, time = away, moment
-    note = "" if worst >= 0.0 else "the run never reaches these angles"
-    holds = 0.0 <= worst <= limit
-    shown = ", ".join(units.show(units.parse(angle, "rad"), "deg") for angle in angles)
-    return verdict(
-        trace, f"dwell at {shown}", f"{heald}.lift", holds, limit, worst if worst >= 0 else math.nan, "%",
-        time, note,
-    )  # fmt: skip
+    return verdict(trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, ONE, time)
 
 
 KINDS: dict[str, Callable[..., Verdict]] = {
@@ -254,38 +223,18 @@ def _bounded(
         limit = trace.parameter(str(bound))
     else:
         limit = units.parse(bound, trace.unit(signal))
-    edges = None
-    word = "above" if sign > 0 else "below"
-    claim = f"stays {word}"
+    claim = f"stays {'above' if sign > 0 else 'below'}"
+    unit = (trace.unit(signal), trace.display(signal))
+    within = None
     if window is not None:
-        edges = (units.parse(window[0], "rad"), units.parse(window[1], "rad"))
-        claim += " in [" + ", ".join(units.show(edge, "deg") for edge in edges) + "]"
-    worst, time, between = curves.lowest(trace, signal, sign, edges)
-    note = "" if between else "at the samples: its rate is not recorded"
-    if math.isnan(time):
-        note = "the run never is in that window"
-    holds = sign * worst >= sign * limit
-    return verdict(trace, claim, signal, holds, limit, worst, trace.display(signal), time, note)
-
-
-def _shortest(
-    trace: Signals, claim: str, signal: str, spans: list[tuple[float, float]], at_least: float | str
-) -> Verdict:
-    """The shortest of some spans of time, by the angle that the shaft turns meanwhile."""
-    limit = units.parse(at_least, "rad")
-    if not spans:
-        return verdict(
-            trace,
-            claim,
-            signal,
-            False,
-            limit,
-            math.nan,
-            "deg",
-            math.nan,
-            "none begins and ends within the run",
-        )
-    angle = curves.Motion(trace, "shaft.angle")
-    turned = [abs(angle.at(end) - angle.at(start)) for start, end in spans]
-    place = int(np.argmin(turned))
-    return verdict(trace, claim, signal, turned[place] >= limit, limit, turned[place], "deg", spans[place][0])
+        start, width = _window(window, "window")
+        claim += f" in {_angles(*(units.parse(edge, 'rad') for edge in window))}"
+        within = curves.within_window(trace, start, width)
+        if not within:
+            reason = "the run is never in that window"
+            return verdict(trace, claim, signal, False, limit, math.nan, unit, math.nan, reason)
+    motion = curves.Motion(trace, signal, rates=1)
+    worst = motion.lowest(sign, within)
+    holds = sign * worst.value >= sign * limit and not worst.coarse
+    notes = (motion.note, worst.note)
+    return verdict(trace, claim, signal, holds, limit, worst.value, unit, worst.time, *notes)

@@ -1,188 +1,274 @@
 """Recorded signals between their samples."""
 
 import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LoomfmuError
 from ..traces import Signals
+from . import bernstein
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 TURN = 2.0 * math.pi
+BLOCK = 1 << 16  # intervals that are looked at together
+SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
+COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples tell of one oscillation
+COARSE_NOTE = "the samples are too far apart to be sure: take more steps"
+
+
+class Stretch(NamedTuple):
+    """A stretch of time, and whether it begins and ends within the run."""
+
+    start: float
+    end: float
+    whole: bool = True
+
+
+class Extreme(NamedTuple):
+    """Lowest or highest value, its time, and whether the samples are too far apart to be sure of it."""
+
+    value: float
+    time: float
+    coarse: bool = False
+
+    @property
+    def note(self) -> str:
+        """What a verdict says of it."""
+        return COARSE_NOTE if self.coarse else ""
 
 
 class Motion:
-    """A signal with its first and second rate: on each interval the quintic that joins the samples."""
+    """A signal and its rates as far as they are recorded: on each interval the polynomial they give."""
 
-    def __init__(self, trace: Signals, signal: str):
-        rate = trace.rate(signal)
-        second = trace.rate(rate) if rate else None
-        if rate is None or second is None:
-            raise LoomfmuError(f"{trace.name}: {signal} is not recorded with its rate and second rate")
+    def __init__(self, trace: Signals, signal: str, rates: int = 2):
+        self.signal = signal
         self.time = trace.time
-        self.values = [np.asarray(trace[name]) for name in (signal, rate, second)]
+        self.values: list[Floats] = []
+        name: str | None = signal
+        while name is not None and len(self.values) <= rates:
+            self.values.append(np.asarray(trace[name], dtype=float))
+            name = trace.rate(name)
 
-    def coefficients(self, interval: int) -> Floats:
-        """Polynomial on an interval in the share of the way, the constant first."""
-        h = self.time[interval + 1] - self.time[interval]
-        (y0, y1), (v0, v1), (a0, a1) = (values[interval : interval + 2] for values in self.values)
-        v0, v1, a0, a1 = v0 * h, v1 * h, a0 * h * h, a1 * h * h
-        rise = y1 - y0 - v0 - 0.5 * a0
-        turn = v1 - v0 - a0
-        bend = a1 - a0
-        return np.array(
-            [
-                y0,
-                v0,
-                0.5 * a0,
-                10 * rise - 4 * turn + 0.5 * bend,
-                -15 * rise + 7 * turn - bend,
-                6 * rise - 3 * turn + 0.5 * bend,
-            ]
+    @property
+    def note(self) -> str:
+        """What a verdict says where the values between the samples are not known."""
+        steps = np.diff(self.values[0])
+        if len(self.values) > 1 or np.all(steps <= 0.0) or np.all(steps >= 0.0):
+            return ""
+        return f"{self.signal} is known at the samples only: its rate is not recorded"
+
+    def points(self, intervals: Integers) -> Floats:
+        """Bernstein points of the polynomials on some intervals."""
+        h = self._length(intervals)
+        ends = []
+        for order, values in enumerate(self.values):
+            ends.append((values[intervals] * h**order, values[intervals + 1] * h**order))
+        return bernstein.joining(ends)
+
+    def _length(self, intervals: Integers) -> Floats:
+        return np.asarray(self.time[intervals + 1] - self.time[intervals])
+
+    def interval(self, times: Floats) -> Integers:
+        """The intervals that some times lie in."""
+        found = np.searchsorted(self.time, times, side="right") - 1
+        return np.asarray(np.clip(found, 0, len(self.time) - 2))
+
+    def along(self, times: Floats) -> Floats:
+        """Values at some times."""
+        if len(self.time) == 1:
+            return np.full(len(times), self.values[0][0])
+        intervals = self.interval(times)
+        return bernstein.value(
+            self.points(intervals), (times - self.time[intervals]) / self._length(intervals)
         )
-
-    def interval(self, time: float) -> int:
-        """The interval that a time lies in."""
-        return int(np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2))
 
     def at(self, time: float) -> float:
         """Value at a time."""
-        interval = self.interval(time)
-        share = (time - self.time[interval]) / (self.time[interval + 1] - self.time[interval])
-        return float(np.polynomial.polynomial.polyval(share, self.coefficients(interval)))
+        return float(self.along(np.array([time]))[0])
 
-    def crossings(self, level: float) -> list[float]:
-        """Times at which the motion passes a level, found to rounding on each interval's quintic."""
-        side = self.values[0] - level
+    def passages(self, level: float) -> list[tuple[float, bool]]:
+        """Times at which the motion passes a level, to rounding, and whether it rises there."""
         found = []
-        for interval in np.flatnonzero((side[:-1] < 0) != (side[1:] < 0)):
-            polynomial = self.coefficients(int(interval))
-            polynomial[0] -= level
-            share = _root(polynomial.tolist())
-            found.append(float(self.time[interval] + share * (self.time[interval + 1] - self.time[interval])))
+        for begin in range(0, len(self.time) - 1, BLOCK):
+            points = self.points(np.arange(begin, min(begin + BLOCK, len(self.time) - 1))) - level
+            astride = (points.min(axis=0) < 0.0) & (points.max(axis=0) >= 0.0)
+            for place in np.flatnonzero(astride):
+                rises = bool(points[0, place] < 0.0)
+                for share in bernstein.sign_changes(points[:, place]):
+                    found.append((self.moment(begin + int(place), share), rises))
+                    rises = not rises
         return found
 
+    def crossings(self, level: float) -> list[float]:
+        """Times at which the motion passes a level."""
+        return [time for time, _rises in self.passages(level)]
 
-def _root(polynomial: list[float]) -> float:
-    """Where a polynomial that changes its sign between 0 and 1 does so; the constant comes first.
+    def moment(self, interval: int, share: float) -> float:
+        """The time at a share of an interval."""
+        return float(self.time[interval] + share * (self.time[interval + 1] - self.time[interval]))
 
-    Halved until nothing is left between: scipy.optimize would take longer to be imported than to do it.
-    """
-    low, high = 0.0, 1.0
-    rises = polynomial[0] < 0.0
-    while low < (middle := 0.5 * (low + high)) < high:
-        value = 0.0
-        for coefficient in reversed(polynomial):
-            value = value * middle + coefficient
-        if (value < 0.0) == rises:
-            low = middle
+    def beyond(self, level: float, sign: float) -> list[Stretch]:
+        """Stretches of time above a level, or with a negative sign below it."""
+        inside = bool(self.values[0][0] >= level) == (sign > 0.0)
+        begin, whole = float(self.time[0]), False
+        stretches = []
+        for time, _rises in self.passages(level):
+            if inside:
+                stretches.append(Stretch(begin, time, whole))
+            inside, begin, whole = not inside, time, True
+        if inside:
+            stretches.append(Stretch(begin, float(self.time[-1]), False))
+        return stretches
+
+    def lowest(self, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
+        """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
+        values, largest = sign * self.values[0], float(np.max(np.abs(self.values[0])))
+        edges = np.array([time for each in within or () for time in each[:2]])
+        found, times = [sign * self.along(edges)], [edges]
+        if within is None:
+            found, times = [values[:1]], [self.time[:1]]
+        best = float(np.min(found[0], initial=math.inf))
+        for intervals, low, high in self._pieces(within):
+            points = bernstein.clipped(sign * self.points(intervals), low, high)
+            best = min(best, float(np.min(points[[0, -1]])))
+            near = points.min(axis=0) <= best + SAME * largest
+            lowest, share = bernstein.lowest(points[:, near])
+            share = np.where(share < 1.0, low[near] + share * (high[near] - low[near]), high[near])
+            before, after = self.time[intervals[near]], self.time[intervals[near] + 1]
+            found.append(lowest)
+            times.append(np.where(share < 1.0, before + share * (after - before), after))
+        moments, extremes = np.concatenate(times), np.concatenate(found)
+        if not len(extremes):
+            return Extreme(math.nan, math.nan)
+        value, time = first_lowest(extremes, moments, SAME * largest)
+        beyond = float(np.min(values[self._ends(time)])) - value
+        coarse = beyond > max(COARSE * (float(values.max()) - value), SAME * largest)
+        return Extreme(sign * value, time, coarse)
+
+    def _ends(self, time: float) -> list[int]:
+        """The samples on both sides of a time."""
+        if len(self.time) == 1:
+            return [0]
+        interval = int(self.interval(np.array([time]))[0])
+        return [interval, interval + 1]
+
+    def _pieces(self, within: Sequence[Stretch] | None) -> Iterator[tuple[Integers, Floats, Floats]]:
+        """Intervals in some stretches of time, and the shares of each that lie within, block by block."""
+        if within is None:
+            cuts, inside = self.time, np.ones(len(self.time) - 1, dtype=bool)
         else:
-            high = middle
-    return high
+            starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
+            cuts = np.unique(np.concatenate([self.time, starts, ends]))
+            middles = 0.5 * (cuts[1:] + cuts[:-1])
+            inside = np.searchsorted(starts, middles, "right") > np.searchsorted(ends, middles, "left")
+        pieces = np.flatnonzero(inside)
+        for begin in range(0, len(pieces), BLOCK):
+            some = pieces[begin : begin + BLOCK]
+            intervals = self.interval(cuts[some])
+            start, h = self.time[intervals], self._length(intervals)
+            yield intervals, (cuts[some] - start) / h, (cuts[some + 1] - start) / h
+
+    def nearest(self, level: float, within: Sequence[Stretch]) -> Extreme:
+        """How near the motion comes to a level in some stretches of time: 0 where it passes it."""
+        for time in self.crossings(level):
+            if any(each.start <= time <= each.end for each in within):
+                return Extreme(0.0, time)
+        above = self.along(np.array([0.5 * (each.start + each.end) for each in within])) >= level
+        found = []
+        for sign in (1.0, -1.0):
+            side = [each for each, over in zip(within, above, strict=True) if over == (sign > 0.0)]
+            if side:
+                value, time, coarse = self.lowest(sign, side)
+                found.append(Extreme(sign * (value - level), time, coarse))
+        value, time = first_lowest([each.value for each in found], [each.time for each in found])
+        return Extreme(value, time, any(each.coarse for each in found))
 
 
-def spans_within(lift: Motion, distance: float, stroke: float) -> list[tuple[float, float]]:
-    """Times from entering to leaving a distance from the lower or the upper end, whole ones only.
+def first_lowest(values: ArrayLike, times: ArrayLike, same: float = SAME) -> tuple[float, float]:
+    """The lowest value, and the time of the first one that is equal to it."""
+    values, times = np.asarray(values, dtype=float), np.asarray(times, dtype=float)
+    lowest = float(np.min(values))  # NaN if there is one
+    equal = np.isnan(values) if math.isnan(lowest) else values <= lowest + same
+    return lowest, float(np.min(times[equal]))
+
+
+def spans_within(lift: Motion, distance: float, stroke: float) -> list[Stretch]:
+    """Times from entering to leaving a distance from the lower or the upper end.
 
     A frame that holds stays within: its span is as long as the picks it holds for.
     """
-    spans = []
-    for level, sign in ((distance, -1.0), (stroke - distance, 1.0)):
-        times = lift.crossings(level)
-        inside = bool(sign * (lift.values[0][0] - level) > 0.0)
-        if inside:
-            times = times[1:]  # the span under way at the start is not whole
-        spans += list(zip(times[::2], times[1::2], strict=False))
-    return sorted(spans)
+    return sorted(lift.beyond(distance, -1.0) + lift.beyond(stroke - distance, 1.0))
+
+
+def shaft(trace: Signals) -> Motion | None:
+    """The main shaft's angle, if the run has a shaft."""
+    return Motion(trace, "shaft.angle") if "shaft.angle" in trace else None
+
+
+def needed_shaft(trace: Signals) -> Motion:
+    """The main shaft's angle. Raises LoomfmuError where the run has none."""
+    found = shaft(trace)
+    if found is None:
+        raise LoomfmuError(f"{trace.name}: the claim needs shaft angles, and no shaft.angle is recorded")
+    return found
 
 
 def times_at(trace: Signals, angle: float) -> list[float]:
     """All times at which the shaft stands at an angle of its revolution."""
-    shaft = Motion(trace, "shaft.angle")
-    low, high = sorted((float(shaft.values[0][0]), float(shaft.values[0][-1])))
-    first = math.ceil((low - angle) / TURN - 1e-12)
-    last = math.floor((high - angle) / TURN + 1e-12)
+    turning = needed_shaft(trace)
+    turned = (turning.values[0] - angle) / TURN
+    whole = np.floor(turned)
     times = []
-    for turn in range(first, last + 1):
-        level = angle + TURN * turn
-        if level <= low or level >= high:
-            times.append(float(shaft.time[0 if abs(shaft.values[0][0] - level) < 1e-9 else -1]))
-        else:
-            times += shaft.crossings(level)
-    return times
+    for interval in np.flatnonzero(whole[1:] != whole[:-1]):
+        points = turning.points(np.array([interval]))[:, 0]
+        low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
+        for turn in range(low + 1, high + 1):
+            level = points - (angle + TURN * turn)
+            # to rounding the level may be the sample itself
+            shares = bernstein.sign_changes(level) or [float(abs(level[-1]) < abs(level[0]))]
+            times += [turning.moment(int(interval), share) for share in shares]
+    for end in (0, -1):  # a run that begins or ends there, to rounding
+        if abs(turned[end] - round(float(turned[end]))) < 1e-9:
+            times.append(float(turning.time[end]))
+    return sorted(set(times))
 
 
-def lowest(
-    trace: Signals, signal: str, sign: float, window: tuple[float, float] | None
-) -> tuple[float, float, bool]:
-    """Lowest value of `sign` times a signal, its time, and whether values between samples were counted.
+def within_window(trace: Signals, start: float, width: float) -> list[Stretch]:
+    """Stretches of time in which the shaft is in a window of its revolution, the edges included."""
+    turning = needed_shaft(trace)
+    edges = [*times_at(trace, start), *times_at(trace, start + width)]
+    marks = np.unique([turning.time[0], *edges, turning.time[-1]])
+    away = (turning.along(0.5 * (marks[1:] + marks[:-1])) - start) % TURN
+    inside = [
+        Stretch(float(marks[place]), float(marks[place + 1])) for place in np.flatnonzero(away <= width)
+    ]
+    return sorted([*inside, *(Stretch(edge, edge) for edge in edges)])
 
-    Between samples the signal runs on the cubic that joins them with their recorded rates. A window
-    `(from, to)` of shaft angles may wrap; its edges count too. The last result tells whether the values
-    between samples were counted: by a rate, or because the signal only rises or only falls.
+
+def reached(trace: Signals, latch: str, followed: Floats) -> float:
+    """When a latched extreme was reached, as well as its samples tell.
+
+    The latch tells the step. In it the time is where the parabola through the lowest of the samples of what
+    the latch follows turns.
+
+    Args:
+        latch: the signal that keeps the extreme
+        followed: samples of what it follows, taken so that the extreme is the lowest
     """
-    time, angle = trace.time, trace.shaft_angle
-    values = np.asarray(trace[signal], dtype=float)
-    rate_name = trace.rate(signal)
-    inside = _inside(angle, window)
-    candidates = [(time[inside], values[inside])]
-    if rate_name is not None and len(time) > 1:
-        rates = np.asarray(trace[rate_name])
-        for share, interval in _turning_points(time, values, rates, angle, window):
-            h = np.diff(time)[interval]
-            at = time[interval] + share * h
-            value = _cubic(values, rates, h, interval, share)
-            kept = _inside(np.interp(at, time, angle), window)
-            candidates.append((at[kept], value[kept]))
-    moments = np.concatenate([moment for moment, _ in candidates])
-    found = np.concatenate([value for _, value in candidates])
-    if not len(found):
-        return math.nan, math.nan, True
-    place = int(np.argmin(sign * found))
-    steps = np.diff(values)
-    covered = rate_name is not None or bool(np.all(steps <= 0.0) or np.all(steps >= 0.0))
-    return float(found[place]), float(moments[place]), covered
-
-
-def _inside(angle: Floats, window: tuple[float, float] | None) -> NDArray[np.bool_]:
-    if window is None:
-        return np.ones(len(angle), dtype=bool)
-    start, end = window
-    width = (end - start) % TURN or TURN
-    # an edge belongs to the window, to rounding of an angle that may be thousands of turns
-    slack = 1e-12 * (1.0 + np.abs(angle))
-    away = (angle - start + slack) % TURN
-    return np.asarray(away <= width + 2 * slack)
-
-
-def _cubic(values: Floats, rates: Floats, h: Floats, interval: NDArray[np.int64], u: Floats) -> Floats:
-    y0, y1 = values[interval], values[interval + 1]
-    v0, v1 = rates[interval] * h, rates[interval + 1] * h
-    rise = y1 - y0
-    result = y0 + u * (v0 + u * (3 * rise - 2 * v0 - v1 + u * (v0 + v1 - 2 * rise)))
-    return np.asarray(result)
-
-
-def _turning_points(
-    time: Floats, values: Floats, rates: Floats, angle: Floats, window: tuple[float, float] | None
-) -> list[tuple[Floats, NDArray[np.int64]]]:
-    """Shares and intervals at which the cubics turn, and at which the shaft passes the window's edges."""
-    h = np.diff(time)
-    v0, v1 = rates[:-1] * h, rates[1:] * h
-    rise = np.diff(values)
-    # derivative a + b u + c u^2
-    a, b, c = v0, 2 * (3 * rise - 2 * v0 - v1), 3 * (v0 + v1 - 2 * rise)
-    root = np.sqrt(np.maximum(b * b - 4 * a * c, 0.0))
-    q = -0.5 * (b + np.where(b >= 0, root, -root))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shares = [q / c, a / q]
-    for edge in window or ():
-        turns = np.ceil((np.minimum(angle[:-1], angle[1:]) - edge) / TURN)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares.append((edge + TURN * turns - angle[:-1]) / np.diff(angle))
-    points = []
-    for share in shares:
-        interval = np.flatnonzero((share > 0.0) & (share < 1.0))
-        points.append((share[interval], interval))
-    return points
+    time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
+    step = int(np.argmax(kept <= SAME * np.max(np.abs(followed))))
+    if step == 0:
+        return float(time[0])
+    lowest = step if followed[step] <= followed[step - 1] else step - 1
+    if not 0 < lowest < len(time) - 1:
+        return float(time[lowest])
+    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2] for each in (time, followed))
+    before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
+    if after <= before:
+        return float(time[lowest])
+    turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
+    return float(np.clip(turn, time[step - 1], time[step]))

@@ -1,20 +1,26 @@
 """What became of a claim."""
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any
-
-import numpy as np
+from dataclasses import dataclass, fields
+from typing import Any, Self
 
 from .. import units
 from ..traces import Signals
+from . import curves
 
-TURN = 2.0 * math.pi
+# units of what is judged: that of the numbers, and the one that people read them in
+ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
+LENGTH, FORCE, SPEED = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
-    """What became of a claim; true where it holds. Values are in SI, `unit` the one to show them in."""
+    """What became of a claim; true where it holds.
+
+    `bound` and `worst` are in `unit`, which is SI unless an FMU of another maker has a unit of its own.
+    People read them in `display_unit`; "1" means in `unit` itself. `time` is in s, `angle` in rad within the
+    revolution, which is counted from 1; without a shaft they are NaN and None.
+    """
 
     claim: str
     signal: str
@@ -22,41 +28,93 @@ class Verdict:
     bound: float
     worst: float
     unit: str
+    display_unit: str
     time: float
     angle: float
-    revolution: int
+    revolution: int | None
     note: str = ""
 
     def __bool__(self) -> bool:
         return self.holds
 
+    def __repr__(self) -> str:
+        return f"<Verdict {self}>"
+
     def __str__(self) -> str:
-        word = "holds" if self.holds else "FAILS"
-        where = ""
-        if math.isfinite(self.time):
-            angle = f"{math.degrees(self.angle):.3f} deg"
-            where = f" at {self.time:.6g} s, {angle} of revolution {self.revolution}"
+        place = f" at {self.place}" if self.place else ""
         note = f" ({self.note})" if self.note else ""
         return (
-            f"{word}: {self.claim}: {self.signal} = {units.show(self.worst, self.unit)}{where},"
-            f" bound {units.show(self.bound, self.unit)}{note}"
+            f"{self.word}: {self.claim}: {self.signal}, {self.shown(self.worst)}{place},"
+            f" bound {self.shown(self.bound)}{note}"
         )
 
+    @property
+    def word(self) -> str:
+        """How it went, in a word."""
+        return "holds" if self.holds else "FAILS"
+
+    @property
+    def place(self) -> str:
+        """Where it was, as people read it; nothing if there is no place."""
+        if not math.isfinite(self.time):
+            return ""
+        if self.revolution is None:
+            return f"{self.time:.6g} s"
+        return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
+
+    def displayed(self, value: float) -> float:
+        """One of the verdict's values, in the unit that people read it in."""
+        if self.display_unit in ("1", self.unit):
+            return value
+        return value * units.unit(self.unit).factor / units.unit(self.display_unit).factor
+
+    def shown(self, value: float) -> str:
+        """One of the verdict's values as people read it."""
+        if not math.isfinite(value):
+            return "no value"
+        return f"{self.displayed(value):.7g}" + ("" if self.label == "1" else f" {self.label}")
+
+    @property
+    def label(self) -> str:
+        """The unit that people read beside the values."""
+        return self.unit if self.display_unit == "1" else self.display_unit
+
     def as_dict(self) -> dict[str, Any]:
-        """The verdict for JSON: what is not finite becomes null."""
-        return {
-            key: None if isinstance(value, float) and not math.isfinite(value) else value
-            for key, value in asdict(self).items()
-        }
+        """The verdict for JSON, null for what is not finite; `display` has the values that people read."""
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        del known["display_unit"]
+        display = {name: self.displayed(known[name]) for name in ("bound", "worst")}
+        return _finite(known) | {"display": _finite(display) | {"unit": self.label}}
+
+    @classmethod
+    def of(cls, stored: dict[str, Any]) -> Self:
+        """The verdict that `as_dict` made this of."""
+        known = {field.name: stored[field.name] for field in fields(cls) if field.name in stored}
+        for name in ("bound", "worst", "time", "angle"):
+            known[name] = math.nan if known[name] is None else known[name]
+        if "display" in stored:
+            return cls(**known, display_unit=stored["display"]["unit"])
+        # as version 0.1.0 stored them: SI values beside the unit that people read them in
+        return cls(**(known | {"unit": units.si(known["unit"])}), display_unit=known["unit"])
+
+
+def _finite(values: dict[str, Any]) -> dict[str, Any]:
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in values.items()
+    }
 
 
 def verdict(
-    trace: Signals, claim: str, signal: str, holds: bool, bound: float, worst: float, unit: str, time: float,
-    note: str = "",
+    trace: Signals, claim: str, signal: str, holds: bool, bound: float, worst: float,
+    unit: tuple[str, str], time: float, *notes: str,
 ) -> Verdict:  # fmt: skip
-    """A verdict with the place on the shaft that belongs to its time."""
-    angle = float(np.interp(time, trace.time, trace.shaft_angle)) if math.isfinite(time) else math.nan
-    turns = math.floor(angle / TURN) if math.isfinite(angle) else 0
-    return Verdict(
-        claim, signal, bool(holds), bound, worst, unit, time, angle - TURN * turns, turns + 1, note
-    )
+    """A verdict with the place on the shaft that belongs to its time; `unit` as in `ONE`."""
+    shaft = curves.shaft(trace)
+    angle, revolution = math.nan, None
+    if shaft is not None and math.isfinite(time):
+        turned = shaft.at(time)
+        revolution = math.floor(turned / curves.TURN) + 1
+        angle = turned - curves.TURN * (revolution - 1)
+    note = "; ".join(dict.fromkeys(note for note in notes if note))
+    return Verdict(claim, signal, bool(holds), bound, worst, *unit, time, angle, revolution, note)

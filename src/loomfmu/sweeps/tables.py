@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from .. import units
 from ..cosim.fmus import Port
 from .axes import Axis
 from .plan import Plan
@@ -104,7 +103,7 @@ def _claim(number: int, label: Label | None) -> list[Any]:
     """The columns of a claim."""
     about: dict[str, str] = {}
     if label is not None:
-        about = _about(_si(label.unit), label.unit, label.claim) | {"signal": label.signal}
+        about = _about(label.unit, label.display_unit, label.claim) | {"signal": label.signal}
     holds, worst, bound = claim_columns(number)
     return [
         pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
@@ -115,13 +114,3 @@ def _claim(number: int, label: Label | None) -> list[Any]:
 
 def _about(unit: str, display: str, description: str) -> dict[str, str]:
     return {"unit": unit, "display_unit": display, "description": description}
-
-
-def _si(name: str) -> str:
-    """The SI unit of the same dimension."""
-    dimension = units.unit(name).dimension
-    return next(
-        known
-        for known, unit in units.UNITS.items()
-        if unit.dimension == dimension and abs(unit.factor - 1.0) < 1e-12
-    )

@@ -39,11 +39,12 @@ class Job:
 
 @dataclass(frozen=True)
 class Label:
-    """What a claim is about: its words, its signal, and the unit people read its values in."""
+    """What a claim is about: its words and signal, the unit of its values and the one to show them in."""
 
     claim: str
     signal: str
     unit: str
+    display_unit: str
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
         for each in settings:
             result, verdicts = _row(job, scene, each)
             results.append(result)
-            labels = labels or tuple(Label(v.claim, v.signal, v.unit) for v in verdicts)
+            labels = labels or tuple(Label(v.claim, v.signal, v.unit, v.display_unit) for v in verdicts)
         return Batch(results, labels, (time.perf_counter() - begun) / len(settings))
 
 
