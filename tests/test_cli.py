@@ -43,9 +43,9 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     assert printed.err == ""
     lines = printed.out.splitlines()
     assert lines[0] == "Small: 1 revolutions at 400 rev/min, 90 steps"
-    (row,) = (line for line in lines if "lowest margin" in line)
-    assert row.split()[0] == word
-    assert "belt.lowest_margin" in row and "0.6558" in row and f" {bound} " in row and " deg " in row
+    place = lines.index(f"{word}  lowest margin (belt.lowest_margin)")
+    assert lines[place + 1].startswith("  0.6558")
+    assert f", bound {bound}, at 0.0" in lines[place + 1] and lines[place + 1].endswith(" deg, rev. 1")
     assert "To be read after the run." in lines
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
     with Trace("results/scene.h5") as trace:

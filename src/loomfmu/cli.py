@@ -10,10 +10,13 @@ import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from . import units
+from . import printed, units
 from .errors import LoomfmuError, suggestion
+
+if TYPE_CHECKING:
+    from .cosim.verdict import Verdict
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -183,7 +186,7 @@ def _run(options: argparse.Namespace) -> int:
         print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")
     if options.explain:
         print("left out:", *(f"  {line}" for line in result.skipped), sep="\n")
-    _print_verdicts([verdict.as_dict() for verdict in result.claims])
+    _print_verdicts(result.claims)
     if scene.description:
         print(f"{scene.description}\n")
     command = sys.argv[0] if Path(sys.argv[0]).name == "loomfmu" else "loomfmu"
@@ -262,6 +265,7 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _summarise(path: str) -> int:
+    from .cosim.verdict import Verdict
     from .traces import Trace
 
     with Trace(path) as trace:
@@ -281,35 +285,27 @@ def _summarise(path: str) -> int:
                 shown = "  ".join(f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
                 print(f"{signal:{width}}  {shown}  {trace.unit(signal) if display == '1' else display}")
         print()
-        _print_verdicts(trace.verdicts)
-        return 0 if trace.status == "complete" and all(v["holds"] for v in trace.verdicts) else 1
+        verdicts = [Verdict.of(stored) for stored in trace.verdicts]
+        _print_verdicts(verdicts)
+        return 0 if trace.status == "complete" and all(verdicts) else 1
 
 
-def _print_verdicts(verdicts: Sequence[dict[str, Any]]) -> None:
+def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
     """The verdicts as a table."""
     if not verdicts:
         print("no claims")
         return
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("verdict", "claim", "signal", "worst", "bound", "time", "angle", "rev."):
-        table.add_column(heading, overflow="fold")
+    headings = ("verdict", "claim", "signal", "worst", "bound", "at", "note")
+    rows, entries = [], []
     for verdict in verdicts:
-        placed = verdict["time"] is not None
-        table.add_row(
-            "holds" if verdict["holds"] else "[bold red]FAILS[/]",
-            verdict["claim"] + (f" ({verdict['note']})" if verdict["note"] else ""),
-            verdict["signal"],
-            "-" if verdict["worst"] is None else units.show(verdict["worst"], verdict["unit"]),
-            units.show(verdict["bound"], verdict["unit"]),
-            f"{verdict['time']:.6g} s" if placed else "-",
-            f"{math.degrees(verdict['angle']):.3f} deg" if placed else "-",
-            str(verdict["revolution"]) if placed else "-",
+        worst, bound = verdict.shown(verdict.worst), verdict.shown(verdict.bound)
+        rows.append(
+            (verdict.word, verdict.claim, verdict.signal, worst, bound, verdict.place or "-", verdict.note)
         )
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        place = f", at {verdict.place}" if verdict.place else ""
+        said = f"{verdict.word}  {verdict.claim}", f"({verdict.signal})", f"{worst}, bound {bound}{place}"
+        entries.append((*said, f"({verdict.note})") if verdict.note else said)
+    printed.show(headings, rows, entries)
 
 
 if __name__ == "__main__":

@@ -124,7 +124,8 @@ def test_columns_have_units_and_the_table_its_texts(tmp_path: Path) -> None:
     assert about["title"] == "Swept"
     assert about["sweep"] == path.read_text() and about["scene"] == SCENE
     assert about["software"].startswith("loomfmu ") and about["flavour"] == "live"
-    assert [each["unit"] for each in json.loads(about["claims"])] == ["1", "rev/min"]
+    labels = [(each["unit"], each["display_unit"]) for each in json.loads(about["claims"])]
+    assert labels == [("1", "1"), ("rad/s", "rev/min")]
     frame = pandas.read_parquet(found.path)
     assert list(frame.columns) == found.table.column_names
     assert frame.groupby("machine")["belt.lowest_speed_limit"].max()["WL680-3600"] > 71.0
@@ -268,7 +269,7 @@ def made_up(worst: list[float | None], holds: list[bool | None]) -> pa.Table:
         "claim_1.bound": pa.array([None if each is None else 10.0 for each in holds], pa.float64()),
         "holds": pa.array(holds), "error": pa.array([None if each is not None else "why" for each in holds]),
     }  # fmt: skip
-    about = {"claims": json.dumps([{"claim": "a", "signal": "b.c", "unit": "1"}])}
+    about = {"claims": json.dumps([{"claim": "a", "signal": "b.c", "unit": "1", "display_unit": "1"}])}
     return pa.table(columns).replace_schema_metadata(about)
 
 
@@ -367,6 +368,7 @@ def test_the_command_says_how_many_hold_which_are_worst_and_where_all_is(
     monkeypatch.chdir(tmp_path)
     drawn = '[map]\nx = "shaft.speed"\nvalue = "claim_1.worst"\n'
     written(tmp_path, '[grid]\n"shaft.speed" = ["500 rpm", "750 rpm", "700 rpm"]\n' + drawn)
+    monkeypatch.setenv("COLUMNS", "200")
     assert main(["sweep", "swept.toml", "--processes", "1"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "Swept: 3 combinations: 1 hold, 2 fail, 0 could not be run"
@@ -378,6 +380,15 @@ def test_the_command_says_how_many_hold_which_are_worst_and_where_all_is(
         "table: results/swept/table.parquet",
         "map: results/swept/map.png",
         "traces: 3 in results/swept/traces",
+    ]
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main(["sweep", "swept.toml", "--processes", "1"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert all(len(line) <= 80 and line == line.rstrip() for line in lines)
+    assert [line for line in lines if "row" in line] == [
+        "FAILS  row 1 (shaft.speed = 750 rev/min)",
+        "FAILS  row 2 (shaft.speed = 700 rev/min)",
+        "holds  row 0 (shaft.speed = 500 rev/min)",
     ]
     written(tmp_path, '[grid]\n"shaft.speed" = ["500 rpm", "600 rpm"]\n')
     assert main(["sweep", "swept.toml", "--processes", "1", "--restart"]) == 0

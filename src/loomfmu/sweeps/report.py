@@ -3,11 +3,7 @@
 import sys
 from typing import Any
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-
-from .. import units
+from .. import printed, units
 from .ranking import beyond, worst_rows
 from .run import Sweep
 from .tables import claim_columns, labels_of
@@ -38,19 +34,22 @@ def _show_worst(sweep: Sweep) -> None:
     rows = worst_rows(sweep.table, SHOWN)
     if not rows:
         return
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("worst", "row", *(axis.key for axis in sweep.plan.axes), "claim", "value", "bound"):
-        table.add_column(heading, overflow="fold")
+    headings = ("worst", "row", *(axis.key for axis in sweep.plan.axes), "claim", "value", "bound")
+    table, entries = [], []
     claims, labels = beyond(sweep.table).claim, labels_of(sweep.table)
     for row in rows:
         number = int(claims[row])
         holds, worst, bound = (sweep.table[name][row].as_py() for name in claim_columns(number))
-        unit = labels[number].unit
-        table.add_row(
-            "holds" if holds else "[bold red]FAILS[/]", str(row), *_values(sweep, row), labels[number].claim,
-            *("-" if value is None else units.show(value, unit) for value in (worst, bound)),
-        )  # fmt: skip
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        word, claim = "holds" if holds else "FAILS", labels[number].claim
+        shown = [
+            "-" if value is None else units.show(value, labels[number].display_unit)
+            for value in (worst, bound)
+        ]
+        table.append((word, str(row), *_values(sweep, row), claim, *shown))
+        entries.append(
+            (f"{word}  row {row} ({_described(sweep, row)})", f"{claim}: {shown[0]}, bound {shown[1]}")
+        )
+    printed.show(headings, table, entries)
 
 
 def _values(sweep: Sweep, row: int) -> list[str]:
@@ -58,13 +57,17 @@ def _values(sweep: Sweep, row: int) -> list[str]:
     return [axis.varied.show(sweep.table[axis.key][row].as_py()) for axis in sweep.plan.axes]
 
 
+def _described(sweep: Sweep, row: int) -> str:
+    """A row by its values on the axes."""
+    keys = (axis.key for axis in sweep.plan.axes)
+    return ", ".join(f"{key} = {value}" for key, value in zip(keys, _values(sweep, row), strict=True))
+
+
 def _show_texts(sweep: Sweep, column: str, what: str, stream: Any) -> None:
     """The first of the rows that have a text in a column."""
     texts = sweep.table[column].to_pylist()
     rows = [row for row, text in enumerate(texts) if text is not None]
     for row in rows[:SHOWN]:
-        keys = (axis.key for axis in sweep.plan.axes)
-        values = ", ".join(f"{key} = {value}" for key, value in zip(keys, _values(sweep, row), strict=True))
-        print(f"row {row} {what} ({values}): {texts[row]}", file=stream)
+        print(f"row {row} {what} ({_described(sweep, row)}): {texts[row]}", file=stream)
     if len(rows) > SHOWN:
         print(f"and {len(rows) - SHOWN} more rows {what}", file=stream)
