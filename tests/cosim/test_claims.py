@@ -221,6 +221,26 @@ def test_samples_that_do_not_tell_an_oscillation_do_not_make_a_claim_hold(tmp_pa
     assert judged(2).note == "the samples are too far apart to be sure: take more steps"
 
 
+def test_what_is_not_a_number_does_not_hold(tmp_path: Path) -> None:
+    def judged(value: float, **claim: Any) -> Verdict:
+        trace = drawn(
+            tmp_path,
+            lambda t: t,
+            lambda t: np.where(np.abs(t - 1.0) < 1e-9, value, 0.0),
+            lambda t: 0 * t,
+            np.linspace(0, 2, 21),
+        )
+        return judge(trace, signal="a.x", **claim)
+
+    for kind, window in (("below", None), ("above", None), ("below", ["10 deg", "90 deg"])):
+        found = judged(math.nan, kind=kind, bound=0.0, window=window)
+        assert not found
+        assert math.isclose(found.time, 1.0)
+        assert found.note == "a.x or its rate is not finite everywhere"
+    assert judged(math.inf, kind="above", bound=0.0)
+    assert not judged(math.inf, kind="below", bound=1e300)
+
+
 def test_claims_on_the_loom_say_where_rates_are_missing(
     loom: Callable[..., Trace], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -53,9 +53,13 @@ class Motion:
             self.values.append(np.asarray(trace[name], dtype=float))
             name = trace.rate(name)
 
+        self.finite = all(bool(np.isfinite(values).all()) for values in self.values)
+
     @property
     def note(self) -> str:
         """What a verdict says where the values between the samples are not known."""
+        if not self.finite:
+            return f"{self.signal} or its rate is not finite everywhere"
         steps = np.diff(self.values[0])
         if len(self.values) > 1 or np.all(steps <= 0.0) or np.all(steps >= 0.0):
             return ""
@@ -112,7 +116,9 @@ class Motion:
         return float(self.time[interval] + share * (self.time[interval + 1] - self.time[interval]))
 
     def beyond(self, level: float, sign: float) -> list[Stretch]:
-        """Stretches of time above a level, or with a negative sign below it."""
+        """Stretches of time above a level, or with a negative sign below it; none if it is not finite."""
+        if not self.finite:
+            return []
         inside = bool(self.values[0][0] >= level) == (sign > 0.0)
         begin, whole = float(self.time[0]), False
         stretches = []
@@ -127,6 +133,8 @@ class Motion:
     def lowest(self, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
         """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
         values, largest = sign * self.values[0], float(np.max(np.abs(self.values[0])))
+        if not self.finite:
+            return self._lowest_sample(sign, within)
         edges = np.array([time for each in within or () for time in each[:2]])
         found, times = [sign * self.along(edges)], [edges]
         if within is None:
@@ -148,6 +156,16 @@ class Motion:
         beyond = float(np.min(values[self._ends(time)])) - value
         coarse = beyond > max(COARSE * (float(values.max()) - value), SAME * largest)
         return Extreme(sign * value, time, coarse)
+
+    def _lowest_sample(self, sign: float, within: Sequence[Stretch] | None) -> Extreme:
+        inside = np.ones(len(self.time), dtype=bool)
+        if within is not None:
+            starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
+            inside = np.searchsorted(starts, self.time, "right") > np.searchsorted(ends, self.time, "left")
+        if not inside.any():
+            return Extreme(math.nan, math.nan)
+        value, time = first_lowest(sign * self.values[0][inside], self.time[inside])
+        return Extreme(sign * value, time)
 
     def _ends(self, time: float) -> list[int]:
         """The samples on both sides of a time."""
@@ -174,6 +192,8 @@ class Motion:
 
     def nearest(self, level: float, within: Sequence[Stretch]) -> Extreme:
         """How near the motion comes to a level in some stretches of time: 0 where it passes it."""
+        if not self.finite:
+            return Extreme(math.nan, math.nan)
         for time in self.crossings(level):
             if any(each.start <= time <= each.end for each in within):
                 return Extreme(0.0, time)

@@ -44,8 +44,9 @@ def rapier_in_open_shed(
         nearest = lift.nearest(0.5 * stroke, in_shed)
         openings.append((2.0 * ratio * nearest.value, nearest.time, f"{frame}.warp_height"))
         notes.append(nearest.note)
-    worst = min(openings)[0]
-    time, signal = min((time, name) for opening, time, name in openings if opening <= worst + curves.SAME)
+    worst = float(np.min([opening for opening, _time, _name in openings]))  # NaN if there is one
+    equal = [each for each in openings if not each[0] > worst + curves.SAME]
+    _opening, time, signal = min(equal, key=lambda each: each[1])
     holds = worst >= limit and curves.COARSE_NOTE not in notes
     return verdict(trace, claim, signal, holds, limit, worst, LENGTH, time, *notes)
 
