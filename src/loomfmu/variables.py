@@ -6,7 +6,7 @@ documentation, the checks of limits and the C struct all come from `variables_of
 """
 
 import math
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from typing import Any, ClassVar
 
 from . import units
@@ -64,6 +64,23 @@ class Problem:
 
     text: str
     warning: bool = False
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """Variables that one connection wires; two terminals of one name fit each other, member by member.
+
+    `variables` are a component's own names for the `members`, in the same order.
+    """
+
+    name: str
+    description: str
+    members: tuple[str, ...]
+    variables: tuple[str, ...] = ()
+
+    def of(self, *variables: str) -> "Terminal":
+        """This terminal on a component that calls its members so."""
+        return replace(self, variables=variables)
 
 
 def _declare(
@@ -166,6 +183,7 @@ class Component:
     """
 
     problems: ClassVar[tuple[Problem, ...]] = ()
+    terminals: ClassVar[tuple[Terminal, ...]] = ()
 
     def __post_init__(self) -> None:
         for variable in variables_of(type(self)):

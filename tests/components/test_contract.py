@@ -78,6 +78,23 @@ def test_variables_refer_to_variables(component):
 
 
 @every_component
+def test_terminals_join_variables_that_fit(component):
+    # the same name at both ends: members and units alike, outputs at one end, inputs at the other
+    for terminal in component.terminals:
+        ends = []
+        for other in COMPONENTS.values():
+            known = {variable.name: variable for variable in declared(other)}
+            for end in other.terminals:
+                if end.name == terminal.name:
+                    variables = [known[name] for name in end.variables]
+                    (causality,) = {variable.causality for variable in variables}
+                    facts = [(variable.unit, variable.display, variable.type) for variable in variables]
+                    ends.append((causality, end.members, facts))
+        assert {causality for causality, *_rest in ends} == {"input", "output"}
+        assert all(end[1:] == ends[0][1:] for end in ends)
+
+
+@every_component
 def test_problems_speak_of_variables(component):
     values_of_default = values(component())
     for problem in component.problems:

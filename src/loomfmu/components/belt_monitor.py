@@ -22,8 +22,9 @@ from ..physics.motion import (
     sample_noise,
 )
 from ..physics.shaft import carried, too_far
-from ..variables import Problem, input_, output, parameter, state
+from ..variables import Problem, Terminal, input_, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .terminals import HEAD
 
 # Time [s] and shaft angle [rad] below which two samples are one: their squares would underflow
 SHORTEST = 1e-15
@@ -44,6 +45,10 @@ class BeltMonitor(ShaftDriven):
             warning=True,
         ),
         TOO_FAR,
+    )
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        *ShaftDriven.terminals,
+        HEAD.of("travel", "velocity", "acceleration"),
     )
 
     bending_stiffness: float = parameter(

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import fabs, floor, pi
+from typing import ClassVar
 
 from ..physics.heald import lift_fraction
 from ..physics.rotor import highest_rates
@@ -16,8 +17,9 @@ from ..physics.rotor_mechanisms import (
 from ..physics.rotor_table import TABLE
 from ..physics.shaft import too_far
 from ..physics.shed_cam import SPLINE_CAM, cam_phase
-from ..variables import output
+from ..variables import Terminal, output
 from .rotor_laws import RotorLaws
+from .terminals import ROTOR
 
 
 @dataclass(slots=True)
@@ -27,6 +29,14 @@ class DobbyDrive(RotorLaws):
     With the law `spline_cam` there is no such rotor: a cam lifts and lowers the frames directly, once in
     two picks, and the rotor angle is only its phase.
     """
+
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        *RotorLaws.terminals,
+        ROTOR.of(
+            "rotor_angle", "rotor_velocity", "rotor_acceleration",
+            "lift_fraction", "lift_rate", "lift_acceleration",
+        ),
+    )  # fmt: skip
 
     rotor_angle: float = output(
         "rad", "Rotor angle from the slow point of pick 0, not wrapped", display="deg", unbounded=True,

@@ -1,9 +1,11 @@
 """DrivenShaft: the main shaft with its inertia, between its motor and the mechanisms."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..physics.driven_shaft import driven_motion, summed
-from ..variables import Component, input_, output, parameter, state
+from ..variables import Component, Terminal, input_, output, parameter, state
+from .terminals import SHAFT
 
 
 @dataclass(slots=True)
@@ -13,6 +15,8 @@ class DrivenShaft(Component):
     Exact for torques that run on straight lines between their samples, or that are held over a step. The
     mechanisms' own masses are no part of the inertia: they act through the torques.
     """
+
+    terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
 
     speed: float = parameter(
         "rad/s", 41.88790204786391, "No-load speed of the motor, referred to the shaft", display="rev/min",

@@ -7,7 +7,8 @@ from typing import ClassVar
 from ..physics.damper import propagate, stop_damping_ratio
 from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
 from ..physics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
-from ..variables import Component, Problem, input_, output, parameter, state
+from ..variables import Component, Problem, Terminal, input_, output, parameter, state
+from .terminals import FRAME
 
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
 SHORTEST = 1e-15
@@ -36,6 +37,7 @@ class HealdDamper(Component):
             "start_displacement = {start_displacement} is beyond the stops at free_travel = {free_travel}"
         ),
     )
+    terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
 
     carrier_mass: float = parameter(
         "kg", 15.0, "Mass of the heald carrier", minimum=1e-3, maximum=1e3, nominal=10.0

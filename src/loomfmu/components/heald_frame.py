@@ -6,7 +6,8 @@ from typing import ClassVar
 
 from ..physics.heald import lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import Component, Problem, input_, output, parameter
+from ..variables import Component, Problem, Terminal, input_, output, parameter
+from .terminals import FRAME, ROTOR
 
 
 @dataclass(slots=True)
@@ -23,6 +24,13 @@ class HealdFrame(Component):
             " 2e-7 rad; start nearer to time and angle 0"
         ),
     )
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        ROTOR.of(
+            "rotor_angle", "rotor_velocity", "rotor_acceleration",
+            "lift_fraction", "lift_rate", "lift_acceleration",
+        ),
+        FRAME.of("lift", "velocity", "acceleration"),
+    )  # fmt: skip
 
     stroke: float = parameter(
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1

@@ -1,14 +1,18 @@
 """MainShaft: the loom's main shaft, which all mechanisms follow."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..physics.shaft import shaft_motion
-from ..variables import Component, output, parameter
+from ..variables import Component, Terminal, output, parameter
+from .terminals import SHAFT
 
 
 @dataclass(slots=True)
 class MainShaft(Component):
     """The loom's main shaft: constant speed, a smooth start-up ramp, a speed ripple."""
+
+    terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
 
     speed: float = parameter(
         "rad/s", 41.88790204786391, "Mean shaft speed after the start-up (picks per minute)",

@@ -1,9 +1,11 @@
 """What the mechanisms share that are driven by the main shaft."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..physics.shaft import carried
-from ..variables import Component, Problem, input_, parameter
+from ..variables import Component, Problem, Terminal, input_, parameter
+from .terminals import SHAFT
 
 TOO_FAR = Problem(
     "the shaft is more than 2e9 rad from its zero, where its angle is known to no better than 2e-7 rad; start"
@@ -14,6 +16,10 @@ TOO_FAR = Problem(
 @dataclass(slots=True)
 class ShaftDriven(Component):
     """A mechanism on the main shaft: at its own constant speed, or following shaft signals."""
+
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        SHAFT.of("shaft_angle", "shaft_velocity", "shaft_acceleration"),
+    )
 
     speed: float = parameter(
         "rad/s", 41.88790204786391, "Constant shaft speed, used while follow_shaft is false",

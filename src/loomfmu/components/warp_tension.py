@@ -1,6 +1,7 @@
 """WarpTension: the tension of the warp threads that a heald frame lifts."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..physics.motion import joined
 from ..physics.shaft import carried
@@ -13,7 +14,8 @@ from ..physics.warp import (
     thread_locate,
     turns_once,
 )
-from ..variables import Component, input_, output, parameter, state
+from ..variables import Component, Terminal, input_, output, parameter, state
+from .terminals import FRAME
 
 
 @dataclass(slots=True)
@@ -25,6 +27,8 @@ class WarpTension(Component):
     law goes on below zero, the tension stays at zero and `slack` tells so. Unconnected, the thread of a
     raised frame relaxes.
     """
+
+    terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
 
     thread_count: int = parameter("1", 1260, "Threads in the frame", minimum=1, maximum=1000000)
     stroke: float = parameter(

@@ -12,8 +12,9 @@ from ..physics.linkage import (
     wrapped,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, output, parameter, state
+from ..variables import Problem, Terminal, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
+from .terminals import HEAD
 
 
 @dataclass(slots=True)
@@ -33,6 +34,10 @@ class WeftInsertion(ShaftDriven):
         ),
         Problem("assembly = {assembly} is outside {{-1, 1}}"),
         TOO_FAR,
+    )
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        *ShaftDriven.terminals,
+        HEAD.of("travel", "velocity", "acceleration"),
     )
 
     rocker_angle: float = parameter(

@@ -11,13 +11,14 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ..errors import LoomfmuError
 from ..fmi import builder, native_builder
+from ..fmi.xml_text import text_of
 from . import fmus
 from .fmus import Fmu, Port, Value
 from .instances import Instance
 from .ports import Definition
 from .scene import Scene
 from .ssp_layout import Box, bends, layout
-from .ssp_xml import FMU, OSP, OURS, PARAMETER_SET, SSD_FILE, root, text_of, write_units
+from .ssp_xml import FMU, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
 
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
 

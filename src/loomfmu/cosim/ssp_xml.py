@@ -1,7 +1,7 @@
 """What the writer and the reader of system packages (SSP 1.0) share: names, and units as XML."""
 
 from collections.abc import Iterable
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from ..errors import LoomfmuError
 from .ports import BASES, Definition
@@ -25,13 +25,6 @@ def root(tag: str, *prefixes: str, **attributes: str) -> Element:
     """A root element. Names are written with these prefixes, which some tools look for literally."""
     spaces = {f"xmlns:{prefix}": NAMESPACES[prefix] for prefix in prefixes}
     return Element(tag, spaces | attributes)
-
-
-def text_of(element: Element) -> bytes:
-    """An element as a file, the same bytes for the same element."""
-    indent(element)
-    body: str = tostring(element, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'.encode()
 
 
 def full(name: str) -> str:

@@ -17,6 +17,7 @@ from ..variables import Component, variables_of
 from . import documentation, live_slave
 from .model_description import FMI_TYPES, model_description
 from .source import flatten
+from .terminals import terminal_files
 
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
@@ -84,8 +85,10 @@ def write_readmes() -> None:
 
 
 def guid(component: type[Component]) -> str:
-    """Identity of an FMU: of its model description, its source and the slave that runs it."""
+    """Identity of an FMU: of all that is said of its variables, its source and the slave that runs it."""
     digest = hashlib.sha256(model_description(component, "", version()))
+    for content in terminal_files(component).values():
+        digest.update(content)
     for part in (_rows(component), flatten(component), _slave_source()):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
@@ -102,6 +105,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
     files = {
         "modelDescription.xml": model_description(component, identity, version()),
         "model.png": (source / "icon.png").read_bytes(),
+        **terminal_files(component),
         "documentation/index.html": documentation.page(name, readme),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
         "documentation/licenses/license.txt": license_of("loomfmu"),

@@ -1,10 +1,11 @@
 """modelDescription.xml of an FMI 2.0 co-simulation FMU, derived from a component's declarations."""
 
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from .. import units
 from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
+from .xml_text import text_of
 
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 DEFAULT_STOP_TIME = 1.0
@@ -57,9 +58,7 @@ def model_description(
     for reference, variable in enumerate(variables):
         _scalar(listed, reference, variable, name)
     _structure(root, variables)
-    indent(root)
-    text: str = tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+    return text_of(root)
 
 
 def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:

@@ -1,12 +1,13 @@
 """modelDescription.xml of an FMI 3.0 FMU, derived from a component's declarations."""
 
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
 from .memoryless import is_memoryless
 from .model_description import DEFAULT_STEP_SIZE, DEFAULT_STOP_TIME, attributes_of, unit_definitions
 from .native_tables import output_order
+from .xml_text import text_of
 
 FMI3_TYPES = {float: "Float64", int: "Int64", bool: "Boolean"}
 
@@ -49,9 +50,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         variability="continuous", unit="s", description="Simulation time",
     )  # fmt: skip
     _structure(root, variables)
-    indent(root)
-    text: str = tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+    return text_of(root)
 
 
 def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:

@@ -24,6 +24,7 @@ from .fat_binary import fat_binary
 from .model_description import model_description
 from .model_description3 import model_description3
 from .native_tables import has_inputs, output_order, tables
+from .terminals import terminal_files
 from .translate import translate
 
 SHELL = Path(__file__).with_name("native")
@@ -117,6 +118,7 @@ def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -
     files = {
         "modelDescription.xml": _description(component, fmi),
         icon: (folder(component) / "icon.png").read_bytes(),
+        **terminal_files(component),
         "documentation/index.html": documentation.page(name, readme),
         **licenses(platforms, code),
         "sources/buildDescription.xml": BUILD_DESCRIPTION.format(name=name, fmi=fmi).encode(),

@@ -1,0 +1,12 @@
+"""What one connection carries from component to component: `terminals` of a component are made of these."""
+
+from ..variables import Terminal
+
+SHAFT = Terminal("shaft", "Motion of the main shaft", ("angle", "velocity", "acceleration"))
+HEAD = Terminal("head", "Motion of the rapier head", ("travel", "velocity", "acceleration"))
+ROTOR = Terminal(
+    "rotor",
+    "Motion of the dobby's rotor, and the lift that it gives a frame",
+    ("angle", "velocity", "acceleration", "lift_fraction", "lift_rate", "lift_acceleration"),
+)
+FRAME = Terminal("frame", "Motion of a heald frame", ("lift", "velocity", "acceleration"))
