@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
 from ..errors import LoomfmuError
+from ..fmi.parameter_sets import SSC, SSV
 from .ports import BASES, Definition
 
 SSD_FILE = "SystemStructure.ssd"
@@ -13,8 +14,8 @@ OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform
 OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
-    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
-    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+    "ssc": SSC,
+    "ssv": SSV,
     "ssm": "http://ssp-standard.org/SSP1/SystemStructureParameterMapping",
     "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
     "loomfmu": "https://pypi.org/project/loomfmu/scene",

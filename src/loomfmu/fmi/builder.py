@@ -16,6 +16,7 @@ from ..components import COMPONENTS
 from ..variables import Component, variables_of
 from . import documentation, live_slave
 from .model_description import FMI_TYPES, model_description
+from .parameter_sets import parameter_files, parameter_note
 from .source import flatten
 from .terminals import terminal_files
 
@@ -87,11 +88,25 @@ def write_readmes() -> None:
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of all that is said of its variables, its source and the slave that runs it."""
     digest = hashlib.sha256(model_description(component, "", version()))
-    for content in terminal_files(component).values():
+    for content in _told(component).values():
         digest.update(content)
     for part in (_rows(component), flatten(component), _slave_source()):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
+
+
+def described(component: type[Component], note: str = "") -> dict[str, bytes]:
+    """The files that describe a component in every flavour; the note ends the documentation."""
+    readme = documentation.with_table(
+        (folder(component) / "README.md").read_text(encoding="utf-8"), component
+    )
+    page = documentation.page(component.__name__, readme + parameter_note(component) + note)
+    return {"documentation/index.html": page} | _told(component)
+
+
+def _told(component: type[Component]) -> dict[str, bytes]:
+    """What is said of the variables beside the model description."""
+    return terminal_files(component) | parameter_files(component, version())
 
 
 def _contents(component: type[Component]) -> dict[str, bytes]:
@@ -100,13 +115,10 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
     identity = guid(component)
     # every FMU of a process shares one set of Python modules: the name must belong to this content alone
     package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
-    source = folder(component)
-    readme = documentation.with_table((source / "README.md").read_text(encoding="utf-8"), component)
     files = {
         "modelDescription.xml": model_description(component, identity, version()),
-        "model.png": (source / "icon.png").read_bytes(),
-        **terminal_files(component),
-        "documentation/index.html": documentation.page(name, readme),
+        "model.png": (folder(component) / "icon.png").read_bytes(),
+        **described(component),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
         "documentation/licenses/license.txt": license_of("loomfmu"),
         "documentation/licenses/pythonfmu.txt": license_of("pythonfmu"),

@@ -18,13 +18,11 @@ import fmpy
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
 from ..variables import Component
-from . import documentation
-from .builder import folder, guid, license_of, version, write, zipped
+from .builder import described, folder, guid, license_of, version, write, zipped
 from .fat_binary import fat_binary
 from .model_description import model_description
 from .model_description3 import model_description3
 from .native_tables import has_inputs, output_order, tables
-from .terminals import terminal_files
 from .translate import translate
 
 SHELL = Path(__file__).with_name("native")
@@ -113,13 +111,11 @@ def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -
     name = component.__name__
     code = sources(component, fmi)
     note = NOTE.format(command=COMMAND.format(name=name, fmi=fmi))
-    readme = documentation.with_table((folder(component) / "README.md").read_text("utf-8"), component) + note
     icon = "model.png" if fmi == 2 else "terminalsAndIcons/icon.png"
     files = {
         "modelDescription.xml": _description(component, fmi),
         icon: (folder(component) / "icon.png").read_bytes(),
-        **terminal_files(component),
-        "documentation/index.html": documentation.page(name, readme),
+        **described(component, note),
         **licenses(platforms, code),
         "sources/buildDescription.xml": BUILD_DESCRIPTION.format(name=name, fmi=fmi).encode(),
         **{f"sources/{file}": text.encode() for file, text in code.items()},
