@@ -68,6 +68,25 @@ UNITS = {
     "kg.m2": Unit(kg=1, m=2),
 }
 
+# what an SI unit measures here, as Modelica's library calls it; a pure number, or its rate, may be anything
+QUANTITIES = {
+    "m": "Length",
+    "kg": "Mass",
+    "s": "Time",
+    "rad": "Angle",
+    "rad/s": "AngularVelocity",
+    "rad/s2": "AngularAcceleration",
+    "m/s": "Velocity",
+    "m/s2": "Acceleration",
+    "N": "Force",
+    "N/m": "TranslationalSpringConstant",
+    "N.m": "Torque",
+    "N.m2": "BendingStiffness",
+    "N.m.s/rad": "RotationalDampingConstant",
+    "W": "Power",
+    "kg.m2": "MomentOfInertia",
+}
+
 ALIASES = {"": "1", "-": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")

@@ -42,6 +42,12 @@ class Variable:
         """Whether a user or a master sets it."""
         return self.causality in ("parameter", "input")
 
+    @property
+    def quantity(self) -> str:
+        """What it measures, where its unit tells: empty for a number, and for what is only kept inside."""
+        told = self.type is float and self.causality != "local"
+        return units.QUANTITIES.get(self.unit, "") if told else ""
+
     def complaint(self, value: float | int | bool) -> str:
         """What is wrong with that value, or an empty text."""
         low = -math.inf if self.minimum is None else self.minimum

@@ -1,6 +1,7 @@
 """modelDescription.xml against the rules of FMI, the declarations, and what the components really do."""
 
 import math
+from pathlib import Path
 from xml.etree.ElementTree import Element, fromstring
 
 import fmpy.validation
@@ -9,6 +10,7 @@ from live_fmus import COMPONENTS, NAMES, excited, fmu_cache
 
 from loomfmu import units
 from loomfmu.cosim import fmus
+from loomfmu.fmi.builder import version
 from loomfmu.fmi.live_slave import CATEGORIES
 from loomfmu.fmi.model_description import model_description
 from loomfmu.variables import Component, Variable, variables_of
@@ -56,6 +58,25 @@ def test_head(name: str) -> None:
     categories = {category.attrib["name"] for category in root.findall("LogCategories/Category")}
     assert categories == {"logStatusWarning", "logStatusDiscard", "logStatusError"}
     assert categories == {category for category, _description in CATEGORIES.values()}
+
+
+def test_author_and_date_are_those_of_the_version() -> None:
+    root, house = xml("MainShaft"), Path(__file__).parents[2]
+    assert root.attrib["copyright"] in (house / "LICENSE").read_text()
+    assert root.attrib["copyright"].endswith(root.attrib["author"])
+    day = root.attrib["generationDateAndTime"].removesuffix("T00:00:00Z")
+    # a new version brings a new date
+    assert f"## {version()} ({day})" in (house / "CHANGELOG.md").read_text()
+
+
+@every_fmu
+def test_quantities_are_those_of_the_units(name: str) -> None:
+    for variable, _element, kind in listed(name):
+        shown = variable.type is float and variable.causality != "local"
+        wanted = units.QUANTITIES.get(variable.unit) if shown else None
+        assert kind.attrib.get("quantity") == wanted
+        # a number, or a rate of one, can be anything
+        assert not shown or (wanted is None) == (variable.unit in ("1", "1/s", "1/s2"))
 
 
 @every_fmu

@@ -7,6 +7,9 @@ from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
 from .xml_text import text_of
 
+AUTHOR = "the loomfmu authors"
+COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
+RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 DEFAULT_STOP_TIME = 1.0
 DEFAULT_STEP_SIZE = 1e-4
@@ -23,14 +26,7 @@ def model_description(
     name = component.__name__
     root = Element(
         "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=name,
-        guid=guid,
-        description=(component.__doc__ or "").splitlines()[0],
-        version=version,
-        license="MIT",
-        generationTool=f"loomfmu {version}",
-        variableNamingConvention="flat",
+        {"fmiVersion": "2.0", "modelName": name, "guid": guid} | about(component, version),
     )
     capabilities = {
         "modelIdentifier": name,
@@ -59,6 +55,20 @@ def model_description(
         _scalar(listed, reference, variable, name)
     _structure(root, variables)
     return text_of(root)
+
+
+def about(component: type[Component], version: str) -> dict[str, str]:
+    """What FMI 2 and FMI 3 tell of the model as a whole."""
+    return {
+        "description": (component.__doc__ or "").splitlines()[0],
+        "author": AUTHOR,
+        "version": version,
+        "copyright": COPYRIGHT,
+        "license": "MIT",
+        "generationTool": f"loomfmu {version}",
+        "generationDateAndTime": RELEASED,
+        "variableNamingConvention": "flat",
+    }
 
 
 def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:
@@ -118,6 +128,8 @@ def attributes_of(variable: Variable, model: str) -> dict[str, str]:
             if value is not None:
                 attributes[key] = _text(variable.type(value))
     if variable.type is float:
+        if variable.quantity:
+            attributes["quantity"] = variable.quantity
         attributes["unit"] = variable.unit
         if variable.display != variable.unit:
             attributes["displayUnit"] = variable.display

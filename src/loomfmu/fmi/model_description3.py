@@ -5,7 +5,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
 from .memoryless import is_memoryless
-from .model_description import DEFAULT_STEP_SIZE, DEFAULT_STOP_TIME, attributes_of, unit_definitions
+from .model_description import DEFAULT_STEP_SIZE, DEFAULT_STOP_TIME, about, attributes_of, unit_definitions
 from .native_tables import output_order
 from .xml_text import text_of
 
@@ -18,14 +18,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     name = component.__name__
     root = Element(
         "fmiModelDescription",
-        fmiVersion="3.0",
-        modelName=name,
-        instantiationToken=token,
-        description=(component.__doc__ or "").splitlines()[0],
-        version=version,
-        license="MIT",
-        generationTool=f"loomfmu {version}",
-        variableNamingConvention="flat",
+        {"fmiVersion": "3.0", "modelName": name, "instantiationToken": token} | about(component, version),
     )
     common = {"modelIdentifier": name, "canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
     if is_memoryless(component):
