@@ -3,6 +3,7 @@
 import ast
 import hashlib
 import html
+import re
 import struct
 import zipfile
 from dataclasses import dataclass
@@ -42,6 +43,14 @@ def test_documentation_has_equations_and_every_variable(name: str) -> None:
     for variable in variables_of(COMPONENTS[name]):
         assert f"<td><code>{variable.name}</code></td>" in page
         assert f"<td>{html.escape(variable.description, quote=False)}</td>" in page
+
+
+@every_fmu
+def test_texts_spell_the_unit_of_speed_in_one_way(name: str) -> None:
+    texts = [text for file, text in contents(name).items() if file.endswith((".html", ".xml"))]
+    for text in texts:
+        others = re.findall(r"(?<![a-z])r/min|rpm|(?i:(?:revolutions|turns|picks) per minute)", text.decode())
+        assert others == []
 
 
 @every_fmu

@@ -15,7 +15,7 @@ class MainShaft(Component):
     terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up (picks per minute)",
+        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up; a revolution is a pick",
         display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
     )  # fmt: skip
     start_angle: float = parameter(
