@@ -18,7 +18,8 @@ class Variable:
 
     `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
-    names of an enumeration's values, counted from 1.
+    names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
+    output jumps.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Variable:
     rate: str | None = None
     depends: tuple[str, ...] | None = None
     choices: tuple[str, ...] = ()
+    indicator: bool = False
 
     @property
     def settable(self) -> bool:
@@ -173,10 +175,15 @@ def state(unit: str, description: str, *, start: float | int | bool = 0.0) -> An
     return _declare("local", variability, unit, start, description, None)
 
 
+def indicator(unit: str, description: str) -> Any:
+    """A value that changes its sign where an output jumps, so that a solver finds the instant."""
+    return _declare("local", "continuous", unit, 0.0, description, None, indicator=True)
+
+
 def _variable(declared: Field[Any]) -> Variable:
     start = declared.default
     if start is MISSING or "causality" not in declared.metadata:
-        raise TypeError(f"{declared.name} is not declared by parameter, input_, output or state")
+        raise TypeError(f"{declared.name} is not declared by parameter, input_, output, state or indicator")
     return Variable(name=declared.name, type=type(start), start=start, **declared.metadata)
 
 

@@ -21,7 +21,7 @@ def test_pyfmi_runs_the_weft_at_its_own_speed(
 ) -> None:
     pyfmi = pytest.importorskip("pyfmi", reason="pyfmi is not installed: it has no wheel for this Python")
     monkeypatch.chdir(tmp_path)  # it writes its log and its result where it stands
-    model = pyfmi.load_fmu(str(natives["WeftInsertion"].path))
+    model = pyfmi.load_fmu(str(natives["WeftInsertion"].path), kind="CS")
     model.set("speed", SPEED)
     options = model.simulate_options()
     options["ncp"] = 1000

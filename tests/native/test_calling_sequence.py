@@ -157,7 +157,7 @@ def test_no_instance_answers_with_an_error(native):
         ({"name": ""}, "an instance needs a name"),
         ({"name": " \t"}, "an instance needs a name"),
         ({"name": None}, "an instance needs a name"),
-        ({"kind": 0}, "MainShaft is for co-simulation only"),
+        ({"kind": 2}, "MainShaft has no such interface"),
     ],
 )
 def test_an_instance_that_cannot_be_is_refused_with_a_reason(native, options, reason):

@@ -1,6 +1,7 @@
 """DetachingRoller: the torques that drive the detaching rollers of a cotton comber."""
 
 from dataclasses import dataclass
+from math import sin
 from typing import ClassVar
 
 from ..physics.detaching_roller import (
@@ -13,7 +14,7 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, input_, output, parameter
+from ..variables import Problem, indicator, input_, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
@@ -86,6 +87,8 @@ class DetachingRoller(ShaftDriven):
     )
     unit_torque: float = output("N.m", "Driving torque of both rollers of a unit, M")
     machine_torque: float = output("N.m", "Driving torque of all units, M0", nominal=10.0)
+    nip_event: float = indicator("1", "Passes zero where the next nip begins")
+    drafting_event: float = indicator("1", "Positive while fibres are drafted")
 
     def initialize(self, time: float) -> int:
         """Place the rollers."""
@@ -98,6 +101,8 @@ class DetachingRoller(ShaftDriven):
             return 2
         self.division = division_of(theta)
         drafting = self.division > DRAFT_START and self.division <= DRAFT_END
+        self.nip_event = sin(0.5 * theta)
+        self.drafting_event = (self.division - DRAFT_START) * (DRAFT_END - self.division)
         if self.use_table:
             first, second = assumed_motion(self.division)
             self.roller_acceleration = second * speed * speed + first * shaft_acceleration

@@ -1,7 +1,7 @@
 """DobbyDrive: the rotor of the dobby with its speed modulator."""
 
 from dataclasses import dataclass
-from math import fabs, floor, pi
+from math import fabs, floor, pi, sin
 from typing import ClassVar
 
 from ..physics.heald import lift_fraction
@@ -17,7 +17,7 @@ from ..physics.rotor_mechanisms import (
 from ..physics.rotor_table import TABLE
 from ..physics.shaft import too_far
 from ..physics.shed_cam import SPLINE_CAM, cam_phase
-from ..variables import Terminal, output
+from ..variables import Terminal, indicator, output
 from .rotor_laws import RotorLaws
 from .terminals import ROTOR
 
@@ -72,6 +72,7 @@ class DobbyDrive(RotorLaws):
         variability="discrete", depends=(),
     )  # fmt: skip
     pick: int = output("1", "Pick that the shaft is in", start=0, variability="discrete")
+    pick_event: float = indicator("1", "Passes zero where pick changes")
 
     def initialize(self, time: float) -> int:
         """Check the law, find its peaks and dwells, and place the rotor."""
@@ -89,6 +90,7 @@ class DobbyDrive(RotorLaws):
         if too_far(theta):
             return 6
         self.pick = floor(theta / (2.0 * pi))
+        self.pick_event = sin(0.5 * theta)
         if self.law == SPLINE_CAM:
             return self.turn_cam(theta - self.slow_point, speed, acceleration)
         turns = floor((theta - self.slow_point) / (2.0 * pi))

@@ -1,12 +1,12 @@
 """HealdFrame: a heald frame that follows its pattern."""
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, sin
 from typing import ClassVar
 
 from ..physics.heald import lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import Component, Problem, Terminal, input_, output, parameter
+from ..variables import Component, Problem, Terminal, indicator, input_, output, parameter
 from .terminals import FRAME, ROTOR
 
 
@@ -88,6 +88,7 @@ class HealdFrame(Component):
     inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0)
     moving: bool = output("1", "The frame changes between these slow points", start=False,
                           variability="discrete")  # fmt: skip
+    slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 
     def requested(self, pick: int) -> int:
         """Position that the pattern asks for at a pick: 1 raised, 0 lowered."""
@@ -140,6 +141,7 @@ class HealdFrame(Component):
         if too_far(angle):
             return 1
         pick = slow_points_passed(angle)
+        self.slow_point_event = sin(0.5 * angle)
         before = self.requested(pick)
         change = self.requested(pick + 1) - before
         share = 1.0 * before

@@ -15,7 +15,7 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, output, parameter, state
+from ..variables import Problem, indicator, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -111,6 +111,9 @@ class PatternLock(ShaftDriven):
     )  # fmt: skip
     inertia: float = state("kg.m2", "Moment of inertia of the pawl")
     whole_turn: float = state("rad", "Turn of the pawl from one disc to the other")
+    in_time_event: float = indicator(
+        "rad/s", "Margin of the shaft below speed_limit, beyond which in_time changes"
+    )
 
     def initialize(self, time: float) -> int:
         """Find what depends on the parameters alone and place the pawl."""
@@ -147,6 +150,8 @@ class PatternLock(ShaftDriven):
         self.torque_margin = 1.0 - fabs(self.inertia_torque) / (self.spring_force * self.lever_arm)
         self.available_time = available_time(self.available_angle, fabs(speed))
         self.in_time = self.release_time <= self.available_time and fabs(speed) <= self.torque_speed_limit
+        # at the limit itself the pawl is in time: the instant that is found lies just beyond
+        self.in_time_event = self.speed_limit * (1.0 + 1e-12) - fabs(speed)
         self.friction_power = friction_power(
             self.friction_coefficient, self.spring_force, self.friction_radius,
             self.rotor_ratio / self.gear_ratio * fabs(speed), float(self.frame_count),

@@ -5,6 +5,7 @@ from xml.etree.ElementTree import Element, SubElement
 from .. import units
 from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
+from .memoryless import is_memoryless
 from .xml_text import text_of
 
 AUTHOR = "the loomfmu authors"
@@ -31,14 +32,19 @@ def model_description(
     capabilities = {
         "modelIdentifier": name,
         "needsExecutionTool": "false",
-        "canHandleVariableCommunicationStepSize": "true",
-        "canInterpolateInputs": "false",
         "canBeInstantiatedOnlyOncePerProcess": "false",
-        "canNotUseMemoryManagementFunctions": "true",
+        "canNotUseMemoryManagementFunctions": str(native is None).lower(),
         "canGetAndSetFMUstate": "true",
         "canSerializeFMUstate": "true",
     }
-    kind = SubElement(root, "CoSimulation", capabilities | (native or {}))
+    if native is not None and is_memoryless(component):
+        root.set("numberOfEventIndicators", str(sum(variable.indicator for variable in variables)))
+        exchange = SubElement(
+            root, "ModelExchange", capabilities | {"completedIntegratorStepNotNeeded": "false"}
+        )
+        SubElement(SubElement(exchange, "SourceFiles"), "File", name="fmi2.c")
+    steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
+    kind = SubElement(root, "CoSimulation", capabilities | steps | (native or {}))
     if native is not None:
         SubElement(SubElement(kind, "SourceFiles"), "File", name="fmi2.c")
     unit_definitions(root, variables)

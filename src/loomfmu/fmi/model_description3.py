@@ -90,3 +90,6 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
         )  # fmt: skip
     for variable in outputs:
         SubElement(structure, "InitialUnknown", valueReference=str(references[variable.name]))
+    for variable in variables:
+        if variable.indicator:
+            SubElement(structure, "EventIndicator", valueReference=str(references[variable.name]))

@@ -58,10 +58,11 @@ PLATFORMS = {
 FLAGS = ("-shared", "-std=c99", "-O2", "-ffp-contract=off", "-g0", "-s", "-fno-sanitize=all")
 COMMON_FILES = (
     "tables.h", "python_arithmetic.h", "instance.h", "messages.c", "instance.c", "values.c", "states.c",
+    "solver.c",
 )  # fmt: skip
 SHELL_FILES = {
     2: (
-        "carry.c", "fmi2.c", "fmi2_values.c", "fmi2_steps.c",
+        "carry.c", "fmi2.c", "fmi2_solver.c", "fmi2_values.c", "fmi2_steps.c",
         "fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h",
     ),
     3: (
@@ -130,7 +131,6 @@ def _description(component: type[Component], fmi: int) -> bytes:
         return model_description3(component, guid(component), version())
     capabilities = {
         "canInterpolateInputs": str(has_inputs(component)).lower(),
-        "canNotUseMemoryManagementFunctions": "false",
         "maxOutputDerivativeOrder": str(output_order(component)),
     }
     return model_description(component, guid(component), version(), capabilities)

@@ -25,6 +25,7 @@ MODEL = """/* {name}: its variables and problems, written by loomfmu from its de
 #define MODEL_TOKEN "{token}"
 #define VARIABLES {count}
 #define PROBLEMS {problem_count}
+#define INDICATORS {indicator_count}
 #define MEMORYLESS {memoryless} /* 1: all outputs are functions of time, parameters and inputs alone */
 
 typedef struct {name} Component;
@@ -40,6 +41,9 @@ typedef struct {name} Component;
 static const Row rows[VARIABLES] = {{
 {rows}
 }};
+
+/* Variables that change their sign where an output jumps. */
+static const int indicators[INDICATORS + 1] = {{{indicators}}};
 
 /* The number of a problem is its place here, counted from 1. */
 static const Problem problems[PROBLEMS + 1] = {{
@@ -63,6 +67,8 @@ def tables(component: type[Component], token: str) -> str:
         token=token,
         count=len(variables),
         problem_count=len(component.problems),
+        indicator_count=sum(variable.indicator for variable in variables),
+        indicators=", ".join([*(str(names.index(v.name)) for v in variables if v.indicator), "NONE"]),
         memoryless=int(is_memoryless(component)),
         at_step_end=at_step_end,
         rows="\n".join(_row(variable, names) for variable in variables),

@@ -1,4 +1,4 @@
-/* FMI 2.0 for co-simulation: the functions of the standard over an instance of the component. */
+/* FMI 2.0: co-simulation, and model exchange where a component has no memory. */
 #include "component.c"
 #include "fmi2Functions.h"
 
@@ -7,6 +7,7 @@ typedef struct {
     fmi2CallbackAllocateMemory allocate;
     fmi2CallbackFreeMemory release;
     fmi2ComponentEnvironment environment;
+    bool model_exchange;
 } Host;
 
 #include "instance.h"
@@ -27,19 +28,23 @@ static void fmu_release(const Host *host, void *memory)
     }
 }
 
-#define MODES (INSTANTIATED | INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN)
+#define MODES                                                                                              \
+    (INSTANTIATED | INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN | EVENTS | CONTINUOUS_TIME)
 
 #include "messages.c"
 #include "instance.c"
 #include "values.c"
 #include "carry.c"
 #include "states.c"
+#include "solver.c"
 
-/* Where functions may be called: the table of calling sequences in section 4.2.4 of the standard. */
+/* Where functions may be called: the tables of calling sequences in sections 3.2.3 and 4.2.4 of the standard. */
 #define ALWAYS MODES
-#define READING (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN)
-#define SETTING (INSTANTIATED | INITIALIZING | STEPPING)
+#define READING (INITIALIZING | STEPPING | STEP_FAILED | TERMINATED | BROKEN | EVENTS | CONTINUOUS_TIME)
+#define SETTING (INSTANTIATED | INITIALIZING | STEPPING | EVENTS)
+#define CONTINUOUS_SETTING (SETTING | CONTINUOUS_TIME)
 #define STEPPED (STEPPING | STEP_FAILED | TERMINATED)
+#define SOLVING (INITIALIZING | EVENTS | CONTINUOUS_TIME | TERMINATED | BROKEN)
 
 /* Hosts take the message for a format, as the standard has it, or for a text: with each per cent sign
  * doubled it is safe for both. */
@@ -78,8 +83,11 @@ static const char *fmu_refusal(fmi2String name, fmi2Type type, fmi2String token)
     if (name == NULL || name[strspn(name, " \t\r\n")] == '\0') {
         return "an instance needs a name";
     }
-    if (type != fmi2CoSimulation) {
-        return MODEL_NAME " is for co-simulation only";
+    if (type != fmi2CoSimulation && type != fmi2ModelExchange) {
+        return MODEL_NAME " has no such interface";
+    }
+    if (type == fmi2ModelExchange && !MEMORYLESS) {
+        return MODEL_NAME " remembers: it is for co-simulation only";
     }
     if (token == NULL || strcmp(token, MODEL_TOKEN) != 0) {
         return "the GUID is not that of " MODEL_NAME ", " MODEL_TOKEN;
@@ -91,7 +99,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible,
                               fmi2Boolean logging)
 {
-    Host host = {NULL, NULL, NULL, NULL};
+    Host host = {NULL, NULL, NULL, NULL, type == fmi2ModelExchange};
     const char *reason = fmu_refusal(name, type, token);
     Instance *instance = NULL;
     (void)resources; /* there are none */
@@ -181,14 +189,14 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component component)
     if (!fmu_allowed(instance, INITIALIZING, "fmi2ExitInitializationMode") || fmu_refresh(instance) != OK) {
         return fmi2Error;
     }
-    instance->state.mode = STEPPING;
+    instance->state.mode = instance->host.model_exchange ? EVENTS : STEPPING;
     return fmi2OK;
 }
 
 fmi2Status fmi2Terminate(fmi2Component component)
 {
     Instance *instance = component;
-    if (!fmu_allowed(instance, STEPPING | STEP_FAILED, "fmi2Terminate")) {
+    if (!fmu_allowed(instance, STEPPING | STEP_FAILED | EVENTS | CONTINUOUS_TIME, "fmi2Terminate")) {
         return fmi2Error;
     }
     instance->state.mode = TERMINATED;
@@ -205,5 +213,6 @@ fmi2Status fmi2Reset(fmi2Component component)
     return fmi2OK;
 }
 
+#include "fmi2_solver.c"
 #include "fmi2_values.c"
 #include "fmi2_steps.c"

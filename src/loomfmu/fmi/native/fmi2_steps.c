@@ -33,7 +33,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component component, const fmi2ValueR
     Instance *instance = component;
     Status status = OK;
     size_t i;
-    if (!fmu_ready(instance, SETTING, "fmi2SetRealInputDerivatives", references, count, values)) {
+    if (!fmu_ready(instance, INSTANTIATED | INITIALIZING | STEPPING, "fmi2SetRealInputDerivatives", references,
+                   count, values)) {
         return fmi2Error;
     }
     if (count > 0 && orders == NULL) {

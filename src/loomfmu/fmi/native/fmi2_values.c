@@ -6,7 +6,7 @@ fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference referen
     Instance *instance = component;
     size_t i;
     if (!fmu_ready(instance, READING, "fmi2GetReal", references, count, values)
-        || fmu_prepare_reading(instance) != OK) {
+        || fmu_prepare(instance) != OK) {
         return fmi2Error;
     }
     for (i = 0; i < count; i++) {
@@ -23,7 +23,7 @@ fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference refe
     Instance *instance = component;
     size_t i;
     if (!fmu_ready(instance, READING, "fmi2GetInteger", references, count, values)
-        || fmu_prepare_reading(instance) != OK) {
+        || fmu_prepare(instance) != OK) {
         return fmi2Error;
     }
     for (i = 0; i < count; i++) {
@@ -48,7 +48,7 @@ fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference refe
     Instance *instance = component;
     size_t i;
     if (!fmu_ready(instance, READING, "fmi2GetBoolean", references, count, values)
-        || fmu_prepare_reading(instance) != OK) {
+        || fmu_prepare(instance) != OK) {
         return fmi2Error;
     }
     for (i = 0; i < count; i++) {
@@ -92,7 +92,7 @@ fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference referen
     Instance *instance = component;
     Status status = OK;
     size_t i;
-    if (!fmu_ready(instance, SETTING, "fmi2SetReal", references, count, values)) {
+    if (!fmu_ready(instance, CONTINUOUS_SETTING, "fmi2SetReal", references, count, values)) {
         return fmi2Error;
     }
     for (i = 0; i < count && status == OK; i++) {

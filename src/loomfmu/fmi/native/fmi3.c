@@ -30,6 +30,7 @@ static void fmu_release(const Host *host, void *memory)
 #include "instance.c"
 #include "values.c"
 #include "states.c"
+#include "solver.c"
 
 /* Where functions may be called: sections 2.3, 3.2 and 4.2 of the standard. */
 #define ALWAYS MODES

@@ -117,13 +117,6 @@ fmi3Status fmi3SetBoolean(fmi3Instance handle, const fmi3ValueReference referenc
 
 /* ---- the state as a whole */
 
-/* Whether an instance of this interface can have been in a state: each has modes of its own. */
-static bool fmu_fits(const Instance *instance, const State *state)
-{
-    int others = instance->host.model_exchange ? STEPPING : EVENTS | CONTINUOUS_TIME;
-    return (state->mode & others) == 0;
-}
-
 fmi3Status fmi3GetFMUState(fmi3Instance handle, fmi3FMUState *state)
 {
     Instance *instance = handle;
@@ -136,11 +129,8 @@ fmi3Status fmi3GetFMUState(fmi3Instance handle, fmi3FMUState *state)
 fmi3Status fmi3SetFMUState(fmi3Instance handle, fmi3FMUState state)
 {
     Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3SetFMUState") || fmu_saved(instance, state) == NULL) {
+    if (!fmu_allowed(instance, ALWAYS, "fmi3SetFMUState")) {
         return fmi3Error;
-    }
-    if (!fmu_fits(instance, &fmu_saved(instance, state)->state)) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "the FMU state is one of the other interface");
     }
     return (fmi3Status)fmu_restore(instance, state);
 }

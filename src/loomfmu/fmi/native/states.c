@@ -195,11 +195,21 @@ static Status fmu_save(Instance *instance, void **handle)
     return OK;
 }
 
+/* Whether an instance of this interface can have been in a state: each has modes of its own. */
+static bool fmu_fits(const Instance *instance, const State *state)
+{
+    int others = instance->host.model_exchange ? STEPPING | STEP_FAILED : EVENTS | CONTINUOUS_TIME;
+    return (state->mode & others) == 0;
+}
+
 static Status fmu_restore(Instance *instance, void *handle)
 {
     const Saved *saved = fmu_saved(instance, handle);
     if (saved == NULL) {
         return FAILED;
+    }
+    if (!fmu_fits(instance, &saved->state)) {
+        return fmu_complain(instance, FAILED, "the FMU state is one of the other interface");
     }
     instance->state = saved->state;
     return OK;

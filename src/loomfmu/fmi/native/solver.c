@@ -1,0 +1,110 @@
+/* Model exchange of a component without memory: no states, all it tells is a function of now. */
+
+static bool fmu_is_discrete_output(const Row *row)
+{
+    return row->causality == OUTPUT && row->variability == DISCRETE;
+}
+
+static size_t fmu_size(const Row *row)
+{
+    return row->kind == REAL ? sizeof(double) : row->kind == INTEGER ? sizeof(int64_t) : sizeof(bool);
+}
+
+/* Puts discrete outputs back to what they were: between events they may not change. */
+static void fmu_hold_discrete(Component *component, const Component *before)
+{
+    int i;
+    for (i = 0; i < VARIABLES; i++) {
+        if (fmu_is_discrete_output(&rows[i])) {
+            size_t offset = rows[i].offset;
+            memcpy((char *)component + offset, (const char *)before + offset, fmu_size(&rows[i]));
+        }
+    }
+}
+
+/* Computes the outputs of this instant, if something was set since they were computed last. */
+static Status fmu_evaluate(Instance *instance)
+{
+    State *state = &instance->state;
+    Component before = state->component;
+    int64_t problem;
+    Status status = OK;
+    if (!state->stale) {
+        return OK;
+    }
+    problem = component_step(&state->component, state->time, 0.0);
+    if (problem != 0) {
+        status = fmu_report(instance, problem, DISCARD);
+    }
+    if (status == OK) {
+        status = fmu_check_finite(instance, false, state->time, DISCARD);
+    }
+    if (status != OK) {
+        state->component = before;
+        return status;
+    }
+    if (state->mode == CONTINUOUS_TIME) {
+        fmu_hold_discrete(&state->component, &before);
+    }
+    state->stale = false;
+    return OK;
+}
+
+/* What a host may read, in whatever mode. */
+static Status fmu_prepare(Instance *instance)
+{
+    bool solving = instance->state.mode == EVENTS || instance->state.mode == CONTINUOUS_TIME;
+    return solving ? fmu_evaluate(instance) : fmu_prepare_reading(instance);
+}
+
+/* Whether a discrete output would have another value now. */
+static bool fmu_is_event(Instance *instance)
+{
+    const char *held = (const char *)&instance->state.component;
+    Component now = instance->state.component;
+    int i;
+    if (component_step(&now, instance->state.time, 0.0) != 0) {
+        return false;
+    }
+    for (i = 0; i < VARIABLES; i++) {
+        size_t offset = rows[i].offset, size = fmu_size(&rows[i]);
+        if (fmu_is_discrete_output(&rows[i]) && memcmp((char *)&now + offset, held + offset, size) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static Status fmu_set_time(Instance *instance, double time)
+{
+    if (!isfinite(time)) {
+        return fmu_complain(instance, FAILED, "the time is not finite");
+    }
+    instance->state.time = time;
+    instance->state.stale = true;
+    return OK;
+}
+
+/* Whether a host asks for no continuous states, as many as there are. */
+static Status fmu_no_states(Instance *instance, size_t count)
+{
+    if (!instance->host.model_exchange || count != 0) {
+        return fmu_complain(instance, FAILED, "there are no continuous states");
+    }
+    return OK;
+}
+
+static Status fmu_get_indicators(Instance *instance, double values[], size_t count)
+{
+    Status status;
+    int i;
+    if (!instance->host.model_exchange || count != INDICATORS || (count > 0 && values == NULL)) {
+        return fmu_refuse(instance, "there are %lu event indicators%s, in model exchange alone",
+                          (unsigned long)INDICATORS, "");
+    }
+    status = fmu_prepare(instance);
+    for (i = 0; i < INDICATORS && status == OK; i++) {
+        values[i] = fmu_value(instance, &rows[indicators[i]]);
+    }
+    return status;
+}
