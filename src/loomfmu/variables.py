@@ -6,6 +6,7 @@ documentation, the checks of limits and the C struct all come from `variables_of
 """
 
 import math
+import re
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from typing import Any, ClassVar
 
@@ -43,6 +44,18 @@ class Variable:
     def settable(self) -> bool:
         """Whether a user or a master sets it."""
         return self.causality in ("parameter", "input")
+
+    @property
+    def structured(self) -> str:
+        """Its name in a model description, in which tools fold away rows and what is only kept inside.
+
+        >>> from loomfmu.components import COMPONENTS
+        >>> variables = {v.name: v for v in variables_of(COMPONENTS["DobbyDrive"])}
+        >>> [variables[name].structured for name in ("law", "table_36", "cam_top", "cam_bend_1")]
+        ['law', 'table[36]', 'internal.cam_top', 'internal.cam_bend[1]']
+        """
+        name = re.sub(r"_(\d+)$", r"[\1]", self.name)
+        return f"internal.{name}" if self.causality == "local" else name
 
     @property
     def quantity(self) -> str:

@@ -80,9 +80,26 @@ def test_quantities_are_those_of_the_units(name: str) -> None:
 
 
 @every_fmu
+def test_names_are_structured_and_those_of_the_declarations_in_scenes(name: str) -> None:
+    root, declared = xml(name), variables_of(COMPONENTS[name])
+    assert root.attrib["variableNamingConvention"] == "structured"
+    names = [element.attrib["name"] for element in root.iterfind("ModelVariables/ScalarVariable")]
+    for array in {text.partition("[")[0] for text in names if "[" in text}:
+        places = [place for place, text in enumerate(names) if text.startswith(f"{array}[")]
+        # all elements, from 1 on, one after the other: what the standard asks of an array
+        assert places == list(range(places[0], places[0] + len(places)))
+        assert [names[place] for place in places] == [f"{array}[{n}]" for n in range(1, len(places) + 1)]
+    ports = fmus.of_component(name).ports
+    assert list(ports) == [variable.name for variable in declared]
+    assert [port.own for port in ports.values()] == names
+    for variable in declared:
+        assert variable.structured.startswith("internal.") == (variable.causality == "local")
+
+
+@every_fmu
 def test_every_variable_is_told_as_it_is_declared(name: str) -> None:
     for reference, (variable, element, kind) in enumerate(listed(name)):
-        assert element.attrib["name"] == variable.name
+        assert element.attrib["name"] == variable.structured
         assert element.attrib["valueReference"] == str(reference)
         assert element.attrib["causality"] == variable.causality
         assert element.attrib["variability"] == variable.variability

@@ -87,7 +87,6 @@ def test_one_connection_wires_head_rotor_and_frame() -> None:
 
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_native_fmus_have_the_same_file(monkeypatch: pytest.MonkeyPatch, fmi: int) -> None:
-    pytest.importorskip("pyccel")
     monkeypatch.setattr(native_builder, "binaries", lambda *_rest: {})
     with zipfile.ZipFile(fmus.of_component("BeltMonitor").path) as zipped:
         wanted = zipped.read(FILE)

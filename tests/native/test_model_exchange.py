@@ -248,7 +248,7 @@ def test_a_frame_begins_and_ends_its_changes_at_slow_points(solve, fmi):
     )
     found = solve(
         "HealdFrame", fmi, input=turning,
-        start_values={"pattern_length": 4, "pattern_1": 6}, output=["moving"],
+        start_values={"pattern_length": 4, "pattern[1]": 6}, output=["moving"],
     )  # fmt: skip
     # pegs 0 1 1 0: it changes, holds, changes, holds
     wanted = [2.0 * math.pi * n / speed for n in range(1, 7)]

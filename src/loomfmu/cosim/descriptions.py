@@ -32,6 +32,9 @@ def ports_of(description: Any) -> dict[str, Port]:
     """The scalar variables of the known types, by the names that scenes and traces use."""
     known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
     names = dict(zip((v.name for v in known), plain_names(v.name for v in known), strict=True))
+    if is_ours(description):
+        declared = {v.structured: v.name for v in variables_of(COMPONENTS[description.modelName])}
+        names = {name: declared.get(name, plain) for name, plain in names.items()}
     rates = _rates(description, names)
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]

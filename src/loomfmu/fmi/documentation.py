@@ -33,13 +33,23 @@ the FMU. Nothing is launched and no package is needed beyond Python's standard l
 
 def variable_table(component: type[Component]) -> str:
     """The variables of a component as a Markdown table, from their declarations."""
-    rows = ["| variable | causality | unit | start | limits | what it is |", "|---|---|---|---|---|---|"]
+    rows = [*_names_elsewhere(component)]
+    rows += ["| variable | causality | unit | start | limits | what it is |", "|---|---|---|---|---|---|"]
     for variable in variables_of(component):
         rows.append(
             f"| `{variable.name}` | {variable.causality} | {variable.display} | {start_text(variable)}"
             f" | {limits_text(variable)} | {variable.description} |"
         )
     return "\n".join(rows)
+
+
+def _names_elsewhere(component: type[Component]) -> list[str]:
+    """How tools that read the model description spell names that differ there."""
+    variables = variables_of(component)
+    kept = [variable for variable in variables if variable.causality == "local"]
+    in_rows = [v for v in variables if v.causality != "local" and v.structured != v.name]
+    examples = [f"`{group[0].structured}` for `{group[0].name}`" for group in (in_rows, kept) if group]
+    return [f"The FMU's model description has {' and '.join(examples)}.", ""] if examples else []
 
 
 def start_text(variable: Variable) -> str:

@@ -73,7 +73,7 @@ def about(component: type[Component], version: str) -> dict[str, str]:
         "license": "MIT",
         "generationTool": f"loomfmu {version}",
         "generationDateAndTime": RELEASED,
-        "variableNamingConvention": "flat",
+        "variableNamingConvention": "structured",
     }
 
 
@@ -112,7 +112,7 @@ def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> 
     scalar = SubElement(
         listed,
         "ScalarVariable",
-        name=variable.name,
+        name=variable.structured,
         valueReference=str(reference),
         causality=variable.causality,
         variability=variable.variability,

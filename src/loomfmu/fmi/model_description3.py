@@ -62,7 +62,7 @@ def _variable(listed: Element, reference: int, variable: Variable, model: str) -
     """One variable with its type, unit, limits and start: in FMI 3 all of them in one element."""
     kind = "Enumeration" if variable.choices else FMI3_TYPES[variable.type]
     about = {
-        "name": variable.name,
+        "name": variable.structured,
         "valueReference": str(reference),
         "causality": variable.causality,
         "variability": variable.variability,

@@ -66,7 +66,11 @@ def _text(component: type[Component], given: ParameterSet, version: str) -> byte
         if kind == "Real":
             attributes["unit"] = variables[variable].unit
             used.add(variables[variable].unit)
-        SubElement(SubElement(listed, "ssv:Parameter", name=variable), f"ssv:{kind}", attributes)
+        SubElement(
+            SubElement(listed, "ssv:Parameter", name=variables[variable].structured),
+            f"ssv:{kind}",
+            attributes,
+        )
     section = SubElement(root, "ssv:Units")
     for unit in sorted(used):
         exponents = zip(("kg", "m", "s", "rad"), units.unit(unit).dimension, strict=True)

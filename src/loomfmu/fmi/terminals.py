@@ -5,7 +5,7 @@ FMI 2.0.4 takes the file over from FMI 3.0 as it is, under the same name.
 
 from xml.etree.ElementTree import Element, SubElement
 
-from ..variables import Component
+from ..variables import Component, variables_of
 from .xml_text import text_of
 
 FILE = "terminalsAndIcons/terminalsAndIcons.xml"
@@ -16,6 +16,7 @@ def terminal_files(component: type[Component]) -> dict[str, bytes]:
     """The file by its name in the FMU; none where a component has no terminals."""
     if not component.terminals:
         return {}
+    names = {variable.name: variable.structured for variable in variables_of(component)}
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     listed = SubElement(root, "Terminals")
     for terminal in component.terminals:
@@ -25,7 +26,7 @@ def terminal_files(component: type[Component]) -> dict[str, bytes]:
         )  # fmt: skip
         for member, variable in zip(terminal.members, terminal.variables, strict=True):
             SubElement(
-                element, "TerminalMemberVariable", variableName=variable, memberName=member,
+                element, "TerminalMemberVariable", variableName=names[variable], memberName=member,
                 variableKind="signal",
             )  # fmt: skip
     return {FILE: text_of(root)}
