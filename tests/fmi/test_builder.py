@@ -8,6 +8,7 @@ import struct
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree.ElementTree import fromstring
 
 import fmpy
 import numpy as np
@@ -67,6 +68,13 @@ def test_licences_of_all_that_is_in_it(name: str) -> None:
     assert b"MIT License" in files["documentation/licenses/license.txt"]
     assert b"MIT License" in files["documentation/licenses/pythonfmu.txt"]
     assert files["documentation/licenses/license.txt"] != files["documentation/licenses/pythonfmu.txt"]
+
+
+@every_fmu
+def test_documentation_shows_the_drawing_that_lies_beside_it(name: str) -> None:
+    files = contents(name)
+    assert '<img src="drawing.svg" alt="' in files["documentation/index.html"].decode()
+    assert fromstring(files["documentation/drawing.svg"]).tag == "{http://www.w3.org/2000/svg}svg"
 
 
 @every_fmu

@@ -101,7 +101,8 @@ def described(component: type[Component], note: str = "") -> dict[str, bytes]:
         (folder(component) / "README.md").read_text(encoding="utf-8"), component
     )
     page = documentation.page(component.__name__, readme + parameter_note(component) + note)
-    return {"documentation/index.html": page} | _told(component)
+    drawing = (folder(component) / "drawing.svg").read_bytes()
+    return {"documentation/index.html": page, "documentation/drawing.svg": drawing} | _told(component)
 
 
 def _told(component: type[Component]) -> dict[str, bytes]:
