@@ -110,7 +110,7 @@ def fmpy(scene: Scene, directory: Path) -> Signals:
     from fmpy.ssp.ssd import Parameter, ParameterSet
 
     values = [
-        Parameter(name=f"{name}.{variable}", type="Real", value=float(value))
+        Parameter(name=f"{name}.{instance.fmu.ports[variable].own}", type="Real", value=float(value))
         for name, instance in scene.instances.items()
         for variable, value in instance.values.items()
         if variable != "inputs_at_step_end"
