@@ -7,6 +7,8 @@ Names are Modelica's (`rad/s`, `N.m2`, `rev/min`), as FMI model descriptions and
 import math
 import re
 from dataclasses import dataclass
+from numbers import Real
+from typing import Any
 
 from .errors import LoomfmuError, suggestion
 
@@ -32,6 +34,7 @@ class Unit:
 
 
 STANDARD_GRAVITY = 9.80665  # m/s2, exact by definition
+FAR = 4.0  # times the usual value, or a share of it: beyond that a number without unit is doubted
 
 UNITS = {
     "1": Unit(),
@@ -128,7 +131,7 @@ def parse(quantity: str | float, target: str) -> float:
     >>> parse(0.8, "1")
     0.8
     """
-    if isinstance(quantity, bool) or not isinstance(quantity, str | int | float):
+    if isinstance(quantity, bool) or not isinstance(quantity, str | Real):
         raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
     if not isinstance(quantity, str):
         return float(quantity)
@@ -142,6 +145,36 @@ def parse(quantity: str | float, target: str) -> float:
     if given.dimension != wanted.dimension:
         raise UnitError(f"{quantity!r} is in {name or '1'}, which is no unit of {target}")
     return float(number) * given.factor / wanted.factor
+
+
+class Si(float):
+    """A number that is known to be meant in SI: nothing doubts it."""
+
+
+def doubt(quantity: Any, target: str, display: str, usual: float) -> str:
+    """What is odd about a number without unit, or an empty text.
+
+    It is odd where it lies far from the usual value (SI) as it is read, but near to it if its unit was to be
+    that in which people read such values.
+
+    >>> doubt(480, "rad/s", "rev/min", 42.0)
+    'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
+    >>> doubt("480 rpm", "rad/s", "rev/min", 42.0), doubt(50.0, "rad/s", "rev/min", 42.0)
+    ('', '')
+    """
+    if isinstance(quantity, str):
+        match = _QUANTITY.fullmatch(quantity)
+        if match is None or match.group(2):
+            return ""
+    elif isinstance(quantity, Si):
+        return ""
+    value = parse(quantity, target)
+    share = abs(value / usual) if usual else 0.0
+    near = 1.0 / FAR <= share * unit(display).factor <= FAR
+    if not near or 1.0 / FAR <= share <= FAR:
+        return ""
+    meant = f"{value:.7g} {display}"
+    return f'is read as {show(value, target)} = {show(value, display)}; write "{meant}" if that is meant'
 
 
 def show(value: float, name: str) -> str:

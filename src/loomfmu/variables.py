@@ -11,6 +11,7 @@ from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from typing import Any, ClassVar
 
 from . import units
+from .errors import LoomfmuError
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,19 @@ class Variable:
         """What it measures, where its unit tells: empty for a number, and for what is only kept inside."""
         told = self.type is float and self.causality != "local"
         return units.QUANTITIES.get(self.unit, "") if told else ""
+    def read(self, given: Any, name: str) -> float:
+        """A quantity as people write it, in SI and within the limits; `name` is what a message calls it.
+
+        Raises LoomfmuError for a quantity that this variable cannot have.
+        """
+        try:
+            value = units.parse(given, self.unit)
+        except units.UnitError as error:
+            raise LoomfmuError(f"{name}: {error}") from None
+        complaint = replace(self, name=name).complaint(value)
+        if complaint:
+            raise LoomfmuError(complaint)
+        return value
 
     def complaint(self, value: float | int | bool) -> str:
         """What is wrong with that value, or an empty text."""

@@ -150,9 +150,16 @@ def test_any_rotor_law_makes_a_cam():
         (lambda: spline_law([0.0, 2.0, 3.0, 4.0 * pi], [0.0, 0.0, 0.0, 0.0]), "must rise"),
         (lambda: sampled_law([0.0, 1.0]), "eight or more"),
         (lambda: sampled_law(np.ones(20)), "not all alike"),
-        (lambda: design_cam(lowest_radius=0.2), r"lowest_radius = 200 mm is outside \[0, 107\] mm"),
-        (lambda: design_cam(roller_radius=0.0), "roller_radius = 0 mm"),
-        (lambda: design_cam(points=10), "with 10 points"),
+        (
+            lambda: design_cam(lowest_radius=0.2),
+            "lowest_radius = 200 mm is not below highest_radius = 107 mm",
+        ),
+        (lambda: design_cam(roller_radius=0.0), r"roller_radius = 0 mm is outside \[0\.1, 1000\] mm"),
+        (lambda: design_cam(roller_radius="19 deg"), "roller_radius: '19 deg' is in deg"),
+        (lambda: design_cam(highest_radius=None), "highest_radius: None is not a quantity"),
+        (lambda: sampled_law(3), "lifts = 3 is not a list"),
+        (lambda: gcode(design_cam(), cut="1 s"), "cut: '1 s' is in s"),
+        (lambda: design_cam(points=10), "points = 10 is not a whole number of 36 or more"),
     ],
 )
 def test_impossible_laws_and_dimensions_are_refused(make, message):
@@ -330,3 +337,17 @@ def test_arcs_of_the_published_program_join():
         centre = start + np.array([float(row["i_mm"]), float(row["j_mm"])])
         assert np.hypot(*(start - centre)) == pytest.approx(np.hypot(*(end - centre)), abs=1.5e-3)
     assert np.hypot(*(ends[0] - ends[-1])) == 0.0
+
+
+def test_dimensions_are_given_in_si_or_with_units():
+    plain = design_cam(lowest_radius=0.08, highest_radius=0.1, roller_radius=0.02)
+    written = design_cam(lowest_radius="80 mm", highest_radius="10 cm", roller_radius="20 mm")
+    # the units' factors are not exact in binary: rounding
+    np.testing.assert_allclose(written.path, plain.path, rtol=1e-13, atol=1e-16)
+    knots = ["0 deg", "180 deg", "360 deg", "720 deg"]
+    law, same = (
+        spline_law(knots, ["0 mm", "5 mm", "9 mm", "0 mm"]),
+        spline_law(np.radians([0, 180, 360, 720]), [0, 5, 9, 0]),
+    )
+    angles = np.linspace(0.0, 2 * pi, 7)
+    np.testing.assert_allclose(law(angles)[0], same(angles)[0], rtol=1e-12, atol=1e-13)

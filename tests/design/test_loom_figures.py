@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from loomfmu.cosim import scene as scenes
 from loomfmu.design import loom
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import HEADS, MACHINES, table
@@ -71,3 +72,50 @@ def test_productivity():
     assert rate == pytest.approx(36.0, rel=1e-12)  # 3.6 m ten times a second
     assert loom.productivity_coefficient(3.6, 600 * RPM) == pytest.approx(36.0 / math.sqrt(3.6), rel=1e-12)
     assert loom.spare_part_cost(100.0, 2.0, 9.0, 0.5) == pytest.approx(106.0, rel=1e-12)
+
+
+# ---- quantities
+
+
+def test_quantities_are_given_in_si_or_with_units():
+    # the units' factors are not exact in binary: rounding
+    assert loom.safe_speed("WL680-3600", clearance="0.5 mm", mass="120 g", tension="50 cN").speed == (
+        pytest.approx(
+            loom.safe_speed("WL680-3600", clearance=0.5e-3, mass=0.12, tension=0.5).speed, rel=1e-12
+        )
+    )
+    assert loom.clearance_for("650 rpm", "WL680-3600") == pytest.approx(
+        loom.clearance_for(650 * RPM, "WL680-3600"), rel=1e-12
+    )
+    assert loom.weft_insertion_rate("360 cm", "600 rpm") == pytest.approx(36.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "variable"),
+    [
+        ({"clearance": "90 mm"}, "guide_clearance"),
+        ({"clearance": -3.0}, "guide_clearance"),
+        ({"mass": -3.0}, "head_mass"),
+        ({"stiffness": 0.0}, "bending_stiffness"),
+        ({"stiffness": math.nan}, "bending_stiffness"),
+        ({"tension": "2000 kN"}, "yarn_tension"),
+        ({"length_factor": 3}, "prescribed_length_factor"),
+        ({"clearance": "0.5 s"}, "guide_clearance"),
+        ({"mass": [1]}, "head_mass"),
+    ],
+)
+def test_limits_and_messages_are_those_of_a_scene(given, variable):
+    ((name, value),) = given.items()
+    with pytest.raises(LoomfmuError) as in_scene:
+        scenes.parse("[belt]", overrides={f"belt.{variable}": value})
+    with pytest.raises(LoomfmuError) as in_design:
+        loom.safe_speed("WL680-3600", **given)
+    assert str(in_design.value) == str(in_scene.value).replace(f"belt.{variable}", name)
+
+
+@pytest.mark.parametrize("machine", [3, None, ["WL680-3600"]])
+def test_a_machine_or_a_head_that_is_no_name_is_refused(machine):
+    with pytest.raises(LoomfmuError, match="there is no machine"):
+        loom.safe_speed(machine)
+    with pytest.raises(LoomfmuError, match="there is no head"):
+        loom.safe_speed("WL680-3600", machine)

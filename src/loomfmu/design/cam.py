@@ -2,7 +2,7 @@
 
 One turn of the cam is two picks. A law gives the lift as a share of the largest, over the cam's angle, with
 its derivatives. Source: Korolev, thesis on rotary dobbies (Moscow), section 4.2, Appendices 2 and 3.
-All lengths in metres, all angles in radians.
+Lengths in metres, angles in radians, or as texts with a unit, such as "84 mm".
 """
 
 from collections.abc import Callable
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LoomfmuError
 from ..machines import table
+from .quantities import Quantity, listed, read, whole
 
 Floats = NDArray[np.float64]
 Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
@@ -44,7 +45,7 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
         rows = table("shed_control_points")
         angles = np.radians([float(row["shaft_angle_deg"]) for row in rows])
         heights = [float(row["warp_height_mm"]) for row in rows]
-    x, y = np.asarray(angles, dtype=float), np.asarray(heights, dtype=float)
+    x, y = listed("angles", angles, "rad"), listed("heights", heights, "m")
     if x.ndim != 1 or x.shape != y.shape or x.size < 4:
         raise LoomfmuError(f"{x.size} angles and {y.size} heights: the spline asks for four or more of each")
     if not np.all(np.diff(x) > 0.0) or abs(x[0]) > 1e-9 or abs(x[-1] - 2.0 * TURN) > 1e-9:
@@ -79,7 +80,7 @@ def sampled_law(lifts: ArrayLike) -> Law:
     """
     from scipy.interpolate import make_interp_spline
 
-    y = np.asarray(lifts, dtype=float)
+    y = listed("lifts", lifts, "m")
     if y.ndim != 1 or y.size < 8 or not np.all(np.isfinite(y)) or np.ptp(y) == 0.0:
         raise LoomfmuError(f"{y.size} samples of the lift: eight or more are asked for, not all alike")
     shares = (y - y.min()) / np.ptp(y)
@@ -95,6 +96,7 @@ def lift_law(lift: Callable[[float], float], samples: int = 720) -> Law:
     >>> round(float(law(np.array([pi]))[0][0]), 12)
     1.0
     """
+    samples = whole("samples", samples, 8)
     return sampled_law([lift(TURN * k / samples) for k in range(samples)])
 
 
@@ -138,9 +140,9 @@ class Cam:
 def design_cam(
     law: Law | None = None,
     *,
-    lowest_radius: float = 0.084,
-    highest_radius: float = 0.107,
-    roller_radius: float = 0.019,
+    lowest_radius: Quantity = 0.084,
+    highest_radius: Quantity = 0.107,
+    roller_radius: Quantity = 0.019,
     law_on_roller: bool = False,
     points: int = 1440,
 ) -> Cam:
@@ -161,15 +163,15 @@ def design_cam(
     >>> round(1000 * float(np.hypot(*cam.path.T).max()), 1)  # 107 and 19
     126.0
     """
-    if not 0.0 < lowest_radius < highest_radius:
+    lowest_radius, highest_radius = (
+        read("lowest_radius", lowest_radius),
+        read("highest_radius", highest_radius),
+    )
+    roller_radius, points = read("roller_radius", roller_radius), whole("points", points, 36)
+    if not lowest_radius < highest_radius:
         raise LoomfmuError(
-            f"lowest_radius = {1e3 * lowest_radius:.7g} mm is outside [0, {1e3 * highest_radius:.7g}] mm, the"
-            " highest_radius"
-        )
-    if not roller_radius > 0.0 or points < 36:
-        raise LoomfmuError(
-            f"roller_radius = {1e3 * roller_radius:.7g} mm with {points} points: above 0 mm and 36 or more"
-            " are asked for"
+            f"lowest_radius = {1e3 * lowest_radius:.7g} mm is not below highest_radius ="
+            f" {1e3 * highest_radius:.7g} mm"
         )
     law = law or spline_law()
     angle = np.linspace(0.0, TURN, points + 1)

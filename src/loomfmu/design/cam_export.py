@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import LoomfmuError
 from .cam import Cam, Floats
+from .quantities import Quantity, read, whole
 
 STRAIGHT = 1e4  # mm: an arc of a larger radius is written as a line
 
@@ -69,9 +70,9 @@ def gcode(
     cam: Cam,
     *,
     arcs: bool = True,
-    tolerance: float = 2e-6,
+    tolerance: Quantity = 2e-6,
     passes: int = 11,
-    cut: float = 1e-3,
+    cut: Quantity = 1e-3,
     feed: float = 150.0,
     spindle: float = 4000.0,
 ) -> str:
@@ -90,6 +91,7 @@ def gcode(
     >>> gcode(design_cam()).splitlines()[1]
     'G21 G90 G64 G17 G40 G49'
     """
+    passes, depth = whole("passes", passes, 1), read("cut", cut)
     start, moves = cutter_moves(cam, arcs=arcs, tolerance=tolerance)
     return "\n".join(
         [
@@ -108,7 +110,7 @@ def gcode(
             "O1",
             "G1 Z#1",
             *(str(move) for move in moves),
-            f"#1=[#1-{1e3 * cut:g}]",
+            f"#1=[#1-{1e3 * depth:g}]",
             "M99",
             "",
         ]
@@ -116,15 +118,16 @@ def gcode(
 
 
 def cutter_moves(
-    cam: Cam, *, arcs: bool = True, tolerance: float = 2e-6
+    cam: Cam, *, arcs: bool = True, tolerance: Quantity = 2e-6
 ) -> tuple[tuple[float, float], list[Move]]:
     """Start and moves of the cutter's centre round the cam, clockwise and closed [mm], to 0.1 um."""
     points = np.round(1e3 * _open(cam.path)[::-1], 4)
     points = np.vstack([points, points[:1]])
+    allowed = 1e3 * read("tolerance", tolerance)
     moves: list[Move] = []
     at, last = 0, len(points) - 1
     while at < last:
-        end, move = _longest_arc(points, at, 1e3 * tolerance) if arcs else (at, None)
+        end, move = _longest_arc(points, at, allowed) if arcs else (at, None)
         if move is None:
             end = at + 1
             move = Move("G1", float(points[end, 0]), float(points[end, 1]))

@@ -1,6 +1,7 @@
 """Figures of a whole loom: safe speed, what a wanted speed asks for, productivity.
 
-The same physics as in the FMUs, solved for a design. All values SI.
+The same physics as in the FMUs, solved for a design. Results are in SI; quantities are given as numbers in SI
+or as texts with a unit, such as "0.5 mm", within the limits that they have in a scene.
 """
 
 import math
@@ -10,8 +11,9 @@ from typing import Any
 
 from ..components.weft_insertion import WeftInsertion
 from ..errors import LoomfmuError
-from ..machines import parameters
+from ..machines import named, parameters
 from ..physics import belt
+from .quantities import Quantity, read, show
 
 BENDING_STIFFNESS = 0.25  # N m2, the carbon belt of Zhu and Zhou
 RPM = 2.0 * math.pi / 60.0
@@ -36,11 +38,11 @@ def safe_speed(
     machine: str,
     head: str = "G6300 left",
     *,
-    length_factor: float | None = None,
-    clearance: float = 0.3e-3,
-    tension: float = 0.0,
-    mass: float | None = None,
-    stiffness: float = BENDING_STIFFNESS,
+    length_factor: Quantity | None = None,
+    clearance: Quantity = 0.3e-3,
+    tension: Quantity = 0.0,
+    mass: Quantity | None = None,
+    stiffness: Quantity = BENDING_STIFFNESS,
 ) -> SafeSpeed:
     """Safe speed of a published machine, equations (9), (10) and (12) of Zhu and Zhou.
 
@@ -53,22 +55,26 @@ def safe_speed(
         stiffness: bending stiffness of the belt [N m2]
 
     Raises:
-        LoomfmuError: an unknown name, or a weft tension that buckles the belt by itself
+        LoomfmuError: an unknown name, a quantity out of its limits, or a weft tension that buckles the belt
+            by itself
 
     >>> round(safe_speed("WL680-3600").speed / RPM, 1)
     681.8
     """
     from scipy.optimize import minimize_scalar
 
+    clearance, tension = read("clearance", clearance), read("tension", tension)
+    stiffness = read("stiffness", stiffness)
+
     guide, travel = _travel(machine)
-    if mass is None:
-        mass = float(parameters("BeltMonitor", head=head)["head_mass"])
-    factor = belt.length_factor(clearance) if length_factor is None else length_factor
+    named("head", head)
+    weight = read("mass", parameters("BeltMonitor", head=head)["head_mass"] if mass is None else mass)
+    factor = belt.length_factor(clearance) if length_factor is None else read("length_factor", length_factor)
     start, end = window(machine)
 
     def limit(angle: float) -> float:
         position, _first, second = travel(angle)
-        return belt.speed_limit(position - guide, second, factor, stiffness, mass, tension)
+        return belt.speed_limit(position - guide, second, factor, stiffness, weight, tension)
 
     # the limit is infinite at both edges and has one minimum between: bracket it on a grid first
     angles = [start + (end - start) * (k + 0.5) / 64 for k in range(64)]
@@ -101,6 +107,7 @@ def window(machine: str) -> tuple[float, float]:
 
 def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, float]]]:
     """Travel at which the belt leaves its guide, and travel with derivatives by shaft angle."""
+    named("machine", machine)
     where = parameters("BeltMonitor", machine=machine)
     weft = WeftInsertion(**parameters("WeftInsertion", machine=machine))  # type: ignore[arg-type]
     weft.speed = 1.0
@@ -116,42 +123,43 @@ def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, 
 # ---- what a wanted speed asks for
 
 
-def clearance_for(speed: float, machine: str, head: str = "G6300 left", **others: Any) -> float:
+def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Largest guide clearance with which the belt is safe at a speed [m].
 
     Raises LoomfmuError, with the speeds that can be had, where no clearance is small or large enough.
     """
     return _solve(
-        "guide clearance", "m", speed,
+        "guide clearance", "clearance", speed,
         lambda value: safe_speed(machine, head, clearance=value, **others).speed, 0.0, 0.8e-3,
     )  # fmt: skip
 
 
-def mass_for(speed: float, machine: str, **others: Any) -> float:
+def mass_for(speed: Quantity, machine: str, **others: Any) -> float:
     """Largest mass of the rapier head with which the belt is safe at a speed [kg]; see `clearance_for`."""
     return _solve(
-        "head mass", "kg", speed, lambda value: safe_speed(machine, mass=value, **others).speed, 1e-3, 10.0
+        "head mass", "mass", speed, lambda value: safe_speed(machine, mass=value, **others).speed, 1e-3, 10.0
     )
 
 
-def stiffness_for(speed: float, machine: str, head: str = "G6300 left", **others: Any) -> float:
+def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Smallest bending stiffness with which the belt is safe at a speed [N m2]; see `clearance_for`."""
     return _solve(
-        "bending stiffness", "N.m2", speed,
+        "bending stiffness", "stiffness", speed,
         lambda value: safe_speed(machine, head, stiffness=value, **others).speed, 1e-3, 100.0,
     )  # fmt: skip
 
 
 def _solve(
-    what: str, unit: str, speed: float, reached: Callable[[float], float], low: float, high: float
+    what: str, name: str, wanted: Quantity, reached: Callable[[float], float], low: float, high: float
 ) -> float:
     from scipy.optimize import brentq
 
+    speed = read("speed", wanted)
     ends = reached(low), reached(high)
     if not min(ends) <= speed <= max(ends):
         raise LoomfmuError(
-            f"no {what} gives {speed / RPM:.6g} rev/min: from {low:g} to {high:g} {unit} the safe speed goes"
-            f" from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"
+            f"no {what} gives {show('speed', speed)}: from {show(name, low)} to {show(name, high)} the safe"
+            f" speed goes from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"
         )
     return float(brentq(lambda value: reached(value) - speed, low, high, xtol=1e-12 * high, rtol=1e-12))
 
@@ -159,18 +167,18 @@ def _solve(
 # ---- productivity, Korolev section 1.1
 
 
-def weft_insertion_rate(width: float, speed: float) -> float:
+def weft_insertion_rate(width: Quantity, speed: Quantity) -> float:
     """Length of weft inserted in a time, `width * speed` [m/s] for a width [m] and a shaft speed [rad/s].
 
     >>> round(weft_insertion_rate(3.6, 345 * RPM) * 60)  # m/min
     1242
     """
-    return width * speed / (2.0 * math.pi)
+    return read("width", width) * read("speed", speed) / (2.0 * math.pi)
 
 
-def productivity_coefficient(width: float, speed: float) -> float:
+def productivity_coefficient(width: Quantity, speed: Quantity) -> float:
     """Weft-insertion rate over the square root of the width, `WIR / sqrt(width)` [m^0.5/s]."""
-    return weft_insertion_rate(width, speed) / math.sqrt(width)
+    return weft_insertion_rate(width, speed) / math.sqrt(read("width", width))
 
 
 def spare_part_cost(fixed: float, share: float, parts: float, exponent: float) -> float:

@@ -29,6 +29,12 @@ MACHINE_COLUMNS = {
 # the parameter that takes the mass of the rapier head
 HEAD_MASS = {"BeltMonitor": "head_mass", "WeftInsertion": "moving_mass"}
 
+# what a loom has one of -> the components that take something of it
+TAKERS = {
+    "machine": tuple(dict.fromkeys(owner for owner, _name, _unit in MACHINE_COLUMNS.values())),
+    "head": tuple(HEAD_MASS),
+}
+
 Value = float | int | bool
 
 
@@ -44,6 +50,7 @@ def table(name: str) -> list[dict[str, str]]:
 
 MACHINES = {row["machine"]: row for row in table("weft_insertion_mechanisms")}
 HEADS = {f"{row['belt']} {row['side']}": row for row in table("rapier_heads")}
+PUBLISHED = {"machine": MACHINES, "head": HEADS}
 
 
 def parameters(component: str, *, machine: str | None = None, head: str | None = None) -> dict[str, Value]:
@@ -57,9 +64,9 @@ def parameters(component: str, *, machine: str | None = None, head: str | None =
     """
     values: dict[str, Value] = {}
     if machine is not None:
-        values |= _machine_parameters(component, _named(machine, MACHINES, "machine"))
+        values |= _machine_parameters(component, named("machine", machine))
     if head is not None:
-        mass = units.parse(f"{_named(head, HEADS, 'head')['mass_g']} g", "kg")
+        mass = units.parse(f"{named('head', head)['mass_g']} g", "kg")
         name = HEAD_MASS.get(component)
         if name is not None:
             values[name] = mass
@@ -78,7 +85,9 @@ def _machine_parameters(component: str, row: dict[str, str]) -> dict[str, Value]
     return values
 
 
-def _named(name: str, rows: dict[str, dict[str, str]], kind: str) -> dict[str, str]:
-    if name not in rows:
-        raise LoomfmuError(f"there is no {kind} {name!r}{suggestion(name, rows)}")
+def named(kind: str, name: object) -> dict[str, str]:
+    """The data of a published machine or head. Raises LoomfmuError, naming the nearest."""
+    rows = PUBLISHED[kind]
+    if not isinstance(name, str) or name not in rows:
+        raise LoomfmuError(f"there is no {kind} {name!r}{suggestion(str(name), rows)}")
     return rows[name]
