@@ -160,7 +160,7 @@ def parameter(
 
 def input_(
     unit: str,
-    start: float,
+    start: float | int | bool,
     description: str,
     *,
     display: str | None = None,
@@ -170,9 +170,10 @@ def input_(
     unbounded: bool = False,
     rate: str | None = None,
 ) -> Any:
-    """A value that comes from outside at every step."""
+    """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
+    variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
-        "input", "continuous", unit, start, description, display,
+        "input", variability, unit, start, description, display,
         minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate,
     )  # fmt: skip
 

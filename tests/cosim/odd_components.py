@@ -77,7 +77,32 @@ class Complaining(Component):
         return 0
 
 
-ODD = (Overflowing, Raising, Complaining)
+@dataclass(slots=True)
+class Switched(Component):
+    """A value that an integer and a boolean input make."""
+
+    gear: int = input_("1", 1, "Gear", minimum=-3, maximum=5)
+    engaged: bool = input_("1", False, "Whether it is engaged")
+    ratio: float = input_("1", 0.5, "Ratio of a gear")
+    value: float = output("1", "Value")
+    gear_in_use: int = output("1", "Gear in use", start=0, variability="discrete")
+    running: bool = output("1", "Whether it runs", start=False, variability="discrete")
+
+    def initialize(self, time: float) -> int:
+        """As in every step."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Multiply."""
+        self.gear_in_use = self.gear
+        self.running = self.engaged
+        self.value = 0.0
+        if self.engaged:
+            self.value = self.gear * self.ratio
+        return 0
+
+
+ODD = (Overflowing, Raising, Complaining, Switched)
 
 
 @pytest.fixture

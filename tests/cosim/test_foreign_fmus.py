@@ -2,6 +2,7 @@
 
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +51,16 @@ def test_a_motor_of_fmi_2_drives_the_weft(place: Path, tmp_path: Path, step: str
         assert weft.initialize(0.0) == 0
         assert weft.travel == pytest.approx(trace["weft.travel"][row], rel=1e-13, abs=1e-13)
         assert weft.acceleration == pytest.approx(trace["weft.acceleration"][row], rel=1e-12, abs=1e-10)
+
+
+def test_a_boolean_input_of_fmi_3_is_driven(place: Path, tmp_path: Path) -> None:
+    text = LENGTH + SHAFT3 + '[inputs]\n"shaft.stalled" = [[0, false], [0.1, true]]\n'
+    with suppress(LoomfmuError):  # the motor ends the simulation when it stalls
+        ran(place, text, tmp_path)
+    (path,) = tmp_path.iterdir()
+    with Trace(path) as trace:
+        assert not np.any(trace["shaft.stalled"][:100])
+        assert 100 <= trace.rows <= 101  # of 201: up to the step in which it is told
 
 
 def test_a_motor_of_fmi_3_in_the_place_of_the_shaft_gives_the_same_bits(place: Path, tmp_path: Path) -> None:

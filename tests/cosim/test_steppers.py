@@ -13,6 +13,7 @@ from direct_loom import small
 from live_fmus import fmu_cache
 from odd_components import odd
 
+import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.cosim import fmus, steppers
 from loomfmu.cosim import scene as scenes
@@ -66,6 +67,55 @@ def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: s
     equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
 
 
+SWITCHED = """
+revolutions = 1
+steps_per_revolution = 90
+coupling = "{coupling}"
+[odd]
+component = "Switched"
+[inputs]
+"odd.gear" = [[0, 2], [0.4, -3], [0.7, "4"]]
+"odd.engaged" = [[0.2, false], [0.5, true]]
+"odd.ratio" = [[0, 0.0], [1, 1.0]]
+{rest}
+"""
+
+
+@pytest.mark.usefixtures("odd")
+@pytest.mark.parametrize("compiled", [True, False])
+def test_driven_integers_and_booleans_are_held_until_the_next_row(compiled: bool) -> None:
+    scene = scenes.parse(SWITCHED.format(coupling="lagged", rest=""), "switched")
+    with Master(scene, compiled=compiled) as master:
+        slots = {variable: slot for (name, variable), (_kind, slot) in master.slots.items() if name == "odd"}
+    times, reals, integers = (np.concatenate(p) for p in zip(*rows_of(scene, compiled), strict=True))
+    turns = np.arange(91) / 90
+    gear = np.where(turns < 0.4, 2, np.where(turns < 0.7, -3, 4))
+    for variable in ("gear", "gear_in_use"):
+        np.testing.assert_array_equal(integers[:, slots[variable]], gear)
+    for variable in ("engaged", "running"):
+        np.testing.assert_array_equal(integers[:, slots[variable]], turns >= 0.5)
+    ratio = reals[:, slots["ratio"]]
+    np.testing.assert_allclose(ratio, turns, rtol=0, atol=2e-16)  # one rounding
+    np.testing.assert_array_equal(reals[:, slots["value"]], np.where(turns < 0.5, 0.0, gear * ratio))
+    assert len(times) == 91
+
+
+@pytest.mark.usefixtures("odd")
+def test_an_iterated_loop_takes_driven_integers_too() -> None:
+    text = SWITCHED.replace('"odd.ratio" = [[0, 0.0], [1, 1.0]]\n', "").format(
+        coupling="iterated",
+        rest='"other.engaged" = [[0, true]]\n"other.gear" = [[0, 0], [0.5, 1]]\n'
+        '[other]\ncomponent = "Switched"\n'
+        '[wires]\n"other.ratio" = "odd.value"\n"odd.ratio" = "other.value"\n',
+    )
+    evaluated = loomfmu.evaluate(
+        scenes.parse(text, "switched"), values=["odd.gear_in_use", "other.gear_in_use"]
+    )
+    turns = np.arange(91) / 90
+    np.testing.assert_array_equal(evaluated.trace["other.gear_in_use"], turns >= 0.5)
+    np.testing.assert_array_equal(evaluated.trace["odd.gear_in_use"][[0, 36, 63]], [2, -3, 4])
+
+
 @pytest.mark.parametrize("block", [1, 2, 7, 4096])
 def test_the_size_of_a_block_changes_nothing(block: int) -> None:
     scene = small(90, rest=DRIVEN)
@@ -75,7 +125,7 @@ def test_the_size_of_a_block_changes_nothing(block: int) -> None:
 
 
 def test_very_many_blocks_are_handed_over(tmp_path: Path) -> None:
-    scene = scenes.parse("steps_per_revolution = 3000", "long")
+    scene = scenes.parse("steps_per_revolution = 3000\n[shaft]", "long")
     with Master(scene) as master:
         master.initialize()
         rows = 0

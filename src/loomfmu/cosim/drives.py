@@ -7,27 +7,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError, suggestion
-from .fmus import Port
+from .fmus import Port, Value
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Drive:
-    """An input with its values over revolutions: straight lines between, held before and after."""
+    """An input with its values over revolutions, held before and after.
+
+    Between them reals lie on straight lines; an integer or a boolean is held until the next one.
+    """
 
     instance: str
     variable: str
     revolutions: tuple[float, ...]
-    values: tuple[float, ...]
+    values: tuple[Value, ...]
+    kind: str = "Real"
+    doubt: str = ""
 
-    def along(self, revolutions: Floats) -> Floats:
+    def along(self, revolutions: Floats) -> NDArray[Any]:
         """Values at numbers of revolutions since the start.
 
         >>> Drive("belt", "guide_clearance", (0.0, 2.0), (1.0, 3.0)).along(np.array([-1.0, 0.5, 9.0]))
         array([1. , 1.5, 3. ])
+        >>> Drive("motor", "mode", (0.0, 2.0), (1, 3), "Integer").along(np.array([-1.0, 1.9, 2.0]))
+        array([1, 1, 3], dtype=int32)
         """
-        places, values = np.array(self.revolutions), np.array(self.values)
+        places = np.array(self.revolutions)
+        if self.kind != "Real":
+            last = np.searchsorted(places, revolutions, side="right") - 1
+            return np.array(self.values, dtype=np.int32)[np.maximum(last, 0)]
+        values = np.array(self.values)
         if len(places) == 1:
             return np.full(len(revolutions), values[0])
         after = np.clip(np.searchsorted(places, revolutions, side="right"), 1, len(places) - 1)
@@ -42,21 +53,24 @@ class Drive:
 def drive(name: str, port: Port, table: Any) -> Drive:
     """A drive from its table in a scene, `[[revolution, value], ...]`, checked and in SI."""
     where = f"inputs.{name}"
-    if port.causality != "input" or port.kind != "Real":
-        raise LoomfmuError(f"{where}: {port.name} is no real input")
+    if port.causality != "input":
+        raise LoomfmuError(f"{where}: {port.name} is not an input")
     if not isinstance(table, list) or not table:
         raise LoomfmuError(f'{where} = {table!r} is no list such as [[0, "0.3 mm"], [10, "1 mm"]]')
     revolutions: list[float] = []
-    values: list[float] = []
+    values: list[Value] = []
+    doubts: list[str] = []
     for row in table:
         if not isinstance(row, list) or len(row) != 2 or isinstance(row[0], bool):
             raise LoomfmuError(f"{where}: {row!r} is no pair [revolution, value]")
         if not isinstance(row[0], int | float) or (revolutions and not row[0] > revolutions[-1]):
             raise LoomfmuError(f"{where}: revolution {row[0]!r} is not a number above the one before")
         revolutions.append(float(row[0]))
-        values.append(float(port.value(row[1], where)))
-    instance, _, variable = name.partition(".")
-    return Drive(instance, variable, tuple(revolutions), tuple(values))
+        values.append(port.value(row[1], where))
+        doubts.append(port.doubt(row[1], where))
+    instance = name.partition(".")[0]
+    doubt = next(filter(None, doubts), "")
+    return Drive(instance, port.name, tuple(revolutions), tuple(values), port.kind, doubt)
 
 
 def split(name: str, instances: dict[str, Any]) -> tuple[str, str]:

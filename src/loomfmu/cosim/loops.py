@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..errors import LoomfmuError
 from .graph import Wire
 from .grid import Span
-from .steppers import Action, Advanced, Memory, perform
+from .steppers import Action, Advanced, Driven, Memory, perform
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -93,14 +93,14 @@ class Iteration:
         self._time, self._size = time, size
         self._solver = Broyden(memory.reals, memory.integers, slots)
 
-    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
         """See `Stepper`."""
         memory = self._memory
         for step in range(len(span)):
             if memory.interrupted.value:
                 return step, None
             self._time.value, self._size.value = span.starts[step], span.sizes[step]
-            memory.reals[list(memory.driven)] = driven[step]
+            memory.drive(driven, step)
             try:
                 self._step()
             except LoomfmuError as failure:

@@ -25,7 +25,7 @@ from .loops import Iteration, Swing
 from .scene import ITERATED, Scene
 from .slave import NEEDS_TOOL, Ended, Slave, borrow, give_back
 from .start import Slot, Start
-from .steppers import Action, Memory, Stepper, stepper
+from .steppers import Action, Driven, Memory, Stepper, stepper
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}
 PATIENCE = 0.05  # s between looks for Ctrl-C
@@ -96,7 +96,7 @@ class Master:
                     if port.causality == "output" and port.kind == kind and wanted:
                         take(name, port.name, kind)
         for drive in self.scene.drives:
-            take(drive.instance, drive.variable, "Real")
+            take(drive.instance, drive.variable, drive.kind)
         for name in self.shafts:
             for variable in ("angle", "velocity", "acceleration"):
                 take(name, variable, "Real")
@@ -132,8 +132,9 @@ class Master:
         """Set all values, exchange the outputs at the start until they settle, prepare the calls."""
         for name in self.order:
             self.slaves[name].start(self.scene.instances[name].values, self.grid.stop_time)
-        for drive in self.scene.drives:
-            self.reals[self.slots[drive.instance, drive.variable][1]] = drive.along(np.zeros(1))[0]
+        driven = self._driven(np.zeros(1))
+        self.reals[self._driven_slots(real=True)] = driven.reals[0]
+        self.integers[self._driven_slots(real=False)] = driven.integers[0]
         self._turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
         start = Start(
             self.slaves,
@@ -159,12 +160,28 @@ class Master:
             ]
             for name in self.order
         }
-        driven = [self.slots[drive.instance, drive.variable][1] for drive in self.scene.drives]
-        memory = Memory(self.reals, self.integers, driven, self.interrupted)
+        memory = Memory(
+            self.reals, self.integers, self._driven_slots(real=True), self._driven_slots(real=False),
+            self.interrupted,
+        )  # fmt: skip
         if self.lagged and self.scene.coupling == ITERATED:
             return Iteration(actions, self.lagged, self._lagged_slots(), memory, self._time, self._size)
         in_order = [action for name in self.order for action in actions[name]]
         return stepper(in_order, memory, self._time, self._size, self._compiled)
+
+    def _driven_slots(self, *, real: bool) -> list[int]:
+        """Where the driven inputs stand among the reals, or among the integers."""
+        slots = [self.slots[drive.instance, drive.variable] for drive in self.scene.drives]
+        return [slot for kind, slot in slots if (kind == "Real") is real]
+
+    def _driven(self, turns: Reals) -> Driven:
+        """The driven inputs at numbers of revolutions, along the columns those of `_driven_slots`."""
+        reals = [drive.along(turns) for drive in self.scene.drives if drive.kind == "Real"]
+        integers = [drive.along(turns) for drive in self.scene.drives if drive.kind != "Real"]
+        return Driven(
+            np.array(reals, dtype=float).reshape(len(reals), len(turns)).T.copy(),
+            np.array(integers, dtype=np.int32).reshape(len(integers), len(turns)).T.copy(),
+        )
 
     def _turn_shafts(self, times: Reals, rows: Reals) -> None:
         """Write where the shafts that need no FMU stand at these times."""
@@ -261,10 +278,7 @@ class Master:
 
     def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
-        driven = np.empty((len(span), len(self.scene.drives)))
-        for column, drive in enumerate(self.scene.drives):
-            driven[:, column] = drive.along(span.turns)
-        taken, failure = self._stepper.advance(span, driven, reals, integers)
+        taken, failure = self._stepper.advance(span, self._driven(span.turns), reals, integers)
         self._turn_shafts((span.starts + span.sizes)[:taken], reals[:taken])
         return taken, failure
 

@@ -100,6 +100,15 @@ class Port:
     base_type: str = ""
     has_unit: bool = True
     definition: Definition | None = None
+    nominal: float | None = None
+
+    def doubt(self, given: Any, where: str) -> str:
+        """What is odd about a number without unit, as `units.doubt` tells it, or an empty text."""
+        if self.kind != "Real" or self.unit not in units.UNITS or self.display in ("1", self.unit):
+            return ""
+        usual = float(self.start or self.nominal or 0.0)
+        said = units.doubt(given, self.unit, self.display, usual)
+        return f"{where} = {given} {said}" if said else ""
 
     def value(self, given: Any, where: str) -> Value:
         """A value as people write it, in the port's own type and unit, within its limits.

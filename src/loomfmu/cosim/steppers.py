@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,14 +35,21 @@ class Action:
     call: Call
 
 
+class Driven(NamedTuple):
+    """Values of the driven inputs: a row for each step, a column for each input."""
+
+    reals: Floats
+    integers: Integers
+
+
 Advanced = tuple[int, LoomfmuError | None]
 
 
 class Stepper(Protocol):
     """Takes steps and writes all values after each."""
 
-    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
-        """Take the steps of a span; `driven` are the driven inputs, `reals` and `integers` rows to fill.
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+        """Take the steps of a span; `reals` and `integers` are rows to fill.
 
         Returns:
             the number of steps taken, fewer when interrupted, and what an FMU failed with or ended the run
@@ -63,8 +70,16 @@ class Memory:
 
     reals: Floats
     integers: Integers
-    driven: Sequence[int]
+    driven_reals: Sequence[int]
+    driven_integers: Sequence[int]
     interrupted: ctypes.c_int32
+
+    def drive(self, driven: Driven, step: int) -> None:
+        """Let the driven inputs have their values of a step."""
+        if self.driven_reals:
+            self.reals[self.driven_reals] = driven.reals[step]
+        if self.driven_integers:
+            self.integers[self.driven_integers] = driven.integers[step]
 
 
 def stopped(
@@ -105,16 +120,14 @@ class PythonStepper:
         self._memory = memory
         self._time, self._size = time, size
 
-    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
         """See `Stepper`."""
         memory, time, size = self._memory, self._time, self._size
-        slots = list(memory.driven)
         for step in range(len(span)):
             if memory.interrupted.value:
                 return step, None
             time.value, size.value = span.starts[step], span.sizes[step]
-            if slots:
-                memory.reals[slots] = driven[step]
+            memory.drive(driven, step)
             for function, arguments in self._calls:
                 if (status := function(*arguments)) > WARNING:
                     done = next(
@@ -145,8 +158,10 @@ class _Plan(ctypes.Structure):
         ("real_count", ctypes.c_size_t),
         ("integers", ctypes.c_void_p),
         ("integer_count", ctypes.c_size_t),
-        ("driven", ctypes.c_void_p),
-        ("driven_count", ctypes.c_size_t),
+        ("driven_reals", ctypes.c_void_p),
+        ("driven_real_count", ctypes.c_size_t),
+        ("driven_integers", ctypes.c_void_p),
+        ("driven_integer_count", ctypes.c_size_t),
         ("interrupted", ctypes.c_void_p),
     )
 
@@ -169,21 +184,23 @@ class CompiledStepper:
         self._actions = actions
         self._memory = memory
         self._time, self._size = time, size
-        self._driven = np.array(memory.driven, dtype=np.int64)
+        self._driven = [
+            np.array(slots, dtype=np.int64) for slots in (memory.driven_reals, memory.driven_integers)
+        ]
         self._calls = (_Call * len(actions))(*(_prepared(action.call) for action in actions))
         self._plan = _Plan(
             ctypes.addressof(self._calls), len(actions),
             memory.reals.ctypes.data, len(memory.reals),
             memory.integers.ctypes.data, len(memory.integers),
-            self._driven.ctypes.data, len(self._driven),
+            *(part for slots in self._driven for part in (slots.ctypes.data, len(slots))),
             ctypes.addressof(memory.interrupted),
         )  # fmt: skip
         self._outcome = _Outcome()
 
-    def advance(self, span: Span, driven: Floats, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
         """See `Stepper`."""
         self._outcome.status = 0
-        arrays = (span.starts, span.sizes, driven, reals, integers)
+        arrays = (span.starts, span.sizes, *driven, reals, integers)
         assert all(array.flags.c_contiguous for array in arrays)
         taken = int(
             self._advance(

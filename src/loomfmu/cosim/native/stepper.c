@@ -33,8 +33,10 @@ struct plan {
     size_t real_count;
     int32_t *integers;
     size_t integer_count;
-    const int64_t *driven; /* where the driven inputs stand among the reals */
-    size_t driven_count;
+    const int64_t *driven_reals; /* where the driven inputs stand among the reals */
+    size_t driven_real_count;
+    const int64_t *driven_integers; /* and among the integers */
+    size_t driven_integer_count;
     const int32_t *interrupted; /* set by whoever wants the end of the run */
 };
 
@@ -59,14 +61,16 @@ static int perform(const struct call *call, double start, double size)
 
 /* Take steps; return how many were taken. A row of all values is written after each. */
 EXPORT int64_t advance(const struct plan *plan, int64_t steps, const double *starts, const double *sizes,
-                       const double *driven, double *real_rows, int32_t *integer_rows,
-                       struct outcome *outcome)
+                       const double *driven_reals, const int32_t *driven_integers, double *real_rows,
+                       int32_t *integer_rows, struct outcome *outcome)
 {
     for (int64_t step = 0; step < steps; step++) {
         if (*(const volatile int32_t *)plan->interrupted)
             return step;
-        for (size_t place = 0; place < plan->driven_count; place++)
-            plan->reals[plan->driven[place]] = *driven++;
+        for (size_t place = 0; place < plan->driven_real_count; place++)
+            plan->reals[plan->driven_reals[place]] = *driven_reals++;
+        for (size_t place = 0; place < plan->driven_integer_count; place++)
+            plan->integers[plan->driven_integers[place]] = *driven_integers++;
         for (size_t place = 0; place < plan->call_count; place++) {
             int status = perform(&plan->calls[place], starts[step], sizes[step]);
             if (status > WARNING) {
