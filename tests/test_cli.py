@@ -16,6 +16,7 @@ from loomfmu.cosim import fmus
 __all__ = ["fmu_cache"]
 
 HEAD = 'title = "Small"\nrevolutions = 1\nsteps_per_revolution = 90\n'
+SHAFT = "[shaft]\n"
 LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01"\n'
 CLAIM = '[[claims]]\nkind = "lowest_margin"\nbound = {bound}\n'
 
@@ -54,7 +55,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
 
 
 def test_run_without_claims_holds(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", scene(HEAD), "--output", "deep/down/there.h5"]) == 0
+    assert main(["run", scene(HEAD + SHAFT), "--output", "deep/down/there.h5"]) == 0
     assert "no claims" in capsys.readouterr().out
     assert os.listdir("deep/down") == ["there.h5"]
 
@@ -92,7 +93,7 @@ def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> 
 def test_a_finished_run_replaces_an_older_one() -> None:
     Path("results").mkdir()
     Path("results/scene.h5").write_text("an older run")
-    assert main(["run", scene(HEAD)]) == 0
+    assert main(["run", scene(HEAD + SHAFT)]) == 0
     with Trace("results/scene.h5") as trace:
         assert trace.status == "complete"
 
@@ -109,7 +110,7 @@ def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
     # pythonfmu's wrapper decodes no escape but that of a space and crashes where it finds no resources
     for name in ("with space", "Jürgen", "50% #1 +ä"):
         environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / name)}
-        command = [sys.executable, "-m", "loomfmu.cli", "run", scene(HEAD)]
+        command = [sys.executable, "-m", "loomfmu.cli", "run", scene(HEAD + SHAFT)]
         done = subprocess.run(command, env=environment, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
 
@@ -157,7 +158,7 @@ def test_show_summarises_and_tells_again_whether_all_claims_held(
 
 
 def test_show_of_an_unfinished_run_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", scene(HEAD)])
+    main(["run", scene(HEAD + SHAFT)])
     with h5py.File("results/scene.h5", "r+") as file:
         file.attrs["status"] = "interrupted"
     capsys.readouterr()
@@ -504,7 +505,7 @@ def test_values_that_do_not_go_together_are_told_in_one_line(
 def test_a_mistake_in_a_file_name_is_told_in_one_line(
     capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
 ) -> None:
-    scene(HEAD)
+    scene(HEAD + SHAFT)
     with h5py.File("other.h5", "w") as other:
         other["time"] = [0.0]
     assert main(arguments) == 2

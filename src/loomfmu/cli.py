@@ -203,6 +203,8 @@ def _sweep(options: argparse.Namespace) -> int:
     )  # fmt: skip
     from .sweeps.report import show
 
+    for warning in found.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
     show(found)
     return 0 if found.holds else 1
 

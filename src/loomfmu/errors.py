@@ -1,14 +1,34 @@
 """What goes wrong by a user's hand: always one line that says what, where and what would be right."""
 
 import difflib
+import os
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 MOST_SHOWN = 16  # names that a message lists
+MOST_LETTERS = 60  # of a value that a message shows
 
 
 class LoomfmuError(Exception):
     """Bad input, or an FMU that failed; its text is the one line that a user sees."""
+
+
+def shown(value: object) -> str:
+    """A value in a message: in one line, and not too long.
+
+    >>> shown({"a": 1})
+    "{'a': 1}"
+    """
+    text = " ".join(repr(value).split())
+    return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}.."
+
+
+def path_of(given: object, what: str) -> Path:
+    """A path that a caller gave. Raises LoomfmuError for what is none."""
+    if not isinstance(given, str | os.PathLike):
+        raise LoomfmuError(f"{what} = {shown(given)} is not a path")
+    return Path(given)
 
 
 def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] | None = None) -> str:

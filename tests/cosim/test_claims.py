@@ -451,7 +451,7 @@ def test_dwell_contains(loom: Callable[..., Trace]) -> None:
 
 
 def test_dwell_contains_needs_the_run_to_get_there(loom: Callable[..., Trace]) -> None:
-    trace = loom(90, revolutions=0.25)
+    trace = loom(90, revolutions=0.2)
     found = judge(trace, kind="dwell_contains", heald="heald_1", angles=["180 deg"])
     assert not found
     assert found.note == "the run never reaches these angles"

@@ -152,7 +152,7 @@ def test_loops_are_kept_whole() -> None:
 
 
 def test_nothing_asked_is_nothing_run() -> None:
-    evaluated = loomfmu.evaluate(scenes.parse("revolutions = 2\nsteps_per_revolution = 8", "shaft"))
+    evaluated = loomfmu.evaluate(scenes.parse("revolutions = 2\nsteps_per_revolution = 8\n[shaft]", "shaft"))
     assert evaluated.skipped[-1].endswith("none left")
     # the closed form of a constant speed: 400 rev/min
     np.testing.assert_allclose(evaluated.trace["shaft.angle"], np.arange(17) * np.pi / 4, rtol=1e-15)

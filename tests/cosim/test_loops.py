@@ -147,8 +147,6 @@ steps_per_revolution = 90
 machine = "WL680-3600"
 weave = "10"
 dampers = true
-[belt]
-acceleration = 0.0
 [damper_1]
 damping_ratio = 0.0
 spring_stiffness = 0.0

@@ -104,7 +104,7 @@ def test_every_step_is_recorded_once_whatever_the_blocks(tmp_path: Path, steps: 
 
 
 def test_time_does_not_drift(tmp_path: Path) -> None:
-    scene = scenes.parse("revolutions = 100\nsteps_per_revolution = 720\n", "long")
+    scene = scenes.parse("revolutions = 100\nsteps_per_revolution = 720\n[shaft]", "long")
     with traced(scene, tmp_path) as trace:
         assert trace.time[-1] == 72000 * scene.step_size
         assert math.isclose(trace.time[-1], 100 * 60 / 400, rel_tol=1e-15)
@@ -131,7 +131,7 @@ def test_a_shaft_may_turn_backwards(tmp_path: Path) -> None:
 
 
 def test_a_scene_of_a_shaft_alone(tmp_path: Path) -> None:
-    with traced(scenes.parse("steps_per_revolution = 1"), tmp_path) as trace:
+    with traced(scenes.parse("steps_per_revolution = 1\n[shaft]"), tmp_path) as trace:
         assert set(trace) == {"shaft.angle", "shaft.velocity", "shaft.acceleration"}
         assert trace.rows == 2
 
@@ -158,7 +158,6 @@ def test_a_loop_of_two_is_settled_at_the_start_and_lagged_after_it(tmp_path: Pat
     # the carrier's acceleration is the belt's, the belt's force is the carrier's load
     rest = """
 [belt]
-acceleration = 0.0
 yarn_tension = "5 N"
 [wires]
 "belt.acceleration" = "damper_1.carrier_acceleration"
@@ -389,8 +388,6 @@ def test_a_run_in_a_thread_leaves_the_handling_of_ctrl_c_alone(tmp_path: Path) -
 def test_values_out_of_bounds_that_only_the_fmu_sees_end_the_run(tmp_path: Path) -> None:
     # the belt's limit for the weft tension is 1e6 N; the loop of two blows up beyond it
     rest = """
-[belt]
-yarn_tension = "5 N"
 [wires]
 "belt.yarn_tension" = "damper_1.peak_load"
 [damper_1]

@@ -7,9 +7,11 @@ import pytest
 from direct_loom import small, traced
 from live_fmus import fmu_cache
 
-from loomfmu import LoomfmuError
+from loomfmu import LoomfmuError, units
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.graph import Wire
+from loomfmu.cosim.run import run
+from loomfmu.machines import parameters
 
 __all__ = ["fmu_cache"]
 
@@ -90,8 +92,9 @@ def test_cutting_what_is_not_wired_is_refused() -> None:
         scenes.parse(LOOM + '[wires]\n"belt.travl" = false\n')
 
 
-def test_an_input_that_is_given_a_value_is_not_wired(tmp_path: Path) -> None:
-    text = LOOM + '[belt]\ntravel = "900 mm"\nvelocity = 0.0\nacceleration = 100.0\n'
+def test_an_input_whose_wire_is_cut_takes_a_value(tmp_path: Path) -> None:
+    cut = "".join(f'"belt.{signal}" = false\n' for signal in ("travel", "velocity", "acceleration"))
+    text = LOOM + f'[belt]\ntravel = "900 mm"\nvelocity = 0.0\nacceleration = 100.0\n[wires]\n{cut}'
     assert wired(text) == wired(LOOM) - {
         f"weft.{signal} -> belt.{signal}" for signal in ("travel", "velocity", "acceleration")
     }
@@ -152,10 +155,10 @@ def test_set_reaches_one_member_all_members_and_the_runs_own_keys() -> None:
 
 def test_numbers_are_si_and_texts_have_units() -> None:
     for given in (71.733, "71.733", "71.733 rad/s"):
-        scene = scenes.parse("", overrides={"shaft.speed": given})
+        scene = scenes.parse("[shaft]", overrides={"shaft.speed": given})
         assert scene.speed == 71.733
-    assert math.isclose(scenes.parse("", overrides={"shaft.speed": "685 rpm"}).speed, 685 * RPM)
-    assert scenes.parse("", overrides={"shaft.ripple_order": "3"}).instances["shaft"].values == {
+    assert math.isclose(scenes.parse("[shaft]", overrides={"shaft.speed": "685 rpm"}).speed, 685 * RPM)
+    assert scenes.parse("[shaft]", overrides={"shaft.ripple_order": "3"}).instances["shaft"].values == {
         "ripple_order": 3
     }
 
@@ -202,6 +205,187 @@ machine = "WL800-3600"
     assert Wire(("shaft", "acceleration"), ("left_head", "shaft_acceleration")) in scene.wires
 
 
+# ---- what a loom has one of
+
+MIXED = "the loom mixes machines: weft has WL450-3600, belt has WL680-3600; machine = NAME sets all of them"
+
+
+@pytest.mark.parametrize("key", ["machine", "loom.machine"])
+def test_a_machine_is_set_for_all_that_have_one(key: str) -> None:
+    changed = scenes.parse(LOOM, overrides={key: "WL450-3600"})
+    written = scenes.parse(LOOM.replace("WL680-3600", "WL450-3600"))
+    for name in ("weft", "belt"):
+        assert changed.instances[name].values == written.instances[name].values
+        assert changed.instances[name].published["machine"] == "WL450-3600"
+    assert changed.notes == written.notes == ()
+
+
+@pytest.mark.parametrize("key", ["head", "loom.head"])
+def test_so_is_a_head(key: str) -> None:
+    values = scenes.parse(LOOM, overrides={key: "GS900 left"}).instances
+    assert values["weft"].values["moving_mass"] == values["belt"].values["head_mass"] == 0.1222
+
+
+def test_a_value_of_the_scene_prevails_over_the_machine_and_set_over_both() -> None:
+    text = LOOM + '[belt]\nidle_travel = "200 mm"\n'
+    belt = scenes.parse(text, overrides={"machine": "WL450-3600"}).instances["belt"].values
+    assert (belt["idle_travel"], belt["head_length"]) == (
+        0.2,
+        parameters("BeltMonitor", machine="WL450-3600")["head_length"],
+    )
+    for order in (
+        {"machine": "WL450-3600", "belt.idle_travel": 0.3},
+        {"belt.idle_travel": 0.3, "machine": "WL450-3600"},
+    ):
+        assert scenes.parse(text, overrides=order).instances["belt"].values["idle_travel"] == 0.3
+
+
+def test_a_loom_of_two_machines_is_named(tmp_path: Path) -> None:
+    half = {"weft.machine": "WL450-3600", "revolutions": 0.1}
+    assert scenes.parse(LOOM, overrides=half).notes == (MIXED,)
+    assert scenes.parse(LOOM + '[weft]\nmachine = "WL450-3600"\n').notes == (MIXED,)
+    result = run(scenes.parse(LOOM, overrides=half), output=tmp_path / "mixed.h5")
+    assert result.warnings == (MIXED,)
+    assert result.trace.attributes["notes"] == MIXED
+    whole = half | {"belt.machine": "WL450-3600"}
+    assert scenes.parse(LOOM, overrides=whole).notes == ()
+
+
+def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
+    of_680 = '[weft]\nmachine = "WL680-3600"\n[belt]\n'  # what the defaults are of
+    assert scenes.parse(of_680).notes == ()
+    assert scenes.parse(of_680.replace("680", "450")).notes == (
+        MIXED.replace("WL680-3600", "values of its own"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "said"),
+    [
+        (LOOM, {"machine": "WL45-3600"}, "there is no machine 'WL45-3600'; did you mean 'WL450-3600'?"),
+        (LOOM, {"machine": 5}, "weft.machine = 5 is not a name in quotes"),
+        (LOOM, {"loom.weave": "10"}, "loom.weave cannot be set; known: machine, head"),
+        (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft takes nothing from a machine"),
+        ("[shaft]", {"machine": "WL450-3600"}, "machine: the scene has no WeftInsertion or BeltMonitor"),
+    ],
+)  # fmt: skip
+def test_a_machine_that_cannot_be_set_is_refused(text: str, given: dict[str, object], said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.parse(text, overrides=given)
+    assert str(raised.value).startswith(said)
+
+
+# ---- an input has one source
+
+WIRED = (
+    "belt.travel cannot be set, it is wired to weft.travel; to set it, cut the wire: [wires]"
+    ' "belt.travel" = false'
+)
+TABLE = '[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n'
+
+
+def test_a_value_for_a_wired_input_is_refused_whoever_gives_it() -> None:
+    for text, given in ((LOOM, {"belt.travel": 3}), (LOOM + '[belt]\ntravel = "3 m"\n', {})):
+        with pytest.raises(LoomfmuError) as raised:
+            scenes.parse(text, overrides=given)
+        assert str(raised.value) == WIRED
+    cut = LOOM + '[wires]\n"belt.travel" = false\n'
+    assert scenes.parse(cut, overrides={"belt.travel": 3}).instances["belt"].values["travel"] == 3.0
+    with pytest.raises(LoomfmuError, match=r"inputs\.belt\.travel is wired already"):
+        scenes.parse(LOOM + '[inputs]\n"belt.travel" = [[0, 1.0]]\n')
+
+
+def test_so_is_a_value_for_a_driven_input() -> None:
+    for text, given in (
+        (LOOM + TABLE, {"belt.guide_clearance": "1 mm"}),
+        (LOOM + '[belt]\nguide_clearance = "1 mm"\n' + TABLE, {}),
+    ):
+        with pytest.raises(
+            LoomfmuError, match=r"belt.guide_clearance cannot be set, it is driven along a table"
+        ):
+            scenes.parse(text, overrides=given)
+
+
+# ---- numbers without unit
+
+DOUBT = 'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "note"),
+    [
+        (LOOM + "[shaft]\nspeed = 480\n", {}, f'shaft.speed = 480 {DOUBT}'),
+        (LOOM, {"shaft.speed": "480"}, f'shaft.speed = 480 {DOUBT}'),
+        (LOOM, {"belt.head_mass": 95},
+         'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant'),
+        (LOOM + '[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n', {},
+         f'inputs.weft.shaft_velocity = 480 {DOUBT}'),
+    ],
+)  # fmt: skip
+def test_a_number_that_was_meant_in_another_unit_is_doubted(
+    text: str, given: dict[str, object], note: str
+) -> None:
+    assert scenes.parse(text, overrides=given).notes == (note,)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"shaft.speed": "4583 rpm"}, {"shaft.speed": "480 rad/s"}, {"shaft.speed": 30.0},
+        {"shaft.speed": 120}, {"shaft.speed": -70.0}, {"belt.guide_clearance": 1e-3}, {"belt.head_mass": 0.2},
+        {"dobby.slow_point": 1.5},
+        {"damper.spring_stiffness": 1000.0}, {"damper.spring_stiffness": 0.0}, {"heald.stroke": 0.3},
+    ],
+)  # fmt: skip
+def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
+    assert scenes.parse(LOOM, overrides=given).notes == ()
+
+
+def test_what_is_set_anew_is_doubted_anew() -> None:
+    assert scenes.parse(LOOM + "[shaft]\nspeed = 480\n", overrides={"shaft.speed": "480 rpm"}).notes == ()
+
+
+# ---- duration
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            'duration = "10 s"\nstep = "0.15 s"\n[weft]\n',
+            "duration = 10 s is 66.66667 steps of 0.15 s, not a whole number of steps;"
+            " these would fit: 9.9 s or 10.05 s",
+        ),
+        (
+            "revolutions = 2.51\nsteps_per_revolution = 90\n[weft]\n",
+            "revolutions = 2.51 is 225.9 steps of 1/90 revolution, not a whole number of steps;"
+            " these would fit: 2.5 or 2.511111111",
+        ),
+    ],
+)  # fmt: skip
+def test_a_duration_that_is_not_whole_steps_is_refused(text: str, said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.parse(text)
+    assert str(raised.value) == said
+    key, fitting = text.split(" ")[0], said.split(": ")[1].split(" or ")
+    for value in fitting:
+        assert scenes.parse(text, overrides={key: value}).steps in (66, 67, 225, 226)
+
+
+def test_decimal_steps_that_binary_rounds_are_whole() -> None:
+    for step in ("1 ms", "0.1 ms", 0.0007, 1 / 3):
+        given = {"duration": 2100 * units.parse(step, "s"), "step": step}
+        assert scenes.parse("[shaft]", overrides=given).steps == 2100
+
+
+@pytest.mark.parametrize(
+    "text", ["", 'title = "x"\n', "revolutions = 3\n", 'duration = "1 s"\nstep = "1 ms"\n']
+)
+def test_an_empty_scene_is_refused(text: str) -> None:
+    with pytest.raises(LoomfmuError, match=r"the scene is empty: add \[loom\]|there is no shaft"):
+        scenes.parse(text)
+
+
 # ---- the rest
 
 
@@ -230,7 +414,7 @@ def test_what_is_recorded_has_its_rates_with_it(tmp_path: Path) -> None:
 
 
 def test_defaults_of_a_scene_that_says_nothing() -> None:
-    scene = scenes.parse("", "nothing")
+    scene = scenes.parse("[shaft]", "nothing")
     assert (scene.title, scene.description, scene.name) == ("nothing", "", "nothing")
     assert (scene.revolutions, scene.steps_per_revolution, scene.steps) == (1, 1440, 1440)
     assert math.isclose(scene.speed, 400 * RPM, rel_tol=1e-15)
@@ -249,8 +433,6 @@ def test_a_file_is_named_in_what_is_said_of_it(tmp_path: Path) -> None:
 
 
 def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> None:
-    from loomfmu.cosim.run import run
-
     scene = small(90, 0.1)
     result = run(scene, set={"shaft.speed": "700 rpm"}, output=tmp_path / "other.h5")
     assert math.isclose(result.scene.speed, 700 * RPM)

@@ -15,7 +15,7 @@ from lxml import etree
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.cosim import scene as scenes
-from loomfmu.cosim import ssp
+from loomfmu.cosim import ssp, ssp_read
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scene import Scene
 from loomfmu.cosim.ssp_xml import NAMESPACES
@@ -26,7 +26,7 @@ SIMS = Path(__file__).parents[2] / "sims"
 DEMO = SIMS / "wl680_3600.toml"
 SHORT = {"revolutions": 0.5, "steps_per_revolution": 90}
 TIMED = """
-duration = "0.1 s"
+duration = "0.0994 s"
 step = "0.7 ms"
 [weft]
 machine = "WL680-3600"
@@ -178,12 +178,28 @@ def test_so_do_a_scene_without_shaft_and_one_with_a_loop(tmp_path: Path, text: s
 
 
 def test_values_of_a_package_can_be_changed(demo: Path, tmp_path: Path) -> None:
-    changed = {"shaft.speed": "650 rpm", "heald.stroke": "90 mm", "steps_per_revolution": "45"}
+    changed = {"shaft.speed": "650 rpm", "heald.stroke": "90 mm", "steps_per_revolution": "44"}
     before = run(DEMO, set=SHORT | changed, output=tmp_path / "before.h5")
     after = run(demo, set=changed, output=tmp_path / "after.h5")
     equal(before.trace, after.trace)
     again = run(after.scene, set={"steps_per_revolution": 30}, output=tmp_path / "again.h5")
     assert (again.trace.rows, again.scene.speed) == (16, scenes.load(DEMO).speed)
+
+
+def test_the_machine_of_a_package_can_be_changed_and_a_mixed_one_is_named(demo: Path) -> None:
+    changed = ssp_read.load(demo, {"belt.idle_travel": "0.2 m", "machine": "WL450-3600"})
+    wanted = scenes.load(DEMO, {"belt.idle_travel": "0.2 m", "machine": "WL450-3600"})
+    for name in ("weft", "belt"):
+        assert changed.instances[name].values == wanted.instances[name].values
+    assert changed.notes == ()
+    (note,) = ssp_read.load(demo, {"weft.machine": "WL450-3600"}).notes
+    assert note.startswith("the loom mixes machines: weft has WL450-3600, belt has values of its own;")
+
+
+def test_a_connected_input_of_a_package_takes_no_value(demo: Path) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        ssp_read.load(demo, {"belt.travel": 3})
+    assert str(raised.value).endswith("belt.travel cannot be set, it is wired to weft.travel in the package")
 
 
 def edited(path: Path, target: Path, member: str, *changes: tuple[str, str]) -> Path:

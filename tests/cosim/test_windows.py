@@ -277,7 +277,7 @@ def test_a_recorded_run_is_on_the_same_grid_and_says_so(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", 'grid = "windows": the scene has no claims, whose windows these could be'),
+        ("[shaft]", 'grid = "windows": the scene has no claims, whose windows these could be'),
         (
             "coarse_steps_per_revolution = 2000\n"
             '[[claims]]\nkind = "below"\nsignal = "shaft.velocity"\nbound = 1\n',

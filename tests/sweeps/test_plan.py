@@ -1,6 +1,7 @@
 """Sweep files: which combinations they are, and one line for every mistake before anything runs."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -277,8 +278,59 @@ def test_a_scene_with_a_claim_that_cannot_be_judged_is_refused(tmp_path: Path) -
 
 
 def test_an_input_that_the_scene_drives_cannot_be_varied(tmp_path: Path) -> None:
-    with pytest.raises(LoomfmuError, match=r"belt\.guide_clearance is driven by the scene's inputs"):
+    with pytest.raises(
+        LoomfmuError, match=r"belt\.guide_clearance cannot be set, it is driven along a table"
+    ):
         plan(tmp_path, GRID, DRIVEN)
+
+
+def test_nor_can_a_wired_one_in_the_words_of_set(tmp_path: Path) -> None:
+    with pytest.raises(LoomfmuError) as by_set:
+        scenes.parse(SCENE, overrides={"belt.travel": 3})
+    with pytest.raises(LoomfmuError) as by_sweep:
+        plan(tmp_path, '[grid]\n"belt.travel" = [3.0]\n')
+    assert str(by_sweep.value).endswith(f"grid: {by_set.value}")
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["machine", "loom.machine", "weft.machine", "head", "grid", "coupling", "steps_per_revolution",
+     "belt.guide_clearance", "belt.prescribe_length_factor", "duration", "belt.margin", "title", "record",
+     "revolutions", "loom.weave", "shaft.machine", "belt.travel", "belt.fmu", "belt.units"],
+)  # fmt: skip
+def test_a_sweep_varies_what_set_takes_and_nothing_else(tmp_path: Path, key: str) -> None:
+    values = {
+        "machine": "WL450-3600", "head": "GS900 left", "grid": "windows", "coupling": "iterated",
+        "belt.prescribe_length_factor": True, "belt.guide_clearance": 1e-3, "loom.weave": "10",
+        "belt.fmu": "x.fmu",
+    }  # fmt: skip
+    value = values.get(key, values.get(key.rpartition(".")[2], 10))
+
+    def taken(read: Callable[[], object]) -> bool:
+        try:
+            read()
+        except LoomfmuError:
+            return False
+        return True
+
+    shown = str(value).lower() if isinstance(value, bool) else repr(value)
+    swept = taken(lambda: plan(tmp_path, f'[grid]\n"{key}" = [{shown}]\n'))
+    assert swept is taken(lambda: scenes.parse(SCENE, overrides={key: value}))
+
+
+def test_a_machine_for_the_whole_loom_goes_by_both_its_names(tmp_path: Path) -> None:
+    for key in ("machine", "loom.machine"):
+        found = plan(tmp_path, f'[grid]\n"{key}" = ["WL450-3600", "WL800-3600"]\n')
+        assert found.settings(range(1, 2)) == [{"weft.machine": "WL800-3600", "belt.machine": "WL800-3600"}]
+
+
+def test_numbers_without_unit_are_doubted_once_and_converted_ones_never(tmp_path: Path) -> None:
+    doubt = 'shaft.speed = 480 is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
+    assert plan(tmp_path, '[grid]\n"shaft.speed" = [50.0, 480, "600 rpm"]\n').notes == (doubt,)
+    assert plan(tmp_path, '[sample]\ncount=2\nseed=1\n"shaft.speed" = [50.0, 480]\n').notes == (doubt,)
+    found = plan(tmp_path, '[grid]\n"shaft.speed" = ["4000 rpm", "4583 rpm"]\n')
+    assert found.notes == ()
+    assert scenes.parse(SCENE, overrides=found.settings(range(1))[0]).notes == ()
 
 
 def test_too_many_combinations_are_refused(tmp_path: Path) -> None:

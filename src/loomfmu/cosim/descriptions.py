@@ -109,7 +109,7 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         base_type=variable.type,
         has_unit=given != "",
         definition=own_definition(unit) if unit in units.UNITS else definition,
-        nominal=_limit(said("nominal")),
+        nominal=_limit(kind, said("nominal")),
     )
 
 

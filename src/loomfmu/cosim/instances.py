@@ -1,7 +1,7 @@
 """The instances of a scene: which FMU each is, and the values it starts with."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -39,14 +39,30 @@ SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "a
 
 @dataclass
 class Instance:
-    """One FMU of a scene with the values that are set at its start (SI)."""
+    """One FMU of a scene with the values that are set at its start (SI).
+
+    `published` are the machine and the head that it was told to be of, `doubts` what is odd about values.
+    """
 
     name: str
     fmu: Fmu
     values: dict[str, Value] = field(default_factory=dict)
+    published: dict[str, str] = field(default_factory=dict)
+    doubts: dict[str, str] = field(default_factory=dict)
 
     def set(self, key: str, given: Any) -> None:
-        """Set a parameter, or the start of an input. Raises LoomfmuError for what cannot be set."""
+        """Set a parameter, the start of an input, or all parameters that a published name stands for.
+
+        Raises LoomfmuError for what cannot be set.
+        """
+        if self.fmu.ours and key in machines.TAKERS:
+            self._publish(key, given)
+            return
+        if self.fmu.ours and key == "pattern":
+            if self.fmu.name != "HealdFrame":
+                raise LoomfmuError(f"{self.name}.pattern: only a HealdFrame has a pattern")
+            self.values |= standard_loom.pattern(given, f"{self.name}.pattern")
+            return
         name = self.fmu.name_of(key)
         if name not in self.fmu.ports:
             settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
@@ -57,7 +73,23 @@ class Instance:
         if not _can_be_set(port):
             kind = "an output" if port.causality == "output" else "a state"
             raise LoomfmuError(f"{self.name}.{key} is {kind} of {self.fmu.name} and cannot be set")
-        self.values[name] = port.value(given, f"{self.name}.{key}")
+        where = f"{self.name}.{key}"
+        self.values[name] = port.value(given, where)
+        self.doubts[where] = port.doubt(given, where)
+
+    def _publish(self, kind: str, given: Any) -> None:
+        """Take all that a published machine or head gives this component."""
+        where = f"{self.name}.{kind}"
+        if not isinstance(given, str):
+            raise LoomfmuError(f"{where} = {given!r} is not a name in quotes")
+        if self.fmu.name not in machines.TAKERS[kind]:
+            takers = " or a ".join(machines.TAKERS[kind])
+            raise LoomfmuError(f"{where}: a {self.fmu.name} takes nothing from a {kind}, only a {takers}")
+        found = machines.parameters(self.fmu.name, **{kind: given})
+        for key in found:
+            self.fmu.port(key, self.name)  # an FMU of another version may lack it
+        self.values |= found
+        self.published[kind] = given
 
     def settle(self) -> None:
         """What our FMUs are told of our master: it works in dependency order."""
@@ -126,9 +158,16 @@ def members(key: str, given: Iterable[str]) -> list[str]:
     return [name for name in given if standard_loom.stem(name) == key]
 
 
-def override(tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any) -> None:
+def override(
+    tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any, directory: Path
+) -> None:
     """Let one value of the scene be another."""
-    for member, variable in overridden(given, key):
+
+    def component(name: str) -> str:
+        fmu = _fmu(name, given[name], directory)
+        return fmu.name if fmu.ours else ""
+
+    for member, variable in overridden(given, key, component):
         about = unit_of(variable)
         if about:
             stated = given[member].get("units", {})
@@ -145,12 +184,32 @@ def unit_of(key: str) -> str:
     return key.removeprefix("units.") if key.startswith("units.") else ""
 
 
-def overridden(given: Iterable[str], key: str) -> list[tuple[str, str]]:
-    """What a key of `--set` stands for, as (instance, variable); no instance for the scene's own keys."""
+def components(instances: dict[str, Instance]) -> Callable[[str], str]:
+    """What tells the component of each instance; nothing for an FMU of another maker."""
+    return lambda name: instances[name].fmu.name if instances[name].fmu.ours else ""
+
+
+def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) -> list[tuple[str, str]]:
+    """What a key of `--set` or of a sweep stands for, as (instance, variable).
+
+    The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
+    instances that take something of it.
+    """
+    given = list(given)
     instance, dot, variable = key.partition(".")
+    if instance == "loom" and "loom" not in given:
+        if variable not in machines.TAKERS:
+            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, machines.TAKERS)}")
+        key, dot = variable, ""
+    if key in machines.TAKERS:
+        takers = machines.TAKERS[key]
+        found = [name for name in given if component(name) in takers]
+        if not found:
+            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} that would take it")
+        return [(name, key) for name in found]
     if not dot:
         if key not in (*TIMES, *WHOLE):
-            known = [*TIMES, *WHOLE, *(f"{name}." for name in given)]
+            known = [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in given)]
             raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
         return [("", key)]
     found = [instance] if instance in given else members(instance, given)
@@ -160,30 +219,46 @@ def overridden(given: Iterable[str], key: str) -> list[tuple[str, str]]:
 
 
 def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
-    """An instance with its values checked and in SI."""
-    for key in ("component", "machine", "head", "fmu"):
-        if not isinstance(table.get(key, ""), str):
-            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
+    """An instance with its values checked and in SI: a value of its own prevails over its machine's."""
     fmu = _fmu(name, table, directory)
     found = Instance(name, fmu)
-    if fmu.ours:  # another maker's FMU knows no machine that a loom has
-        published = machines.parameters(fmu.name, machine=table.get("machine"), head=table.get("head"))
-        for key in published:
-            fmu.port(key, name)  # an FMU of another version may lack it
-        found.values |= published
-        if "pattern" in table:
-            found.values |= standard_loom.pattern(table["pattern"], f"{name}.pattern")
-    for key, given in table.items():
-        if key == "pattern" and fmu.ours and fmu.name != "HealdFrame":
-            raise LoomfmuError(f"{name}.pattern: only a HealdFrame has a pattern")
-        if key not in PARAMETER_SETS and (key not in FILES or fmu.built):
-            found.set(key, given)
+    for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
+        if key != "component" and (key not in FILES or fmu.built):
+            found.set(key, table[key])
     found.settle()
     return found
 
 
+def mixed(instances: dict[str, Instance]) -> list[str]:
+    """What tells of a loom whose instances are not all of one machine, or not all of one head."""
+    notes = []
+    for kind, takers in machines.TAKERS.items():
+        fitted = [each for each in instances.values() if each.fmu.ours and each.fmu.name in takers]
+        names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
+        differing = [
+            each
+            for each in fitted
+            if kind not in each.published and not all(_is(each, kind, n) for n in names)
+        ]
+        if len(names) > 1 or differing:
+            shown = [
+                f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published
+            ] + [f"{each.name} has values of its own" for each in differing]
+            notes.append(f"the loom mixes {kind}s: {', '.join(shown)}; {kind} = NAME sets all of them")
+    return notes
+
+
+def _is(each: Instance, kind: str, name: str) -> bool:
+    """Whether an instance has the values of a published machine or head though it does not name it."""
+    wanted = machines.parameters(each.fmu.name, **{kind: name})
+    return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
+
+
 def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     """The FMU that a table names: a file, or one of our components."""
+    for key in ("component", "fmu"):
+        if not isinstance(table.get(key, ""), str):
+            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
     component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
     if "fmu" not in table:
         fmu = fmus.of_component(str(component))

@@ -1,7 +1,7 @@
 """Running a scene: co-simulate, record, judge."""
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -9,13 +9,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..traces import Recording, Trace, TraceWriter
 from . import scene as scenes
 from . import ssp_read
 from .asked import check_claims, judged_by, parameters, recorded, shaft_angle, with_rates
 from .claims import judge
-from .fmus import Fmu, of_component
+from .fmus import FLAVOURS, Fmu, of_component
 from .grid import Grid, uniform
 from .lean import lean
 from .master import Interrupted, Master
@@ -32,8 +32,9 @@ LONG_RUN = 20_000  # steps from which a progress bar is shown
 class _Judged:
     """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
 
-    `skipped` are lines that say what was not run or not read and why, and what that saved; `steps` is the
-    number of communication steps. `ended` tells which FMU ended the run before its time, and when.
+    It is true where all claims hold. `skipped` are lines that say what was not run or not read and why, and
+    what that saved; `steps` is the number of communication steps. `ended` tells which FMU ended the run early,
+    and when.
     """
 
     scene: Scene
@@ -47,6 +48,9 @@ class _Judged:
     def holds(self) -> bool:
         """Whether every claim holds."""
         return all(self.claims)
+
+    def __bool__(self) -> bool:
+        return self.holds
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,7 @@ def run(
         KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
     """
     scene = _checked(scene, set, flavour)
-    path = Path(output) if output is not None else Path("results") / f"{scene.name}.h5"
+    path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     if not path.name or path.is_dir():
         raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
     signals = recorded(scene)
@@ -137,6 +141,8 @@ def evaluate(
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C
     """
+    if not isinstance(values, list | tuple) or not all(isinstance(signal, str) for signal in values):
+        raise LoomfmuError(f'values = {shown(values)} is not a list such as ["belt.margin"]')
     scene = _checked(scene, set, flavour)
     wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
     grid = _grid(scene, wanted)
@@ -151,6 +157,15 @@ def evaluate(
 
 def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
     """A scene that is ready to be run. Raises LoomfmuError naming the file and what is wrong."""
+    if flavour not in FLAVOURS:
+        raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
+    if overrides is not None and not (
+        isinstance(overrides, Mapping) and all(isinstance(key, str) for key in overrides)
+    ):
+        raise LoomfmuError(
+            f'set = {shown(overrides)} is not a dictionary such as {{"shaft.speed": "685 rpm"}}'
+        )
+    scene = scene if isinstance(scene, Scene) else path_of(scene, "scene")
     place = "" if isinstance(scene, Scene) else f"{scene}: "
     scene = _in_flavour(_read(scene, overrides), flavour)
     try:
@@ -240,6 +255,7 @@ def _writer(plan: Plan, master: Master, path: Path) -> TraceWriter:
             else {"step": f"{scene.step!r} s"}
         ),
         "grid": scene.grid,
+        **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
     }

@@ -10,12 +10,12 @@ from typing import Any
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
-from . import standard_loom
-from .drives import Drive, drive, split
+from .drives import Drive
 from .graph import Wire
-from .instances import COARSE, TIMES, Instance, instance, instance_tables, override
-from .ports import mismatch
+from .instances import COARSE, KEYS, TIMES, Instance, instance, instance_tables, mixed, override
+from .wiring import drives_of, wires_of
 
+ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 
@@ -94,12 +94,35 @@ def parse(
     tables = toml(text)
     given = instance_tables(tables, Path(directory))
     for key, value in (overrides or {}).items():
-        override(tables, given, key, value)
+        override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
-    wires = _wires(instances, given, tables.get("wires", {}))
+    wires = wires_of(instances, tables.get("wires", {}))
     for each in wires:
         instances[each.sink[0]].follow(each)
-    return assemble(tables, instances, wires, name, text, Path(directory))
+    scene = assemble(tables, instances, wires, name, text, Path(directory))
+    if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
+        raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
+    for owner, table in given.items():
+        for key in table:
+            check_free(scene, owner, key)
+    return scene
+
+
+def check_free(scene: Scene, instance: str, key: str) -> None:
+    """Refuse a value for an input that has another source: an input has one."""
+    name = f"{instance}.{key}"
+    variable = scene.instances[instance].fmu.name_of(key)
+    for each in scene.wires:
+        if each.sink == (instance, variable):
+            cut = f'; to set it, cut the wire: [wires] "{instance}.{variable}" = false'
+            raise LoomfmuError(
+                f"{name} cannot be set, it is wired to {'.'.join(each.source)}"
+                f"{cut if scene.package is None else ' in the package'}"
+            )
+    if any((each.instance, each.variable) == (instance, variable) for each in scene.drives):
+        raise LoomfmuError(
+            f"{name} cannot be set, it is driven along a table; to set it, take it out of [inputs]"
+        )
 
 
 def toml(text: str) -> dict[str, Any]:
@@ -124,6 +147,7 @@ def assemble(
         turns = _number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9)
         most = tables.get("steps_per_revolution", 1440)
         steps = int(_number(most, "steps_per_revolution", 1, 1e9, whole=True))
+    drives = drives_of(instances, wires, tables.get("inputs", {}))
     scene = Scene(
         title=str(tables.get("title", name)),
         description=str(tables.get("description", "")).strip(),
@@ -134,7 +158,7 @@ def assemble(
         steps_per_revolution=steps,
         instances=instances,
         wires=wires,
-        drives=_drives(instances, wires, tables.get("inputs", {})),
+        drives=drives,
         record=_record(instances, tables.get("record", ["*"])),
         claims=_claims(tables.get("claims", [])),
         step=seconds[1] if seconds is not None else None,
@@ -143,9 +167,17 @@ def assemble(
         coarse_steps_per_revolution=int(
             _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
+        notes=tuple(_notes(instances, drives)),
     )
     _check_time(scene)
     return scene
+
+
+def _notes(instances: dict[str, Instance], drives: list[Drive]) -> Iterable[str]:
+    """What a user is to be warned of."""
+    yield from mixed(instances)
+    doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
+    yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 
 
 def _check_single(instances: dict[str, Instance]) -> None:
@@ -190,6 +222,7 @@ def _check_time(scene: Scene) -> None:
             raise LoomfmuError(
                 f"duration = {scene.revolutions:g} s in steps of {scene.step:g} s is not one step"
             )
+        _check_whole(scene, "duration", " s", f"{scene.step:g} s")
         return
     if shaft is None or "speed" not in shaft.fmu.ports:
         raise LoomfmuError(
@@ -201,71 +234,18 @@ def _check_time(scene: Scene) -> None:
         raise LoomfmuError(
             f"revolutions = {scene.revolutions:g} at {scene.steps_per_revolution} steps each is not one step"
         )
+    _check_whole(scene, "revolutions", "", f"1/{scene.steps_per_revolution:g} revolution")
 
 
-def _wires(instances: dict[str, Instance], given: dict[str, dict[str, Any]], spelt_out: Any) -> list[Wire]:
-    """The standard loom's wires where both ends are there, and those that the scene spells out."""
-    if not isinstance(spelt_out, dict):
-        raise LoomfmuError('wires is no table of "instance.input" = "instance.output"')
-    sources: dict[str, str] = {}
-    for name, each in instances.items():
-        standard = standard_loom.wires(name, each.fmu.name) if each.fmu.ours else {}
-        for sink, source in standard.items():
-            if source.split(".")[0] in instances and sink not in given[name]:
-                sources[f"{name}.{sink}"] = source
-    for sink, source in _dotted(spelt_out).items():
-        if source is False:
-            if sources.pop(sink, None) is None:
-                raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
-        else:
-            sources[sink] = source
-    return [wire(instances, sink, source) for sink, source in sources.items()]
-
-
-def _dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A TOML table with its keys joined by dots, quoted or not."""
-    flat: dict[str, Any] = {}
-    for key, value in table.items():
-        flat |= _dotted(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return flat
-
-
-def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
-    """A wire whose ends are known, of the right kind and of the same unit."""
-    where = f"wire {source} -> {sink}"
-    ends = []
-    for end, causality in ((sink, "input"), (source, "output")):
-        name, _, variable = str(end).partition(".")
-        if name not in instances:
-            raise LoomfmuError(f"{where}: there is no instance {name!r}{suggestion(name, instances)}")
-        fmu = instances[name].fmu
-        variable = fmu.name_of(variable)
-        fitting = [port.name for port in fmu.ports.values() if port.causality == causality]
-        if variable not in fitting:
-            raise LoomfmuError(
-                f"{where}: {name} has no {causality} {variable!r}{suggestion(variable, fitting)}"
-            )
-        ends.append((name, variable))
-    to, origin = (instances[name].fmu.ports[variable] for name, variable in ends)
-    reason = mismatch(str(source), origin, sink, to)
-    if reason:
-        raise LoomfmuError(f"{where}: {reason}")
-    if origin.kind != to.kind:
-        raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
-    return Wire(source=ends[1], sink=ends[0])
-
-
-def _drives(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
-    """The inputs that the scene drives along tables; an input has one source."""
-    if not isinstance(table, dict):
-        raise LoomfmuError('inputs is no table of "instance.input" = [[revolution, value], ...]')
-    drives = []
-    for name, rows in _dotted(table).items():
-        owner, variable = split(name, instances)
-        if any(each.sink == (owner, variable) for each in wires):
-            raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
-        drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
-    return drives
+def _check_whole(scene: Scene, key: str, unit: str, step: str) -> None:
+    """Refuse a duration that does not end with a step: the run would be shorter or longer."""
+    wanted = scene.revolutions * scene.steps_per_revolution
+    if abs(wanted - scene.steps) > ROUNDING * wanted:
+        fitting = [n / scene.steps_per_revolution for n in (math.floor(wanted), math.ceil(wanted)) if n]
+        raise LoomfmuError(
+            f"{key} = {scene.revolutions:.10g}{unit} is {wanted:.7g} steps of {step}, not a whole number of"
+            f" steps; these would fit: {' or '.join(f'{each:.10g}{unit}' for each in fitting)}"
+        )
 
 
 def _choice(tables: dict[str, Any], key: str, known: tuple[str, ...]) -> str:

@@ -44,7 +44,7 @@ def export(
     temporary = path.with_name(f"{path.name}.partial")
     temporary.write_bytes(content)
     temporary.replace(path)
-    return [*_driven(scene), *_enumerated(scene)]
+    return [*scene.notes, *_driven(scene), *_enumerated(scene)]
 
 
 def _driven(scene: Scene) -> list[str]:

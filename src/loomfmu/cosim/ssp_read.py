@@ -21,10 +21,22 @@ from . import fmus
 from .descriptions import plain_names
 from .fmus import Fmu, cache_directory
 from .graph import Wire
-from .instances import TIMES, Instance, as_shaft, check_name, overridden, override, unit_of, with_units
-from .scene import Scene, assemble, toml, wire
+from .instances import (
+    PARAMETER_SETS,
+    TIMES,
+    Instance,
+    as_shaft,
+    check_name,
+    components,
+    overridden,
+    override,
+    unit_of,
+    with_units,
+)
+from .scene import Scene, assemble, check_free, toml
 from .ssp_values import apply, bound
 from .ssp_xml import FMU, OSP, OURS, SSD_FILE, full, read_units, said
+from .wiring import wire
 
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
@@ -96,10 +108,13 @@ class _Package:
         }
         wires = _wires(system, instances, {each.path: name for name, each in names.items()})
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
-        _override(tables, instances, overrides)
+        changed = _override(tables, instances, overrides)
         written = self.files[SSD_FILE].decode(errors="replace") if annotation is None else annotation.text
         made = assemble(tables, instances, wires, self.path.stem, written or "", self.path.parent)
-        return replace(made, package=self.path, notes=tuple(self.notes))
+        made = replace(made, package=self.path, notes=(*self.notes, *made.notes))
+        for name, variable in changed:
+            check_free(made, name, variable)
+        return made
 
     # ---- instances
 
@@ -274,17 +289,23 @@ def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any
     tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
     for key, value in overrides.items():
         if unit_of(key.partition(".")[2]):
-            override({}, tables, key, value)
+            override({}, tables, key, value, Path())
     return {name: table["units"] for name, table in tables.items()}
 
 
-def _override(tables: dict[str, Any], instances: dict[str, Instance], overrides: dict[str, Any]) -> None:
-    """Let some values be others."""
-    for key, value in overrides.items():
-        for name, variable in overridden(instances, key):
-            if unit_of(variable):  # known from the beginning
-                continue
-            if name:
-                instances[name].set(variable, value)
-            else:
-                tables[variable] = value
+def _override(
+    tables: dict[str, Any], instances: dict[str, Instance], overrides: dict[str, Any]
+) -> list[tuple[str, str]]:
+    """Let some values be others, a published name before what prevails over it; what was changed."""
+    changed = [
+        (name, variable, value)
+        for key, value in overrides.items()
+        for name, variable in overridden(instances, key, components(instances))
+        if not unit_of(variable)  # units are known from the beginning
+    ]
+    for name, variable, value in sorted(changed, key=lambda each: each[1] not in PARAMETER_SETS):
+        if name:
+            instances[name].set(variable, value)
+        else:
+            tables[variable] = value
+    return [(name, variable) for name, variable, _value in changed if name]

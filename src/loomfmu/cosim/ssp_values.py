@@ -79,7 +79,7 @@ def apply(instance: Instance, given: Given) -> str:
         return f"{where} of the package is {known}: it is left out"
     if port.causality not in ("parameter", "input"):
         return f"{where} of the package is neither parameter nor input: it is left out"
-    instance.set(given.name, _value(port, given, where))
+    instance.values[port.name] = port.value(_value(port, given, where), where)
     return ""
 
 

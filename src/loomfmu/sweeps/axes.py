@@ -23,6 +23,7 @@ class Axis:
     values: NDArray[Any]
     sampled: bool = False
     logarithmic: bool = False
+    doubts: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
@@ -71,7 +72,8 @@ def grid_axis(varied: Varied, given: Any) -> Axis:
         count = whole(given.get("count"), f"{where}.count", 2)
         space = np.geomspace if logarithmic else np.linspace
         values = [varied.read(float(value)) for value in space(low, high, count)]
-        return Axis(varied, np.array(values, TYPES[varied.kind]), logarithmic=logarithmic)
+        doubts = _doubts(varied, [given["from"], given["to"]])
+        return Axis(varied, np.array(values, TYPES[varied.kind]), logarithmic=logarithmic, doubts=doubts)
     if not isinstance(given, list) or not given:
         raise LoomfmuError(
             f'{where} = {given!r} is neither a list of values nor {{ from = "..", to = "..", count = .. }}'
@@ -82,7 +84,12 @@ def grid_axis(varied: Varied, given: Any) -> Axis:
         if value in seen:
             raise LoomfmuError(f"{where}: {varied.show(value)} is there twice")
         seen.add(value)
-    return Axis(varied, np.array(values, TYPES[varied.kind]))
+    return Axis(varied, np.array(values, TYPES[varied.kind]), doubts=_doubts(varied, given))
+
+
+def _doubts(varied: Varied, given: list[Any]) -> tuple[str, ...]:
+    """What is odd about values as they are written."""
+    return tuple(filter(None, map(varied.doubt, given)))
 
 
 def sample_axes(ranges: list[tuple[Varied, Any]], count: int, seed: int) -> list[Axis]:
@@ -97,14 +104,16 @@ def sample_axes(ranges: list[tuple[Varied, Any]], count: int, seed: int) -> list
     ends = [_ends(varied, _as_range(varied, given), f"sample.{varied.key}") for varied, given in ranges]
     points = qmc.LatinHypercube(len(ranges), rng=seed).random(count)
     axes = []
-    for (varied, _), (low, high, logarithmic), shares in zip(ranges, ends, points.T, strict=True):
+    for (varied, given), (low, high, logarithmic), shares in zip(ranges, ends, points.T, strict=True):
         if varied.kind == "Integer":
             values = np.minimum(np.floor(low + shares * (high - low + 1)), high).astype(np.int64)
         elif logarithmic:
             values = low * (high / low) ** shares
         else:
             values = low + shares * (high - low)
-        axes.append(Axis(varied, values, sampled=True, logarithmic=logarithmic))
+        ends_given = _as_range(varied, given)
+        doubts = _doubts(varied, [ends_given["from"], ends_given["to"]])
+        axes.append(Axis(varied, values, sampled=True, logarithmic=logarithmic, doubts=doubts))
     return axes
 
 

@@ -77,8 +77,13 @@ class Plan:
         sets = [dict(self.fixed) for _ in rows]
         for axis in self.axes:
             for each, value in zip(sets, columns[axis.key].tolist(), strict=True):
-                each.update(dict.fromkeys(axis.varied.targets, value))
+                each.update(dict.fromkeys(axis.varied.targets, axis.varied.setting(value)))
         return sets
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user is to be warned of before anything runs."""
+        return (*self.scene.notes, *(doubt for axis in self.axes for doubt in axis.doubts))
 
     def port(self, signal: str) -> Port:
         """The variable of an output among the values."""
@@ -168,7 +173,7 @@ def _check_by_scene(path: Path, fixed: dict[str, Any], axes: list[Axis]) -> None
         if axis.varied.needs_scene:
             values = [axis.values.min(), axis.values.max()] if axis.sampled else axis.values
             for value in np.asarray(values).tolist():
-                read_scene(path, fixed | dict.fromkeys(axis.varied.targets, value))
+                read_scene(path, fixed | dict.fromkeys(axis.varied.targets, axis.varied.setting(value)))
 
 
 def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, path_of, shown
 from . import plan as plans
 from .plan import Plan
 from .pools import Here, Pool, Processes, Task
@@ -38,6 +38,11 @@ class Sweep:
     ran: int
     map: Path | None
     traces: tuple[Path, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the sweep and its scene are warned of; what single rows are stands in the table."""
+        return self.plan.notes
 
     @property
     def rows(self) -> int:
@@ -94,8 +99,13 @@ def sweep(
         LoomfmuError: bad input, or a directory that holds another sweep; one line that names what and where
         KeyboardInterrupt: Ctrl-C; the batches that are finished stay, and the same call goes on from there
     """
-    if processes is not None and processes < 1:
-        raise LoomfmuError(f"processes = {processes} is not 1 or more")
+    if processes is not None and (
+        isinstance(processes, bool) or not isinstance(processes, int) or processes < 1
+    ):
+        raise LoomfmuError(f"processes = {shown(processes)} is not 1 or more")
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
+    path = path_of(path, "sweep")
     plan = plans.load(path)
     for package in (
         "pyarrow",
@@ -107,7 +117,7 @@ def sweep(
     from .store import opened
 
     job = job_of(plan)
-    directory = Path(output) if output is not None else Path("results") / plan.name
+    directory = path_of(output, "output") if output is not None else Path("results") / plan.name
     try:
         with opened(directory, plan, _fingerprint(plan, job), restart) as store, ExitStack() as pools:
             here = _local(plan.rows, processes)

@@ -2,23 +2,27 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import units
 from ..cosim.fmus import Port
-from ..cosim.instances import COARSE, FILES, PARAMETER_SETS, TIMES, WHOLE, Instance, overridden, unit_of
-from ..cosim.scene import Scene
-from ..errors import LoomfmuError, suggestion
-from ..machines import HEAD_MASS, HEADS, MACHINE_COLUMNS, MACHINES
+from ..cosim.instances import (
+    COARSE,
+    FILES,
+    PARAMETER_SETS,
+    TIMES,
+    Instance,
+    components,
+    overridden,
+    unit_of,
+)
+from ..cosim.scene import Scene, check_free
+from ..errors import LoomfmuError
+from ..machines import TAKERS, named
 
 Value = float | int | bool | str
 
-# what a loom as a whole has: published names, and the components that take them
-SETS = {
-    "machine": (MACHINES, {owner for owner, _name, _unit in MACHINE_COLUMNS.values()}),
-    "head": (HEADS, set(HEAD_MASS)),
-}
 SECONDS = ("duration", "step")
 COUNTS = ("steps_per_revolution", COARSE)
 
@@ -28,6 +32,7 @@ class Varied:
     """A key of a sweep. `targets` are the keys of the scene that take its value, in SI; `read` checks one.
 
     `kind` is Real, Integer, Boolean or Text. `needs_scene` are those whose values only the scene can judge.
+    `doubt` tells what is odd about a value as it is written, or gives an empty text.
     """
 
     key: str
@@ -38,6 +43,11 @@ class Varied:
     description: str
     read: Callable[[Any], Value]
     needs_scene: bool = False
+    doubt: Callable[[Any], str] = lambda _given: ""
+
+    def setting(self, value: Value) -> Value:
+        """A value as it is set in the scene: it was read already, and nothing shall doubt it again."""
+        return units.Si(value) if self.kind == "Real" else value
 
     def show(self, value: Value) -> str:
         """A value as people read it."""
@@ -48,43 +58,29 @@ class Varied:
 
 def varied(scene: Scene, key: str) -> Varied:
     """What a key stands for in a scene. Raises LoomfmuError, naming the nearest key that there is."""
-    if key in SETS:
-        return _published(scene, key)
-    if "." not in key:
-        return _of_scene(scene, key)
-    pairs = overridden(scene.instances, key)
+    pairs = overridden(scene.instances, key, components(scene.instances))
+    if not pairs[0][0]:
+        return _of_scene(key)
     found = [_variable(scene, key, instance, variable) for instance, variable in pairs]
     if any((each.kind, each.unit) != (found[0].kind, found[0].unit) for each in found):
         raise LoomfmuError(f"{key} is not of one type and unit in {', '.join(name for name, _ in pairs)}")
     targets = tuple(f"{instance}.{variable}" for instance, variable in pairs)
     first = found[0]
-    return Varied(
-        key, targets, first.kind, first.unit, first.display, first.description, first.read, first.needs_scene
-    )
+    return replace(first, targets=targets)
 
 
-def _published(scene: Scene, key: str) -> Varied:
-    """A published name, for all instances that take one."""
-    known, takers = SETS[key]
-    targets = tuple(
-        f"{name}.{key}" for name, each in scene.instances.items() if each.fmu.ours and each.fmu.name in takers
-    )
-    if not targets:
-        raise LoomfmuError(f"{key}: the scene has no {' or '.join(sorted(takers))} that would take it")
+def _published(key: str, kind: str) -> Varied:
+    """The name of a published machine or head."""
 
     def read(given: Any) -> str:
-        if not isinstance(given, str) or given not in known:
-            raise LoomfmuError(f"there is no {key} {given!r}{suggestion(str(given), known)}")
-        return given
+        named(kind, given)
+        return str(given)
 
-    return Varied(key, targets, "Text", "1", "1", f"Published {key}", read, needs_scene=True)
+    return Varied(key, (), "Text", "1", "1", f"Published {kind}", read, needs_scene=True)
 
 
-def _of_scene(scene: Scene, key: str) -> Varied:
+def _of_scene(key: str) -> Varied:
     """One of the scene's own keys."""
-    if key not in (*TIMES, *WHOLE):
-        known = [*TIMES, *WHOLE, *SETS, *(f"{name}." for name in scene.instances)]
-        raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
     about = key.replace("_", " ")
     if key not in (*TIMES, COARSE):
         return Varied(key, (key,), "Text", "1", "1", about, _text(key), needs_scene=True)
@@ -108,11 +104,12 @@ def _of_scene(scene: Scene, key: str) -> Varied:
 def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
     """A parameter of an instance, the start of an input, or a name that an instance goes by."""
     fmu = scene.instances[instance].fmu
+    if fmu.ours and variable in TAKERS:
+        return _published(key, variable)
     name = fmu.name_of(variable)
     if name not in fmu.ports and (variable in (*PARAMETER_SETS, *FILES) or unit_of(variable)):
         return Varied(key, (key,), "Text", "1", "1", variable, _text(key), needs_scene=True)
-    if any((drive.instance, drive.variable) == (instance, name) for drive in scene.drives):
-        raise LoomfmuError(f"{instance}.{variable} is driven by the scene's inputs and cannot be varied")
+    check_free(scene, instance, variable)
 
     def read(given: Any) -> Value:
         probe = Instance(instance, fmu)
@@ -124,7 +121,11 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
     if name not in fmu.ports or fmu.ports[name].causality not in ("parameter", "input"):
         read(0)  # says what is wrong
     port = fmu.ports[name]
-    return Varied(key, (key,), _kind(port), port.unit, port.display, port.description, read)
+
+    def doubt(given: Any) -> str:
+        return port.doubt(given, f"{instance}.{variable}")
+
+    return Varied(key, (key,), _kind(port), port.unit, port.display, port.description, read, doubt=doubt)
 
 
 def _kind(port: Port) -> str:

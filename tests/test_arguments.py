@@ -1,0 +1,67 @@
+"""The public functions: what they are given of the wrong type is refused in one line."""
+
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from live_fmus import fmu_cache
+
+import loomfmu
+from loomfmu import LoomfmuError, evaluate, run, sweep
+
+__all__ = ["fmu_cache"]
+
+SIMS = Path(__file__).parents[1] / "sims"
+DEMO: Any = SIMS / "wl680_3600.toml"
+SHORT = {"revolutions": 1, "steps_per_revolution": 90, "grid": "uniform"}
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: run(3), "scene = 3 is not a path"),
+        (lambda: run(None), "scene = None is not a path"),
+        (lambda: run(["a"]), "scene = ['a'] is not a path"),
+        (lambda: run(np.zeros((50, 50))), "scene = array("),
+        (lambda: evaluate(3), "scene = 3 is not a path"),
+        (lambda: sweep(3), "sweep = 3 is not a path"),
+        (lambda: run(DEMO, set=3), "set = 3 is not a dictionary such as"),
+        (lambda: run(DEMO, set=["shaft.speed"]), "set = ['shaft.speed'] is not a dictionary such as"),
+        (lambda: run(DEMO, set={3: 4}), "set = {3: 4} is not a dictionary such as"),
+        (lambda: run(DEMO, set={"shaft.speed": None}), f"{DEMO}: shaft.speed: None is not a quantity"),
+        (lambda: run(DEMO, set={"machine": ["a"]}), f"{DEMO}: weft.machine = ['a'] is not a name in quotes"),
+        (lambda: run(DEMO, output=3), "output = 3 is not a path"),
+        (lambda: run(DEMO, flavour=3), "there is no flavour 3; known: live, native"),
+        (lambda: run(DEMO, flavour=["live"]), "there is no flavour ['live']"),
+        (lambda: evaluate(DEMO, flavour=None), "there is no flavour None"),
+        (lambda: evaluate(DEMO, values=3), "values = 3 is not a list such as"),
+        (lambda: evaluate(DEMO, values="belt.margin"), "values = 'belt.margin' is not a list such as"),
+        (lambda: sweep(DEMO, processes="a"), "processes = 'a' is not 1 or more"),
+        (lambda: sweep(DEMO, scheduler=3), "scheduler = 3 is not an address such as"),
+        (lambda: sweep(SIMS / "sweeps" / "safe_speed.toml", output=3), "output = 3 is not a path"),
+    ],
+)
+def test_what_is_of_the_wrong_type_is_refused_in_one_line(call: Callable[[], Any], said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        call()
+    assert str(raised.value).startswith(said)
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 250
+
+
+def test_a_result_is_true_where_all_claims_hold(tmp_path: Path) -> None:
+    for speed, holds in (("400 rpm", True), ("700 rpm", False)):
+        changed = SHORT | {"shaft.speed": speed}
+        for found in (run(DEMO, set=changed, output=tmp_path / "x.h5"), evaluate(DEMO, set=changed)):
+            assert bool(found) is found.holds is holds
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    changed: dict[str, Any] = SHORT | {"shaft.speed": np.float32(50.0), "steps_per_revolution": np.int64(90)}
+    assert evaluate(DEMO, set=changed).scene.speed == 50.0
+
+
+def test_types_are_exported() -> None:
+    assert resources.files(loomfmu).joinpath("py.typed").is_file()
