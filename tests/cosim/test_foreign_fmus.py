@@ -283,7 +283,8 @@ def test_one_without_outputs_runs_for_what_it_does(tmp_path: Path) -> None:
     alone = ran(tmp_path, text, tmp_path, duration="3 ms")
     assert list(alone.warnings) == told and alone.trace.rows == 4 and list(alone.trace) == []
     # nothing that is recorded or claimed depends on it, and it depends on what is recorded nowhere
-    text = 'record = ["weft.stroke"]\n' + text + '[weft]\n[wires]\n"motor.load.tau" = "weft.shaft_torque"\n'
+    wired = '[weft]\n[wires]\n"motor.load.tau" = "weft.shaft_torque"\n'
+    text = 'record = ["weft.stroke"]\n' + MOTOR + "verbose = true\n" + wired
     scene = scenes.parse(text, "x", {"duration": "3 ms"}, tmp_path)
     carried = [f"motor: motor carries {torque:.3f} N.m, step" for torque in torques(scene)]
     for result in (run(scene, output=tmp_path / "x.h5"), evaluate(scene)):

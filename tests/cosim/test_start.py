@@ -16,6 +16,7 @@ __all__ = ["fmu_cache"]
 HELD = "follow_shaft = true\nshaft_angle = 1.0\nshaft_velocity = 0.0\n"  # rad: where the head feels it
 WEFT = f'[weft]\nmachine = "WL680-3600"\n{HELD}'
 WIRED = '[wires]\n"weft.shaft_acceleration" = "{}"\n'
+CUT = '"weft.shaft_angle" = false\n"weft.shaft_velocity" = false\n'
 TORQUE = '"motor.load.tau" = "weft.shaft_torque"\n'
 
 
@@ -38,12 +39,13 @@ def acceleration(shaft_acceleration: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("text", "signal"), [(MOTOR, "motor.flange_a"), (LENGTH + SHAFT3, "shaft.acceleration")]
+    ("text", "signal", "cut"),
+    [(MOTOR, "motor.flange_a", ""), (LENGTH + SHAFT3, "shaft.acceleration", CUT)],
 )
 def test_what_is_computed_on_leaving_initialization_is_recorded_and_handed_on(
-    late: Path, tmp_path: Path, text: str, signal: str
+    late: Path, tmp_path: Path, text: str, signal: str, cut: str
 ) -> None:
-    result = ran(late, text + WEFT + WIRED.format(signal), tmp_path)
+    result = ran(late, text + WEFT + WIRED.format(signal) + cut, tmp_path)
     assert result.trace[signal][0] == exact(np.zeros(1))[2][0] == 200.0
     assert result.trace["weft.acceleration"][0] == acceleration(200.0)
     assert acceleration(200.0) > acceleration(0.0) + 100.0

@@ -33,8 +33,8 @@ class _Judged:
     """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
 
     It is true where all claims hold. `skipped` are lines that say what was not run or not read and why, and
-    what that saved; `steps` is the number of communication steps. `ended` tells which FMU ended the run early,
-    and when.
+    what that saved; `steps` is the number of communication steps. `ended` tells which FMU ended it
+    before its time, and when.
     """
 
     scene: Scene
