@@ -63,6 +63,7 @@ class Variable:
         """What it measures, where its unit tells: empty for a number, and for what is only kept inside."""
         told = self.type is float and self.causality != "local"
         return units.QUANTITIES.get(self.unit, "") if told else ""
+
     def read(self, given: Any, name: str) -> float:
         """A quantity as people write it, in SI and within the limits; `name` is what a message calls it.
 

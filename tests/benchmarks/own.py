@@ -40,7 +40,8 @@ class Source:
 
     def scene(self, steps: int = 1440, turns: float = 1.0) -> Scene:
         """So many revolutions of it, with so many steps in each."""
-        given = {"steps_per_revolution": steps, "revolutions": turns} | self.overrides
+        whole = max(1, round(turns * steps)) / steps  # a run has whole steps
+        given = {"steps_per_revolution": steps, "revolutions": whole} | self.overrides
         scene = scenes.parse(self.text, "benchmark", given)
         return scene if self.judged else replace(scene, claims=[])
 

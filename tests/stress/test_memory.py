@@ -16,7 +16,7 @@ from loomfmu.cosim import scene as scenes
 runs, warm_up = int(sys.argv[1]), int(sys.argv[2])
 stems = {"shaft", "weft", "belt", "dobby", "heald", "damper"}
 text = '''
-revolutions = 0.3
+revolutions = 0.4
 steps_per_revolution = 45
 record = ["belt.lowest_margin"]
 [loom]
