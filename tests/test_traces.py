@@ -286,6 +286,70 @@ def names(file: h5py.File) -> list[str]:
     return found
 
 
+# ---- results that share a name
+
+
+def speeds(results: list[loomfmu.Result]) -> list[float]:
+    return [float(found.trace["shaft.velocity"][0] * 30 / np.pi) for found in results]
+
+
+def test_a_result_keeps_its_own_data_whatever_is_run_after_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
+    wanted = [300.0, 400.0, 500.0, 600.0]
+    results = [loomfmu.run("shaft.toml", set={"shaft.speed": f"{speed} rpm"}) for speed in wanted]
+    assert {found.path for found in results} == {Path("results/shaft.h5")}
+    assert speeds(results) == pytest.approx(wanted, rel=1e-15)
+    assert [found.trace.parameter("shaft.speed") * 30 / np.pi for found in results] == pytest.approx(wanted)
+    assert len(os.listdir("results")) == 4
+    with results[1].trace as held:  # also one that is open, and one that was read from its file
+        same = Trace("results/shaft.h5")
+        results.append(loomfmu.run("shaft.toml", set={"shaft.speed": "700 rpm"}))
+        assert held["shaft.angle"][-1] == pytest.approx(2 * np.pi)
+    assert speeds(results) == pytest.approx([*wanted, 700.0], rel=1e-15)
+    assert same["shaft.velocity"][0] * 30 / np.pi == pytest.approx(600.0, rel=1e-15)
+    del results[:4], same, held
+    assert os.listdir("results") == ["shaft.h5"]  # what nobody holds is gone
+
+
+def test_what_was_kept_is_gone_with_the_process(tmp_path: Path, fmu_cache: None) -> None:
+    (tmp_path / "shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
+    script = (
+        "import loomfmu, os, sys; os.chdir(sys.argv[1])\n"
+        "kept = [loomfmu.run('shaft.toml', set={'shaft.speed': f'{n}00 rpm'}) for n in (4, 5)]\n"
+        "if child := os.fork():\n"
+        "    os.waitpid(child, 0)\n"
+        "    print(len(os.listdir('results')), round(kept[0].trace['shaft.velocity'][0] * 1e6))\n"
+        "else:\n"
+        "    del kept\n"  # a forked process does not take its parent's files away
+    )
+    assert in_a_process(script, str(tmp_path)) == "2 41887902\n"  # 400 rev/min in 1e-6 rad/s
+    assert os.listdir(tmp_path / "results") == ["shaft.h5"]
+
+
+def test_a_thousand_traces_can_be_held_at_once(result: loomfmu.Result) -> None:
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(256, limits[0]), limits[1]))
+    try:
+        traces = [Trace(result.path) for _ in range(1000)]
+        assert all(trace["belt.margin"][0] == traces[0]["belt.margin"][0] for trace in traces)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+
+
+def test_a_trace_whose_file_another_process_replaced_says_so(result: loomfmu.Result, tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(result.path.read_bytes())
+    trace = Trace(path)
+    other = tmp_path / "other.h5"
+    other.write_bytes(result.path.read_bytes())
+    other.replace(path)
+    with pytest.raises(LoomfmuError, match=r"run\.h5: it has changed since it was opened: another trace"):
+        _ = trace["belt.margin"]
+
+
 # ---- runs that are cut off
 
 LONG = 'revolutions = 100000\n[loom]\nmachine = "WL680-3600"\n'

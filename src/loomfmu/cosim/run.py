@@ -4,7 +4,6 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -55,14 +54,13 @@ class _Judged:
 
 @dataclass(frozen=True)
 class Result(_Judged):
-    """A finished run with its trace on disk."""
+    """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
+
+    `path` is where the trace was written. `trace` stays that of this run when another one is written there.
+    """
 
     path: Path
-
-    @cached_property
-    def trace(self) -> Trace:
-        """The recorded trace: `result.trace["belt.margin"]` are the signal's values in SI."""
-        return Trace(self.path)
+    trace: Trace = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -121,7 +119,8 @@ def run(
         warnings = (*scene.notes, *master.warnings())
     ended = _told(master.ended)
     verdicts = _finish(scene, writer, ended)
-    return Result(scene, verdicts, warnings, explained(plan), master.steps, path, ended=ended)
+    skipped = explained(plan)
+    return Result(scene, verdicts, warnings, skipped, master.steps, path, Trace(path), ended=ended)
 
 
 def evaluate(

@@ -2,8 +2,10 @@
 
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from threading import RLock
 from types import TracebackType
 from typing import Any, Self
 
@@ -13,29 +15,51 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
 from .disk import superblock
-from .signals import Floats, Signals
+from .places import place_of
+from .signals import SHARED, Floats, Signals
 
 
 class Trace(Signals):
-    """A run recorded in a file: `trace["belt.margin"]` is the signal's values, in SI."""
+    """A run recorded in a file: `trace["belt.margin"]` is the signal's values, in SI.
+
+    The file is open while it is read, and within a `with` statement: hundreds of traces can be held at once.
+    It stays readable when a run of this process writes another one under its name.
+    """
 
     def __init__(self, path: str | Path):
-        self.path = Path(path)
-        self.name = self.path.name
+        self._place = place_of(Path(path))
+        self.name = Path(path).name
+        self._file: Any = None
+        self._turn = RLock()  # threads may share a trace
+        self._state: tuple[int, ...] = ()
+        self._cache: dict[str, NDArray[Any]] = {}
+        with self._opened() as file:
+            if not {"time", "shaft_angle"} <= set(file) or not {"title", "status"} <= set(file.attrs):
+                raise LoomfmuError(
+                    f"{self.path}: it is no trace of a run: it lacks /time, /shaft_angle or a title"
+                )
+            if file.attrs["status"] != "running":  # else it grows
+                self._state = _state(self.path)
+
+    def __reduce__(self) -> tuple[type["Trace"], tuple[Path]]:
+        return Trace, (self.path,)
+
+    @property
+    def path(self) -> Path:
+        """Where the file is now."""
+        return self._place.path
+
+    def _open(self) -> Any:
         try:
-            self._file = self._open()
+            if self._state and _state(self.path) != self._state:
+                raise LoomfmuError(f"{self.path}: it has changed since it was opened: another trace is there")
+            return self._hdf5()
         except FileNotFoundError:
             raise LoomfmuError(f"{self.path}: there is no such file") from None
         except (OSError, RuntimeError) as error:
             raise LoomfmuError(f"{self.path}: it is no readable trace ({error})") from None
-        if not {"time", "shaft_angle"} <= set(self._file) or not {"title", "status"} <= set(self._file.attrs):
-            self._file.close()
-            raise LoomfmuError(
-                f"{self.path}: it is no trace of a run: it lacks /time, /shaft_angle or a title"
-            )
-        self._cache: dict[str, NDArray[Any]] = {}
 
-    def _open(self) -> Any:
+    def _hdf5(self) -> Any:
         try:
             return h5py.File(self.path, "r")
         except OSError:
@@ -44,7 +68,21 @@ class Trace(Signals):
                 raise  # HDF5 would look for the rest of a file that was cut off again and again
         return h5py.File(self.path, "r", swmr=True)
 
+    @contextmanager
+    def _opened(self) -> Iterator[Any]:
+        """The file, opened unless it is."""
+        with self._turn:
+            if self._file is not None:
+                yield self._file
+                return
+            self._file = self._open()
+            try:
+                yield self._file
+            finally:
+                self.close()
+
     def __enter__(self) -> Self:
+        self._file = self._file or self._open()
         return self
 
     def __exit__(
@@ -53,91 +91,114 @@ class Trace(Signals):
         self.close()
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file, if it is open."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
         if signal not in self._cache:
-            self._cache[signal] = self._read(self._dataset(signal))
+            self._cache[signal] = self._read(signal)
         return self._cache[signal]
 
-    def _read(self, dataset: Any) -> NDArray[Any]:
-        try:
-            return np.asarray(dataset[: self.rows])
-        except (OSError, RuntimeError) as error:
-            raise LoomfmuError(f"{self.path}: {dataset.name} cannot be read ({error})") from None
+    def _read(self, signal: str) -> NDArray[Any]:
+        with self._dataset(signal) as dataset:
+            try:
+                values = np.asarray(dataset[: self.rows])
+            except (OSError, RuntimeError) as error:
+                raise LoomfmuError(f"{self.path}: {dataset.name} cannot be read ({error})") from None
+            return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
-        path = "/" + str(signal).replace(".", "/")
-        return path in self._file and isinstance(self._file[path], h5py.Dataset)
+        with self._opened() as file:
+            path = "/" + str(signal).replace(".", "/")
+            return path in file and isinstance(file[path], h5py.Dataset)
 
     def __iter__(self) -> Iterator[str]:
-        for name, group in self._file.items():
-            if isinstance(group, h5py.Group):
-                yield from (f"{name}.{variable}" for variable in group if variable != "time")
+        with self._opened() as file:
+            groups = [(name, group) for name, group in file.items() if isinstance(group, h5py.Group)]
+            found = [f"{name}.{variable}" for name, group in groups for variable in group]
+        return (signal for signal in found if signal.split(".")[1] not in SHARED)
 
-    def _dataset(self, signal: str) -> Any:
-        if signal not in self:
-            raise self._unknown(signal)
-        return self._file["/" + signal.replace(".", "/")]
+    @contextmanager
+    def _dataset(self, signal: str) -> Iterator[Any]:
+        with self._opened() as file:
+            if signal not in SHARED and signal not in self:
+                raise self._unknown(signal)
+            yield file["/" + signal.replace(".", "/")]
+
+    def _said(self, signal: str, attribute: str) -> str | None:
+        """What the file says of a signal."""
+        with self._dataset(signal) as dataset:
+            said = dataset.attrs.get(attribute)
+            return None if said is None else str(said)
 
     @cached_property
     def rows(self) -> int:
         """Number of samples when first asked; of a run that was cut off, those that all signals have."""
-        lengths = [len(self._dataset(signal)) for signal in self]
-        return min(len(self._file["time"]), len(self._file["shaft_angle"]), *lengths)
+        with self._opened() as file:
+            return min(len(file["/" + signal.replace(".", "/")]) for signal in (*SHARED, *self))
 
     @cached_property
     def time(self) -> Floats:
         """Time of the samples [s]."""
-        return self._read(self._file["time"])
+        return self._read("time")
 
     @cached_property
     def shaft_angle(self) -> Floats:
         """Shaft angle of the samples, not wrapped [rad]."""
-        return self._read(self._file["shaft_angle"])
+        return self._read("shaft_angle")
 
     @property
     def attributes(self) -> dict[str, Any]:
         """What the file says of the run."""
-        return dict(self._file.attrs)
+        with self._opened() as file:
+            return dict(file.attrs)
 
     @property
     def status(self) -> str:
         """`complete`, `interrupted`, `failed`, or `running` (also after a kill)."""
-        return str(self._file.attrs["status"])
+        return str(self.attributes["status"])
 
     @property
     def ended_by(self) -> str:
         """Which FMU ended the run before its time, and when; empty for one that went to its end."""
-        return str(self._file.attrs.get("ended_by", ""))
+        return str(self.attributes.get("ended_by", ""))
 
     @property
     def verdicts(self) -> list[dict[str, Any]]:
         """The verdicts stored with the run."""
-        return list(json.loads(self._file.attrs.get("claims", "[]")))
+        return list(json.loads(self.attributes.get("claims", "[]")))
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
-        return str(self._dataset(signal).attrs["UNIT"])
+        return str(self._said(signal, "UNIT"))
 
     def display(self, signal: str) -> str:
         """Unit that people read a signal in."""
-        return str(self._dataset(signal).attrs.get("DISPLAY_UNIT", self.unit(signal)))
+        return self._said(signal, "DISPLAY_UNIT") or self.unit(signal)
 
     def description(self, signal: str) -> str:
         """What a signal is."""
-        return str(self._dataset(signal).attrs["COMMENT"])
+        return str(self._said(signal, "COMMENT"))
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
-        name = self._dataset(signal).attrs.get("rate")
+        name = self._said(signal, "rate")
         rate = f"{signal.split('.')[0]}.{name}"
         return rate if name and rate in self else None
 
     def parameter(self, signal: str) -> float:
-        """A parameter of an instance as it was set, such as `heald_1.stroke`."""
+        """A parameter of an instance, or an input that was left at its start, such as `heald_1.stroke`."""
         instance, _, name = signal.partition(".")
-        if instance not in self._file or name not in self._file[instance].attrs:
+        with self._opened() as file:
+            value = file[instance].attrs.get(name) if instance in file else None
+        if not isinstance(value, np.number | np.bool_):
             raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
-        return float(self._file[instance].attrs[name])
+        return float(value)
+
+
+def _state(path: Path) -> tuple[int, ...]:
+    """What tells a file from another one under its name."""
+    found = path.stat()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns

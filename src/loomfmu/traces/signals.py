@@ -13,6 +13,7 @@ from ..errors import LoomfmuError, suggestion
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
+SHARED = ("time", "shaft_angle")  # what all signals lie along
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class Channel:
     rate: str | None = None
     meanings: tuple[str, ...] = ()
     first_flag: int = 0
+    boolean: bool = False
 
 
 class Signals(ABC):
@@ -108,7 +110,8 @@ class Recording(Signals):
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
         channel = self._channel(signal)
-        return self._joined[2 if channel.real else 3][:, channel.column]
+        values = self._joined[2 if channel.real else 3][:, channel.column]
+        return values.astype(bool) if channel.boolean else values
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._channels

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .. import units
 from .chunks import LEVEL, ROWS, packed
 from .disk import reserve, superblock, take
+from .places import replace
 from .signals import Channel, Floats, Integers
 
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
@@ -142,7 +143,7 @@ class TraceWriter:
     def complete(self, verdicts: Sequence[dict[str, Any]]) -> Path:
         """Give the sealed file its verdicts and its final name."""
         self._annotate("claims", json.dumps(verdicts))
-        self.partial.replace(self.path)
+        replace(self.partial, self.path)
         return self.path
 
     def _annotate(self, name: str, text: str) -> None:
