@@ -1,8 +1,10 @@
 """The command: what it prints, what it returns, and one line for every mistake."""
 
 import os
+import stat
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import h5py
@@ -91,19 +93,106 @@ def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_a_finished_run_replaces_an_older_one() -> None:
-    Path("results").mkdir()
-    Path("results/scene.h5").write_text("an older run")
-    assert main(["run", scene(HEAD + SHAFT)]) == 0
+    shaft = HEAD + SHAFT
+    assert main(["run", scene(shaft.replace("revolutions = 1", "revolutions = 2"))]) == 0
+    assert main(["run", scene(shaft)]) == 0
     with Trace("results/scene.h5") as trace:
-        assert trace.status == "complete"
+        assert (trace.status, trace.rows) == ("complete", 91)
 
 
 def test_a_failed_run_leaves_an_older_one() -> None:
-    Path("results").mkdir()
-    Path("results/scene.h5").write_text("an older run")
+    assert main(["run", scene(HEAD)]) == 0
+    older = Path("results/scene.h5").read_bytes()
     assert main(["run", scene(HEAD + LOOM + '[weft]\ncrank_cone = "80 deg"\n')]) == 2
-    assert Path("results/scene.h5").read_text() == "an older run"
+    assert Path("results/scene.h5").read_bytes() == older
     assert os.listdir("results") == ["scene.h5"]
+
+
+# ---- what no command overwrites
+
+WIF = Path(__file__).parents[1] / "sims" / "weaves" / "twill_2_2.wif"
+
+
+@pytest.mark.parametrize("force", [[], ["--force"]])
+@pytest.mark.parametrize("command", [["run", "scene.toml", "--output"], ["export", "scene.toml", "--ssp"]])
+def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
+    command: list[str], force: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("plain.wif").write_bytes(WIF.read_bytes())
+    scene(HEAD + LOOM.replace("10/01", "plain.wif"))
+    Path("mine.fmu").write_bytes(fmus.of_component("MainShaft").path.read_bytes())
+    with Path("scene.toml").open("a") as text:
+        text.write('[motor]\nfmu = "mine.fmu"\n')
+    Path("other_name.toml").hardlink_to("scene.toml")
+    os.mkfifo("pipe")
+    Path("to_device").symlink_to("/dev/null")
+    Path("directory").mkdir()
+    before = {path: path.lstat() for path in Path().iterdir()}
+    said = {
+        "scene.toml": "it is an input of this command",
+        "./other_name.toml": "it is an input of this command",
+        "plain.wif": "it is an input of this command",
+        "mine.fmu": "it is an input of this command",
+        "directory": "it is a directory",
+        "pipe": "it is a device or a pipe, not a file",
+        "to_device": "it is a device or a pipe, not a file",
+        "/dev/full": "it is a device or a pipe, not a file",
+    }
+    for target, why in said.items():
+        assert main([*command, target, *force]) == 2
+        shown = str(Path(target))
+        assert capsys.readouterr().err == f"loomfmu: {shown}: cannot be written ({why})\n"
+    assert {path: path.lstat() for path in Path().iterdir()} == before
+    assert Path("/dev/full").is_char_device()
+
+
+def test_what_is_not_ours_is_replaced_only_when_told_to(capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(HEAD)
+    Path("out").mkdir()
+    targets = {
+        "notes.h5": (["run", path, "--output", "notes.h5"], "a trace of loomfmu"),
+        "loom.ssp": (
+            ["export", path, "--ssp", "loom.ssp", "--flavour", "live"],
+            "a system package of loomfmu",
+        ),
+        "out/MainShaft.fmu": (["build", "MainShaft", "--output", "out"], "an FMU of loomfmu"),
+    }
+    for target, (command, kind) in targets.items():
+        with zipfile.ZipFile(target, "w") as theirs:  # another maker's
+            theirs.writestr("SystemStructure.ssd", "<ssd generationTool='other'/>")
+            theirs.writestr("modelDescription.xml", "<fmiModelDescription generationTool='other'/>")
+        older = Path(target).read_bytes()
+        assert main(command) == 2
+        replaces = "--force (overwrite=True in Python) replaces it"
+        assert capsys.readouterr().err == (f"loomfmu: {target}: it exists and is not {kind}; {replaces}\n")
+        assert Path(target).read_bytes() == older
+        assert main([*command, "--force"]) == 0
+        assert main(command) == 0  # now it is ours
+        Path(target).write_bytes(b"")
+        assert main(command) == 0  # nothing is lost with an empty file
+        assert stat.S_IMODE(Path(target).stat().st_mode) == 0o666 & ~umask()
+        capsys.readouterr()
+    Path("scene.h5.partial").write_text("my own notes")
+    assert main(["run", path, "--output", "scene.h5"]) == 2
+    assert "scene.h5.partial: it exists and is not what an interrupted run" in capsys.readouterr().err
+
+
+def umask() -> int:
+    found = os.umask(0)
+    os.umask(found)
+    return found
+
+
+def test_a_report_replaces_only_a_report(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("docs/validation").mkdir(parents=True)
+    Path("docs/validation.md").write_text("# My thesis\n")
+    assert main(["validate", "--output", "docs"]) == 2
+    assert "docs/validation.md: it exists and is not a report of loomfmu" in capsys.readouterr().err
+    Path("docs/validation.md").unlink()
+    Path("docs/validation/accuracy.png").write_text("my own")
+    assert main(["validate", "--output", "docs"]) == 2
+    assert "docs/validation/accuracy.png: it exists and is not a PNG" in capsys.readouterr().err
+    assert os.listdir("docs") == ["validation"]
 
 
 def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
@@ -149,7 +238,7 @@ def test_show_summarises_and_tells_again_whether_all_claims_held(
     assert main(["show", "results/scene.h5"]) == status
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Small (loomfmu ") and lines[0].endswith(", complete)")
-    assert lines[1] == "91 samples over 0.15 s, 1 revolutions"
+    assert lines[1:3] == ["run by: loomfmu run scene.toml", "91 samples over 0.15 s, 1 revolutions"]
     row = next(line.split() for line in lines if line.startswith("shaft.angle"))
     assert row == ["shaft.angle", "0", "360", "360", "deg"]
     row = next(line.split() for line in lines if line.startswith("weft.stroke"))
@@ -480,7 +569,7 @@ def test_values_that_do_not_go_together_are_told_in_one_line(
         (["run", "."], ".: cannot be read (Is a directory)"),
         (
             ["run", "scene.toml", "--output", "scene.toml/x.h5"],
-            "scene.toml/x.h5: cannot be written (File exists)",
+            "scene.toml/x.h5: cannot be written (scene.toml is not a directory)",
         ),
         (["run", "scene.toml", "--output", "."], ".: cannot be written (it is a directory)"),
         (["run", "scene.toml", "--output", ""], ".: cannot be written (it is a directory)"),
@@ -489,7 +578,10 @@ def test_values_that_do_not_go_together_are_told_in_one_line(
             "/proc/none/x.h5: cannot be written (No such file or directory)",
         ),
         (["build", "MainShft"], "there is no FMU 'MainShft'; did you mean 'MainShaft'?"),
-        (["build", "MainShaft", "--output", "scene.toml"], "scene.toml: File exists"),
+        (
+            ["build", "MainShaft", "--output", "scene.toml"],
+            "scene.toml/MainShaft.fmu: cannot be written (scene.toml is not a directory)",
+        ),
         (["show", "missing.h5"], "missing.h5: there is no such file"),
         (
             ["show", "scene.toml"],

@@ -5,12 +5,15 @@ import json
 import os
 import re
 import resource
+import shlex
 import signal
 import subprocess
 import sys
+import textwrap
 import time
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -20,8 +23,9 @@ import xarray
 from live_fmus import fmu_cache, in_a_process
 
 import loomfmu
-from loomfmu import LoomfmuError, Trace, units
+from loomfmu import LoomfmuError, Trace, cli, units
 from loomfmu.cosim import fmus
+from loomfmu.cosim import scene as scenes
 from loomfmu.traces import ROWS, Channel, TraceWriter
 from loomfmu.variables import variables_of
 
@@ -73,6 +77,8 @@ def test_the_root_says_what_was_run(file: h5py.File, result: loomfmu.Result) -> 
     assert said["status"] == "complete"
     assert said["software"] == f"loomfmu {metadata.version('loomfmu')}"
     assert said["steps_per_revolution"] == "1440"
+    assert (said["set"], said["flavour"]) == ("{}", "live")
+    assert said["command"] == f"loomfmu run {result.scene.file}"
     assert json.loads(said["claims"]) == [verdict.as_dict() for verdict in result.claims]
     kinds = {instance.fmu.name for instance in result.scene.instances.values()}
     assert len(kinds) == 6
@@ -91,18 +97,19 @@ def test_the_layout_is_flat_and_along_one_time(file: h5py.File, result: loomfmu.
     assert file["shaft_angle"].dims[0][0] == file["time"]
     for name in result.scene.instances:
         assert file[f"{name}/time"] == file["time"]  # one object, not a copy
+        assert file[f"{name}/shaft_angle"] == file["shaft_angle"]
         for variable, dataset in file[name].items():
             assert re.fullmatch("[A-Za-z][A-Za-z0-9_]*", variable)
             assert dataset.shape == (2161,)
             if variable != "time":
-                assert dataset.dims[0][0] == file["time"]
+                assert list(dataset.dims[0].values()) == [file["time"]]
 
 
 def test_every_dataset_is_chunked_compressed_and_described(file: h5py.File, result: loomfmu.Result) -> None:
     for name, instance in result.scene.instances.items():
         declared = {v.name: v for v in variables_of(fmus.COMPONENTS[instance.fmu.name])}
         outputs = {v.name for v in declared.values() if v.causality == "output"}
-        assert set(file[name]) == outputs | {"time"}
+        assert set(file[name]) == outputs | {"time", "shaft_angle"}
         for output in outputs:
             dataset, variable = file[name][output], declared[output]
             assert dataset.chunks == (ROWS,)
@@ -118,8 +125,9 @@ def test_every_dataset_is_chunked_compressed_and_described(file: h5py.File, resu
                 np.testing.assert_array_equal(dataset.attrs["flag_values"], [0, 1])
                 assert dataset.attrs["flag_meanings"] == "no yes"
                 assert set(dataset[:]) <= {0, 1}
+                assert dataset.attrs["dtype"] == "bool"
             else:
-                assert "flag_values" not in dataset.attrs
+                assert not {"flag_values", "dtype"} & set(dataset.attrs)
 
 
 def test_some_units_spelt_out(file: h5py.File) -> None:
@@ -130,15 +138,79 @@ def test_some_units_spelt_out(file: h5py.File) -> None:
     assert file["belt/lowest_speed_limit"].attrs["DISPLAY_UNIT"] == "rev/min"
 
 
-def test_parameters_stand_as_they_were_set(file: h5py.File, result: loomfmu.Result) -> None:
+def test_values_stand_as_they_ran(file: h5py.File, result: loomfmu.Result) -> None:
     assert file["heald_1"].attrs["stroke"] == 0.06
     assert file["belt"].attrs["head_length"] == 0.55
-    assert file["weft"].attrs["follow_shaft"]
+    about = {"fmu", "machine", "head", "parameter_units"}
+    fed = {wire.sink for wire in result.scene.wires}
+    idle = {"shaft_angle", "shaft_velocity", "shaft_acceleration", "prescribed_length_factor"}
+    idle |= {"lift_fraction", "lift_rate", "lift_acceleration"}
     for name, instance in result.scene.instances.items():
-        declared = variables_of(fmus.COMPONENTS[instance.fmu.name])
-        parameters = {v.name: v.start for v in declared if v.causality == "parameter"}
-        expected = parameters | {k: v for k, v in instance.values.items() if k in parameters}
-        assert dict(file[name].attrs) == expected
+        found = {key: value for key, value in file[name].attrs.items() if key not in about}
+        declared = {v.name: v for v in variables_of(fmus.COMPONENTS[instance.fmu.name]) if v.settable}
+        alone = {key for key in declared if (name, key) not in fed} - idle
+        if name.startswith("heald"):
+            alone |= idle & set(declared)  # follow_lift is wired, and so on: it counts
+            alone -= {key for owner, key in fed if owner == name}
+        assert set(found) == alone
+        for key, value in found.items():
+            assert isinstance(value, {float: np.float64, int: np.int64, bool: np.bool_}[declared[key].type])
+        units_ = {key: v.unit for key, v in declared.items() if key in alone and v.type is float}
+        assert json.loads(file[name].attrs["parameter_units"]) == units_
+        assert file[name].attrs["fmu"] == instance.fmu.name
+    # the shaft turns at a constant speed, and what follows it by itself: that speed is the one that counted
+    assert file["shaft"].attrs["speed"] == file["belt"].attrs["speed"] == 41.88790204786391
+    assert not file["belt"].attrs["follow_shaft"]
+    assert (file["weft"].attrs["machine"], "machine" in file["dobby"].attrs) == ("WL680-3600", False)
+
+
+SHARED_SPEED = """
+revolutions = 0.5
+steps_per_revolution = 60
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[shaft]
+ripple_amplitude = 0.02
+[belt]
+yarn_tension = "2 N"
+"""
+
+
+def test_a_trace_says_how_to_repeat_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], fmu_cache: None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("a loom.toml").write_text(SHARED_SPEED)
+    set_ = {"shaft.speed": "500 rpm", "belt.guide_clearance": 0.00047, "shaft.ripple_order": 3}
+    first = loomfmu.run("a loom.toml", set=set_, output="first.h5")
+    with h5py.File("first.h5") as file:
+        said, belt = dict(file.attrs), dict(file["belt"].attrs)
+    assert json.loads(said["set"]) == set_
+    # a shaft that ripples is followed: the belt's own speed had no effect, its unwired inputs did
+    assert belt["follow_shaft"] and "speed" not in belt and "start_angle" not in belt
+    assert (belt["yarn_tension"], belt["guide_clearance"], belt["head"]) == (2.0, 0.00047, "G6300 left")
+    assert "travel" not in belt  # it is wired
+    # from the file alone
+    Path("again.toml").write_text(said["scene"])
+    again = loomfmu.run("again.toml", set=json.loads(said["set"]), flavour=said["flavour"], output="2.h5")
+    # and by the command that it names
+    command = shlex.split(said["command"])
+    assert command[:3] == ["loomfmu", "run", "a loom.toml"]
+    assert cli.main([*command[1:], "--output", "3.h5"]) == 0
+    assert cli.main(["show", "3.h5"]) == 0
+    assert "differs from the scene: belt.guide_clearance = 0.00047\n" in capsys.readouterr().out
+    for other in (again.trace, Trace("3.h5")):
+        assert set(other) == set(first.trace)
+        for signal_ in other:
+            np.testing.assert_array_equal(other[signal_], first.trace[signal_])
+    # a scene that was read with values of its own keeps them
+    read = scenes.load("a loom.toml", set_)
+    third = loomfmu.run(read, set={"shaft.speed": "450 rpm"}, output="4.h5")
+    assert json.loads(third.trace.attributes["set"]) == set_ | {"shaft.speed": "450 rpm"}
+    assert third.trace.parameter("belt.guide_clearance") == 0.00047
+    with pytest.raises(LoomfmuError, match=r"no parameter 'belt\.head' is recorded"):
+        third.trace.parameter("belt.head")
 
 
 def test_choices_are_flags_with_their_own_numbers(tmp_path: Path) -> None:
@@ -165,6 +237,8 @@ def test_our_own_reader(result: loomfmu.Result, file: h5py.File) -> None:
         assert trace.description("weft.travel").startswith("Travel of the rapier head")
         assert (trace.rate("weft.travel"), trace.rate("weft.acceleration")) == ("weft.velocity", None)
         assert trace.parameter("heald_1.stroke") == 0.06
+        assert trace["belt.buckled"].dtype == bool
+        assert len(trace.time[trace["heald_1.moving"]]) == np.sum(file["heald_1/moving"][:])
 
 
 @pytest.mark.parametrize(
@@ -186,6 +260,10 @@ def test_our_own_reader_names_what_it_does_not_find(result: loomfmu.Result, ask,
 def test_xarray_reads_a_group(result: loomfmu.Result, file: h5py.File) -> None:
     with xarray.open_dataset(result.path, engine="h5netcdf", group="belt") as belt:
         assert belt["margin"].dims == ("time",)
+        assert set(belt.coords) == {"time", "shaft_angle"}
+        assert belt["buckled"].dtype == bool and belt["margin"].where(belt["buckled"]).isnull().all()
+        np.testing.assert_array_equal(belt["margin"].coords["shaft_angle"], file["shaft_angle"][:])
+        assert belt.attrs["follow_shaft"] == False  # noqa: E712  a Boolean of HDF5, as xarray reads it
         np.testing.assert_array_equal(belt["time"], file["time"][:])
         np.testing.assert_array_equal(belt["margin"], file["belt/margin"][:])
         assert belt["free_length"].attrs["units"] == "m"
@@ -222,6 +300,17 @@ def written(path: Path, channels: list[Channel], reals: np.ndarray, integers: np
     writer.append(times, times, reals, integers)
     writer.seal("complete")
     writer.complete([])
+
+
+def older_run(path: Path) -> None:
+    writer = TraceWriter(path, {"title": "an older run"}, [], {})
+    writer.seal("complete")
+    writer.complete([])
+
+
+def title(path: Path) -> str:
+    with Trace(path) as trace:
+        return str(trace.attributes["title"])
 
 
 def test_five_thousand_variables_along_one_time(tmp_path: Path) -> None:
@@ -261,7 +350,7 @@ def test_the_final_name_is_given_last(tmp_path: Path) -> None:
 
 def test_what_is_abandoned_keeps_what_was_written(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
-    path.write_text("an older run")
+    older_run(path)
     channels = [Channel("a", "x", "m", "m", "X", 0)]
     writer = TraceWriter(path, {"title": "t"}, channels, {})
     block = np.arange(ROWS) * 1.0
@@ -270,7 +359,7 @@ def test_what_is_abandoned_keeps_what_was_written(tmp_path: Path) -> None:
     with Trace(writer.abandon("failed")) as trace:
         assert (trace.rows, trace.status, trace.verdicts) == (3 * ROWS, "failed", [])
         np.testing.assert_array_equal(trace["a.x"], np.tile(block, 3))
-    assert path.read_text() == "an older run"
+    assert title(path) == "an older run"
 
 
 def test_a_finished_file_has_no_reserved_space_left(result: loomfmu.Result) -> None:
@@ -352,15 +441,14 @@ def test_a_trace_whose_file_another_process_replaced_says_so(result: loomfmu.Res
 
 # ---- runs that are cut off
 
-LONG = 'revolutions = 100000\n[loom]\nmachine = "WL680-3600"\n'
+LONG = 'revolutions = 3000\nrecord = ["belt.margin"]\n[loom]\nmachine = "WL680-3600"\n'
 RUN = [sys.executable, "-m", "loomfmu.cli", "run", "long.toml", "--output", "out/long.h5"]
 
 
 def start(directory: Path) -> subprocess.Popen:
-    """A run that would take an hour, some blocks of it written."""
+    """A run that would take minutes, some blocks of it written."""
     (directory / "long.toml").write_text(LONG)
-    (directory / "out").mkdir()
-    (directory / "out" / "long.h5").write_text("an older run")
+    older_run(directory / "out" / "long.h5")
     running = subprocess.Popen(RUN, cwd=directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60
     while rows(directory) < 3 * ROWS:
@@ -382,7 +470,7 @@ def rows(directory: Path) -> int:
 
 def check_kept(directory: Path, kept: Trace) -> None:
     """Every sample is what a shorter run gives, and the final name still bears the older run."""
-    text = LONG.replace("100000", "1.0")
+    text = LONG.replace("3000", "1.0")
     (directory / "short.toml").write_text(text)
     short = loomfmu.run(directory / "short.toml", output=directory / "short.h5").trace
     assert set(kept) == set(short)
@@ -391,7 +479,7 @@ def check_kept(directory: Path, kept: Trace) -> None:
         np.testing.assert_array_equal(kept[signal_][: short.rows], short[signal_])
     step = kept.time[1]
     np.testing.assert_array_equal(kept.time, np.arange(kept.rows) * step)
-    assert (directory / "out" / "long.h5").read_text() == "an older run"
+    assert title(directory / "out" / "long.h5") == "an older run"
 
 
 def test_after_a_kill_every_whole_block_can_be_read(tmp_path: Path) -> None:
@@ -429,7 +517,7 @@ def test_a_new_run_replaces_what_a_killed_one_left(tmp_path: Path) -> None:
     running = start(tmp_path)
     running.kill()
     running.communicate()
-    (tmp_path / "long.toml").write_text(LONG.replace("100000", "0.1"))
+    (tmp_path / "long.toml").write_text(LONG.replace("3000", "0.1"))
     assert subprocess.run(RUN, cwd=tmp_path, capture_output=True).returncode == 0
     assert os.listdir(tmp_path / "out") == ["long.h5"]
     with Trace(tmp_path / "out" / "long.h5") as trace:
@@ -440,8 +528,7 @@ def test_a_new_run_replaces_what_a_killed_one_left(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("limit", "left"), [(1000, False), (500_000, True), (2_000_000, True)])
 def test_a_file_that_may_not_grow_is_told_in_one_line(tmp_path: Path, limit: int, left: bool) -> None:
     (tmp_path / "long.toml").write_text(LONG)
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "long.h5").write_text("an older run")
+    older_run(tmp_path / "out" / "long.h5")
     done = subprocess.run(
         RUN,
         cwd=tmp_path,
@@ -457,7 +544,7 @@ def test_a_file_that_may_not_grow_is_told_in_one_line(tmp_path: Path, limit: int
 
 
 def check_left(directory: Path, left: bool) -> None:
-    assert (directory / "out" / "long.h5").read_text() == "an older run"
+    assert title(directory / "out" / "long.h5") == "an older run"
     assert (directory / "out" / "long.h5.partial").exists() is left
     if left:
         with Trace(directory / "out" / "long.h5.partial") as kept:
@@ -467,7 +554,8 @@ def check_left(directory: Path, left: bool) -> None:
                 assert np.all(np.isfinite(kept[signal_]))
 
 
-def test_a_full_disk_is_told_in_one_line(tmp_path: Path) -> None:
+@pytest.fixture
+def small_disk(tmp_path: Path):
     disk = tmp_path / "out"
     disk.mkdir()
     mounted = subprocess.run(
@@ -475,17 +563,70 @@ def test_a_full_disk_is_told_in_one_line(tmp_path: Path) -> None:
     )
     if mounted.returncode:
         pytest.skip("no leave to mount a small disk")
-    try:
-        (disk / "long.h5").write_text("an older run")
-        (tmp_path / "long.toml").write_text(LONG)
-        done = subprocess.run(RUN, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-        assert done.stderr == (
-            "loomfmu: out/long.h5: cannot be written (No space left on device); see out/long.h5.partial\n"
-        )
-        assert (done.returncode, done.stdout) == (2, "")
-        check_left(tmp_path, left=True)
-    finally:
-        subprocess.run(["umount", str(disk)], check=True)
+    older_run(disk / "long.h5")
+    (tmp_path / "long.toml").write_text(LONG)
+    yield disk
+    subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_trace_that_does_not_fit_is_refused_before_the_run(tmp_path: Path, small_disk: Path) -> None:
+    done = subprocess.run(RUN, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    # 4,320,001 samples of time, shaft angle, margin and the shaft's three: 48 bytes each
+    said = r"\(it takes up to 207\.4 MB, and the disk has 3\.\d MB free\)\n"
+    assert re.fullmatch(rf"loomfmu: out/long\.h5: cannot be written {said}", done.stderr)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert [path.name for path in small_disk.iterdir()] == ["long.h5"]
+    assert title(small_disk / "long.h5") == "an older run"
+
+
+def test_a_disk_that_fills_up_is_told_in_one_line(tmp_path: Path, small_disk: Path) -> None:
+    script = "import sys; from loomfmu import cli; from loomfmu.cosim import run;"
+    script += "run.check_room = lambda *_: None; sys.exit(cli.main(sys.argv[1:]))"  # full only later
+    command = [sys.executable, "-c", script, *RUN[3:]]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.stderr == (
+        "loomfmu: out/long.h5: cannot be written (No space left on device); see out/long.h5.partial\n"
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    check_left(tmp_path, left=True)
+
+
+def test_a_large_trace_is_told_before_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], fmu_cache: None
+) -> None:
+    (tmp_path / "one.toml").write_text(LONG.replace("3000", "1"))
+    monkeypatch.setattr("loomfmu.cosim.run.LARGE_TRACE", 50_000)
+    result = loomfmu.run(tmp_path / "one.toml", output=tmp_path / "one.h5", progress=True)
+    assert capsys.readouterr().err == (  # 1441 samples of 48 bytes
+        f"{tmp_path}/one.h5: the trace takes up to 0.1 MB; record = [...] keeps less\n"
+    )
+    assert result.path.stat().st_size < 69168 + 40_000  # less than that, with what describes it
+
+
+def test_the_example_of_many_traces_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
+) -> None:
+    readme = (Path(__file__).parents[1] / "README.md").read_text()
+    block = re.search(r"\n(    import pathlib, xarray\n.*?)\n\n\S", readme, re.DOTALL)
+    assert block is not None
+    monkeypatch.chdir(tmp_path)
+    Path("loom.toml").write_text(LONG.replace("3000", "1"))
+    speeds = [450.0, 550.0, 700.0]
+    for speed in speeds:
+        path = f"results/safe_speed/traces/row_{speed:.0f}.h5"
+        loomfmu.run("loom.toml", set={"shaft.speed": f"{speed} rpm"}, output=path)
+    found: dict[str, Any] = {}
+    exec(textwrap.dedent(block[1]), found)
+    runs, table = found["runs"], found["table"]
+    assert runs["margin"].dims == ("run", "sample")
+    np.testing.assert_allclose(runs["speed"] * 30 / np.pi, speeds, rtol=1e-15)
+    assert {"time", "shaft_angle"} <= set(runs.coords)
+    lowest = runs["margin"].min("sample")
+    for number, path in enumerate(found["paths"]):
+        with Trace(path) as trace:
+            assert lowest[number] == trace["belt.margin"].min()
+    assert len(table) == 3 * 1441
+    assert list(table.groupby("speed")["margin"].min()) == list(lowest)
 
 
 # ---- files that are no traces

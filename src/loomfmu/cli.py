@@ -4,6 +4,7 @@ Exit status: 0 all claims hold; 1 a claim failed; 2 bad input or a failed FMU; 1
 """
 
 import argparse
+import json
 import math
 import os
 import shutil
@@ -64,6 +65,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--explain", action="store_true", help="tell what was left out, and why, and what that saved"
     )
+    _add_force(run, "FILE.h5, if it is not a trace")
     run.set_defaults(command=_run)
     _add_export(commands)
     _add_sweep(commands)
@@ -83,6 +85,7 @@ def _parser() -> argparse.ArgumentParser:
     build.add_argument(
         "--fmi", type=int, choices=(2, 3), default=2, help="standard of a native FMU; 2 by default"
     )
+    _add_force(build, "FMUs of other makers in DIR")
     build.set_defaults(command=_build)
 
     listing = commands.add_parser("list", help="list what there is, or describe one FMU or machine")
@@ -104,6 +107,7 @@ def _parser() -> argparse.ArgumentParser:
 
     validate = commands.add_parser("validate", help="compare all that is published with what is computed")
     validate.add_argument("--output", type=Path, default=Path("results"), metavar="DIR")
+    _add_force(validate, "files in DIR that are neither such a report nor pictures")
     validate.set_defaults(command=_validate)
     return parser
 
@@ -113,6 +117,10 @@ def _add_set(command: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
         help="a value that differs from the scene's, such as shaft.speed=685rpm",
     )  # fmt: skip
+
+
+def _add_force(command: argparse.ArgumentParser, what: str) -> None:
+    command.add_argument("--force", action="store_true", help=f"replace {what}")
 
 
 def _add_export(commands: Any) -> None:
@@ -126,6 +134,7 @@ def _add_export(commands: Any) -> None:
     export.add_argument(
         "--platform", metavar="NAME[,NAME]", help="of native FMUs: linux64,win64,darwin64; all by default"
     )
+    _add_force(export, "FILE.ssp, if it is not a system package of loomfmu")
     export.set_defaults(command=_export)
 
 
@@ -160,7 +169,7 @@ def _export(options: argparse.Namespace) -> int:
     chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
     platforms = native_builder.check_platforms(tuple(chosen))
     loaded = scene.load(options.scene, _overrides(options))
-    for warning in ssp.export(loaded, options.ssp, options.flavour, platforms):
+    for warning in ssp.export(loaded, options.ssp, options.flavour, platforms, options.force):
         print(f"warning: {warning}", file=sys.stderr)
     print(options.ssp)
     return 0
@@ -171,7 +180,10 @@ def _run(options: argparse.Namespace) -> int:
 
     overrides = _overrides(options)
     flavour = "native" if options.native else "live"
-    result = run(options.scene, set=overrides, output=options.output, progress=True, flavour=flavour)
+    result = run(
+        options.scene, set=overrides, output=options.output, progress=True, flavour=flavour,
+        overwrite=options.force,
+    )  # fmt: skip
     for warning in result.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     scene = result.scene
@@ -223,9 +235,9 @@ def _build(options: argparse.Namespace) -> int:
     for name in options.names or COMPONENTS:
         if options.native:
             output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
-            print(native_builder.build_native(name, output, platforms, options.fmi))
+            print(native_builder.build_native(name, output, platforms, options.fmi, options.force))
         else:
-            print(builder.build(name, options.output or Path("build/fmus")))
+            print(builder.build(name, options.output or Path("build/fmus"), options.force))
     return 0
 
 
@@ -252,7 +264,7 @@ def _init(options: argparse.Namespace) -> int:
 def _validate(options: argparse.Namespace) -> int:
     from .validation import plots, report
 
-    for path in report.write(options.output):
+    for path in report.write(options.output, options.force):
         print(path)
     if not plots.available():
         print('the plots are left out: they need matplotlib, pip install "loomfmu[plot]"', file=sys.stderr)
@@ -274,6 +286,10 @@ def _summarise(path: str) -> int:
         attributes = trace.attributes
         ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
         print(f"{attributes['title']} ({attributes['software']}, {trace.status}{ended})")
+        if "command" in attributes:
+            print(f"run by: {attributes['command']}")
+        for key, value in json.loads(attributes.get("set", "{}")).items():
+            print(f"differs from the scene: {key} = {value}")
         turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
         end = trace.time[-1] if trace.rows else 0.0
         print(f"{trace.rows} samples over {end:.6g} s, {turned:.4g} revolutions")

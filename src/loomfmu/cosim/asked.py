@@ -1,7 +1,6 @@
 """What is asked of a scene: the signals that it records and that its claims need, checked before the run."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from ..errors import LoomfmuError, suggestion
 from .claims import check, check_values, names_parameter, signals_of
@@ -49,6 +48,8 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
     if name not in known:
         raise LoomfmuError(f"claim: bound = {name!r} is no parameter{suggestion(name, known)}")
+    if variable not in scene.instances[instance].effective():
+        raise LoomfmuError(f"claim: bound = {name!r} has no effect in this scene: {instance} does not use it")
     wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
@@ -81,15 +82,3 @@ def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
             rate = port.rate if port.causality == "output" else None
             signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
     return list(names)
-
-
-def parameters(scene: Scene) -> dict[str, dict[str, Any]]:
-    """The parameters of each instance as they are set."""
-    return {
-        name: {
-            port.name: instance.values.get(port.name, port.start or 0)
-            for port in instance.fmu.ports.values()
-            if port.causality == "parameter"
-        }
-        for name, instance in scene.instances.items()
-    }

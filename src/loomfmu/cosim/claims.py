@@ -122,6 +122,14 @@ def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
     return signals
 
 
+def parameters_of(claim: dict[str, Any]) -> list[str]:
+    """The instances whose parameters a claim reads beside those of the signals that it needs."""
+    if claim.get("kind") in ("rapier_in_open_shed", "reed_clear_of_rapier"):
+        return [str(claim.get("belt", "belt"))]
+    bound = claim.get("bound")
+    return [str(bound).partition(".")[0]] if names_parameter("bound", bound) else []
+
+
 PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")
 
 # arguments that are quantities, and their units; a bound's is that of its signal

@@ -1,7 +1,7 @@
 """The instances of a scene: which FMU each is, and the values it starts with."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,13 @@ PARAMETER_SETS = ("machine", "head", "pattern", "component")
 FILES = ("fmu", "units")
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
+# switch of our components -> what counts only while it is on, and what only while it is off
+SWITCHES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "follow_shaft": (tuple(standard_loom.FOLLOWED), ("speed", "start_angle")),
+    "follow_lift": (("lift_fraction", "lift_rate", "lift_acceleration"), ()),
+    "prescribe_length_factor": (("prescribed_length_factor",), ()),
+}
 SHAFTS = ("MainShaft", "DrivenShaft")
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
@@ -101,6 +108,19 @@ class Instance:
         switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
         if self.fmu.ours and switch in self.fmu.ports:
             self.values.setdefault(switch, True)
+
+    def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
+        """Its parameters and inputs at the start, without what is fed and what has no effect."""
+        values: dict[str, Value] = {}
+        for port in self.fmu.ports.values():
+            start = self.values.get(port.name, port.start)
+            if _can_be_set(port) and port.name not in fed and start is not None:
+                values[port.name] = TYPES[port.kind](start)
+        for switch, (when_on, when_off) in SWITCHES.items() if self.fmu.ours else ():
+            if switch in values:
+                for idle in when_off if values[switch] else when_on:
+                    values.pop(idle, None)
+        return values
 
 
 def _can_be_set(port: Port) -> bool:

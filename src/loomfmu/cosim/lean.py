@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .claims import parameters_of
+from .fmus import Value
 from .graph import Wire
 from .instances import Instance
 from .scene import Scene
@@ -72,6 +74,21 @@ def lean(scene: Scene, signals: Iterable[str]) -> Lean:
         shafts=shafts,
         skipped=tuple(_told(scene, instances, fetched, shafts)),
     )
+
+
+def effective(scene: Scene, kept: Lean) -> dict[str, dict[str, Value]]:
+    """The values at the start of every instance that runs, and of those whose parameters the claims read.
+
+    What has no effect is left out: a speed of its own where it follows a shaft, an input that is fed.
+    """
+    read = {name for claim in scene.claims for name in parameters_of(claim)}
+    fed = {wire.sink for wire in scene.wires} | {(d.instance, d.variable) for d in scene.drives}
+    found = {}
+    for name, instance in scene.instances.items():
+        if name in kept.scene.instances or name in kept.shafts or name in read:
+            running = kept.scene.instances.get(name, instance)
+            found[name] = running.effective({variable for owner, variable in fed if owner == name})
+    return found
 
 
 def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:

@@ -7,9 +7,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ..traces import ROWS, Channel, Recording
-from .asked import output_port, parameters
+from .asked import output_port
 from .grid import Grid
-from .lean import Lean, lean
+from .lean import Lean, effective, lean
 from .master import Integers, Interrupted, Master, Reals
 from .scene import Scene
 from .slave import Ended
@@ -60,6 +60,7 @@ def channels(plan: Plan, master: Master) -> list[Channel]:
                 rate=port.rate,
                 meanings=meanings,
                 first_flag=port.first_choice if port.choices else 0,
+                boolean=kind == "Boolean",
             )
         )
     return found
@@ -91,7 +92,7 @@ def remembered(scene: Scene, signals: Sequence[str], grid: Grid) -> Remembered:
     plan = Plan(scene, lean(scene, signals), grid)
     with plan.master() as master:
         master.initialize()
-        recording = Recording(scene.name, channels(plan, master), parameters(scene))
+        recording = Recording(scene.name, channels(plan, master), effective(scene, plan.lean))
         try:
             play(master, recording, lambda _step: None)
         except Interrupted:

@@ -4,27 +4,31 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
-from ..traces import Recording, Trace, TraceWriter
+from ..files import cannot_write, check_target
+from ..traces import PARTIAL, TRACE, Recording, Trace, TraceWriter, partial_of
+from ..traces.disk import check_room, largest, size_text
 from . import scene as scenes
 from . import ssp_read
-from .asked import check_claims, judged_by, parameters, recorded, shaft_angle, with_rates
+from .asked import check_claims, judged_by, output_port, recorded, shaft_angle, with_rates
 from .claims import judge
-from .fmus import FLAVOURS, Fmu, of_component
+from .fmus import FLAVOURS, of_component
 from .grid import Grid, uniform
+from .inputs import files_of
 from .lean import lean
 from .master import Interrupted, Master
 from .play import Plan, channels, play, remembered
+from .provenance import attributes, groups
 from .scene import WINDOWS, Scene
 from .slave import Ended
 from .verdict import Verdict
 from .windows import window_grid
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
+LARGE_TRACE = 300_000_000  # bytes from which its size is told before the run
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,7 @@ def run(
     output: str | Path | None = None,
     progress: bool = False,
     flavour: str = "live",
+    overwrite: bool = False,
 ) -> Result:
     """Co-simulate a scene, record it to HDF5 and judge its claims.
 
@@ -84,8 +89,10 @@ def run(
         scene: path of a scene file or of a system package (.ssp), or a scene that was read before
         set: values that differ from the scene's, such as {"shaft.speed": "685 rpm"}; numbers are SI
         output: path of the trace; `results/<scene>.h5` below the current directory by default
-        progress: show a progress bar on a long run, if standard error is a terminal
+        progress: tell how large a large trace will be, and show a progress bar on a long run, if standard
+            error is a terminal
         flavour: "live" or "native" FMUs
+        overwrite: replace a file at `output` that is not a trace
 
     Raises:
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
@@ -93,15 +100,14 @@ def run(
     """
     scene = _checked(scene, set, flavour)
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
-    if not path.name or path.is_dir():
-        raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
     signals = recorded(scene)
     plan = Plan(scene, lean(scene, signals), _grid(scene, signals))
+    _check_target(plan, path, overwrite, progress)
     with plan.master() as master:
         master.initialize()
         if master.interrupted.value:
             raise KeyboardInterrupt("interrupted before the first step")
-        writer = _writer(plan, master, path)
+        writer = _writer(plan, master, path, flavour)
         try:
             with _bar(plan, progress) as advance:
                 play(master, writer, advance)
@@ -199,8 +205,12 @@ def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
     if isinstance(scene, Scene):
         if not overrides:
             return scene
+        # what it was read with stays, in the order that it would have had on one command line
+        kept = {key: value for key, value in scene.overrides.items() if key not in overrides}
+        overrides = kept | overrides
         if scene.package is None:
-            return scenes.parse(scene.text, scene.name, overrides, scene.directory)
+            made = scenes.parse(scene.text, scene.name, overrides, scene.directory)
+            return replace(made, file=scene.file)
         scene = scene.package
     if Path(scene).suffix.lower() == ".ssp":
         return ssp_read.load(scene, overrides)
@@ -235,44 +245,32 @@ def _finish(scene: Scene, writer: TraceWriter, ended: str) -> tuple[Verdict, ...
             verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
         writer.complete([verdict.as_dict() for verdict in verdicts])
     except OSError as error:
-        raise LoomfmuError(f"{writer.path}: cannot be written ({error.strerror or error})") from None
+        raise cannot_write(writer.path, error) from None
     except LoomfmuError as error:
         raise LoomfmuError(f"{error}; the trace is kept in {writer.partial}") from None
     return verdicts
 
 
-def _writer(plan: Plan, master: Master, path: Path) -> TraceWriter:
-    scene = plan.scene
-    fmus = _fmus(plan.lean.scene)
-    attributes = {
-        "title": scene.title,
-        "scene": scene.text,
-        "software": f"loomfmu {version('loomfmu')}",
-        **(
-            {"steps_per_revolution": str(scene.steps_per_revolution)}
-            if scene.step is None
-            else {"step": f"{scene.step!r} s"}
-        ),
-        "grid": scene.grid,
-        **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
-        **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
-        **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
-    }
+def _check_target(plan: Plan, path: Path, overwrite: bool, told: bool) -> None:
+    """Refuse, before the run, a trace that may not be written there or does not fit; tell of a large one."""
+    inputs = files_of(plan.scene)
+    check_target(path, TRACE, inputs, overwrite)
+    check_target(partial_of(path), PARTIAL, inputs, overwrite)
+    kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
+    size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
+    if told and size > LARGE_TRACE:
+        print(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less", file=sys.stderr)
     try:
-        return TraceWriter(path, attributes, channels(plan, master), parameters(scene))
+        check_room(partial_of(path), size)
     except OSError as error:
-        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error})") from None
+        raise cannot_write(path, error) from None
 
 
-def _fmus(scene: Scene) -> dict[str, Fmu]:
-    """The FMUs of a scene by their names; two that bear one name are told apart by an instance's."""
-    found: dict[str, Fmu] = {}
-    for name, instance in scene.instances.items():
-        fmu = instance.fmu
-        same = found.setdefault(fmu.name, fmu)
-        if same.sha256 != fmu.sha256:
-            found[f"{fmu.name}_{name}"] = fmu
-    return found
+def _writer(plan: Plan, master: Master, path: Path, flavour: str) -> TraceWriter:
+    try:
+        return TraceWriter(path, attributes(plan, flavour), channels(plan, master), groups(plan))
+    except OSError as error:
+        raise cannot_write(path, error) from None
 
 
 @contextmanager

@@ -4,7 +4,7 @@ import fnmatch
 import math
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +26,9 @@ class Scene:
 
     A scene may run by seconds: then `step` is its step, and `revolutions` and `steps_per_revolution` count
     seconds instead of revolutions. `coupling` is how loops are closed, `grid` where the steps are, with
-    `coarse_steps_per_revolution` outside of the windows that the claims look into. `package` is the system
-    package that it was read from, `notes` what the user is to be warned of.
+    `coarse_steps_per_revolution` outside of the windows that the claims look into. `file` or the system
+    package `package` is what it was read from, `overrides` are the values that differ from it, `notes` what
+    the user is to be warned of.
     """
 
     title: str
@@ -46,8 +47,10 @@ class Scene:
     coupling: str = LAGGED
     grid: str = UNIFORM
     coarse_steps_per_revolution: int = 24
+    file: Path | None = None
     package: Path | None = None
     notes: tuple[str, ...] = ()
+    overrides: dict[str, Any] = field(default_factory=dict)
 
     @property
     def speed(self) -> float:
@@ -76,7 +79,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     except (OSError, UnicodeDecodeError) as error:
         raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     try:
-        return parse(text, path.stem, overrides, path.parent)
+        return replace(parse(text, path.stem, overrides, path.parent), file=path)
     except LoomfmuError as error:
         raise LoomfmuError(f"{path}: {error}") from None
 
@@ -99,7 +102,9 @@ def parse(
     wires = wires_of(instances, tables.get("wires", {}))
     for each in wires:
         instances[each.sink[0]].follow(each)
-    scene = assemble(tables, instances, wires, name, text, Path(directory))
+    scene = replace(
+        assemble(tables, instances, wires, name, text, Path(directory)), overrides=dict(overrides or {})
+    )
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     for owner, table in given.items():

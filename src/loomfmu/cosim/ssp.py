@@ -10,40 +10,46 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 from ..errors import LoomfmuError
+from ..files import check_target, write_file, zip_with
 from ..fmi import builder, native_builder
 from ..fmi.xml_text import text_of
 from . import fmus
 from .fmus import Fmu, Port, Value
+from .inputs import files_of
 from .instances import Instance
 from .ports import Definition
 from .scene import Scene
 from .ssp_layout import Box, bends, layout
 from .ssp_xml import FMU, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
 
+PACKAGE = zip_with("a system package of loomfmu", SSD_FILE)
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
 
 Files = dict[str, bytes]
 
 
 def export(
-    scene: Scene, path: Path, flavour: str | None = None, platforms: tuple[str, ...] | None = None
+    scene: Scene,
+    path: Path,
+    flavour: str | None = None,
+    platforms: tuple[str, ...] | None = None,
+    overwrite: bool = False,
 ) -> list[str]:
     """Write a scene as a system package; what other tools will do differently is returned.
 
     `flavour` is "live" or "native", native by default if such FMUs can be built; `platforms` are those of
-    native ones, all by default. The same scene gives the same bytes.
+    native ones, all by default. The same scene gives the same bytes. `overwrite` replaces a file that is
+    not a system package of ours.
 
     Raises:
-        LoomfmuError: an FMU cannot be built, or the scene is a package itself
-        OSError: the file cannot be written
+        LoomfmuError: an FMU cannot be built, the scene is a package itself, or the file cannot be written
     """
     if scene.package is not None:
         raise LoomfmuError(f"{scene.package} is a system package already")
+    inputs = files_of(scene)
+    check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
     content = builder.zipped(contents(scene, flavour or default_flavour(), platforms))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f"{path.name}.partial")
-    temporary.write_bytes(content)
-    temporary.replace(path)
+    write_file(path, content, PACKAGE, inputs, overwrite)
     return [*scene.notes, *_driven(scene), *_enumerated(scene)]
 
 

@@ -111,7 +111,7 @@ class _Package:
         changed = _override(tables, instances, overrides)
         written = self.files[SSD_FILE].decode(errors="replace") if annotation is None else annotation.text
         made = assemble(tables, instances, wires, self.path.stem, written or "", self.path.parent)
-        made = replace(made, package=self.path, notes=(*self.notes, *made.notes))
+        made = replace(made, package=self.path, notes=(*self.notes, *made.notes), overrides=dict(overrides))
         for name, variable in changed:
             check_free(made, name, variable)
         return made

@@ -20,7 +20,7 @@ from .. import units
 from ..errors import LoomfmuError
 from ..traces import Recording
 from . import claims, curves
-from .asked import parameters, shaft_angle, with_rates
+from .asked import shaft_angle, with_rates
 from .graph import step_order
 from .grid import Grid, chosen, period, uniform
 from .lean import lean
@@ -129,7 +129,7 @@ def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     yield period(scene) / scene.coarse_steps_per_revolution, ""
     shaft = scene.instances["shaft"]
     if shaft.fmu.ours and shaft.fmu.name == "MainShaft":
-        values = parameters(scene)["shaft"]
+        values = shaft.effective()
         if values["ripple_amplitude"]:
             order = values["ripple_order"]
             yield period(scene) / (WAVE * order), f"the shaft ripples {order} times in a revolution"

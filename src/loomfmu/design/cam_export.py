@@ -1,14 +1,22 @@
 """A cam for the workshop: as a table, as a drawing, as a program for a milling machine. All in mm."""
 
+from io import StringIO
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import LoomfmuError
+from ..files import starts_with, write_file
 from .cam import Cam, Floats
 from .quantities import Quantity, read, whole
 
+COLUMNS = (
+    "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
+    "curvature_radius_mm",
+)  # fmt: skip
+TABLE = starts_with("a table of a cam", ",".join(COLUMNS).encode())
+DRAWING = starts_with("a DXF drawing", b"  0\nSECTION\n")
 STRAIGHT = 1e4  # mm: an arc of a larger radius is written as a line
 
 
@@ -26,12 +34,11 @@ class Move(NamedTuple):
         return end if self.code == "G1" else f"{end} I{self.i:.4f} J{self.j:.4f}"
 
 
-def write_csv(cam: Cam, path: Path) -> None:
-    """Write the points of profile and cutter's path, with pressure angle and radius of curvature."""
-    names = (
-        "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
-        "curvature_radius_mm",
-    )  # fmt: skip
+def write_csv(cam: Cam, path: Path, overwrite: bool = False) -> None:
+    """Write the points of profile and cutter's path, with pressure angle and radius of curvature.
+
+    `overwrite` replaces a file that is not such a table. Raises LoomfmuError.
+    """
     columns = np.column_stack(
         [
             np.degrees(cam.angle),
@@ -42,14 +49,16 @@ def write_csv(cam: Cam, path: Path) -> None:
         ]
     )
     rows = [",".join(f"{value:.6f}" for value in row) for row in columns]
-    path.write_text("\n".join([",".join(names), *rows, ""]), encoding="utf-8")
+    write_file(path, "\n".join([",".join(COLUMNS), *rows, ""]).encode(), TABLE, overwrite=overwrite)
 
 
-def write_dxf(cam: Cam, path: Path) -> None:
+def write_dxf(cam: Cam, path: Path, overwrite: bool = False) -> None:
     """Write profile, cutter's path and lowest circle as a drawing, each on a layer of its own.
 
+    `overwrite` replaces a file that is not a drawing.
+
     Raises:
-        LoomfmuError: ezdxf is not installed
+        LoomfmuError: ezdxf is not installed, or the file cannot be written
     """
     try:
         from ezdxf.filemanagement import new
@@ -63,7 +72,9 @@ def write_dxf(cam: Cam, path: Path) -> None:
         space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
     drawing.layers.add("LOWEST")
     space.add_circle((0.0, 0.0), 1e3 * cam.lowest_radius, dxfattribs={"layer": "LOWEST"})
-    drawing.saveas(path)
+    text = StringIO()
+    drawing.write(text)
+    write_file(path, text.getvalue().encode(), DRAWING, overwrite=overwrite)
 
 
 def gcode(

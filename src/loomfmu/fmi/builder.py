@@ -2,9 +2,7 @@
 
 import hashlib
 import io
-import os
 import re
-import tempfile
 import uuid
 import zipfile
 from importlib import metadata
@@ -13,6 +11,7 @@ from pathlib import Path
 
 from .. import units
 from ..components import COMPONENTS
+from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
 from . import documentation, live_slave
 from .model_description import FMI_TYPES, model_description
@@ -20,6 +19,7 @@ from .parameter_sets import parameter_files, parameter_note
 from .source import flatten
 from .terminals import terminal_files
 
+FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
 
@@ -37,26 +37,20 @@ def folder(component: type[Component]) -> Path:
     return installed if installed.is_dir() else package.parents[1] / "fmus" / name
 
 
-def build(name: str, directory: Path) -> Path:
-    """Build one FMU into a directory and return its path.
+def build(name: str, directory: Path, overwrite: bool = False) -> Path:
+    """Build one FMU into a directory and return its path. `overwrite` replaces what is not an FMU of ours.
 
-    Raises KeyError for an unknown name and OSError where the directory cannot be written.
+    Raises KeyError for an unknown name and LoomfmuError for a file that cannot be written.
     """
-    return write(name, directory, archive(COMPONENTS[name]))
+    component = COMPONENTS[name]
+    target = file_in(directory, name, overwrite)
+    return write_file(target, archive(component), FMU, overwrite=overwrite)
 
 
-def write(name: str, directory: Path, content: bytes) -> Path:
-    """Write an FMU into a directory, all of it or nothing, and return its path."""
-    directory.mkdir(parents=True, exist_ok=True)
+def file_in(directory: Path, name: str, overwrite: bool) -> Path:
+    """The file of an FMU in a directory. Raises LoomfmuError where it may not be written, before the work."""
     target = directory / f"{name}.fmu"
-    handle, temporary = tempfile.mkstemp(dir=directory, prefix=f".{name}.", suffix=".fmu")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-        Path(temporary).replace(target)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    check_target(target, FMU, overwrite=overwrite)
     return target
 
 

@@ -17,8 +17,9 @@ import fmpy
 
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
+from ..files import write_file
 from ..variables import Component
-from .builder import described, folder, guid, license_of, version, write, zipped
+from .builder import FMU, described, file_in, folder, guid, license_of, version, zipped
 from .fat_binary import fat_binary
 from .model_description import model_description
 from .model_description3 import model_description3
@@ -95,16 +96,23 @@ folder `sources` holds all of it; one command, run in that folder, builds it for
 
 
 def build_native(
-    name: str, directory: Path, platforms: tuple[str, ...] = tuple(PLATFORMS), fmi: int = 2
+    name: str,
+    directory: Path,
+    platforms: tuple[str, ...] = tuple(PLATFORMS),
+    fmi: int = 2,
+    overwrite: bool = False,
 ) -> Path:
     """Build one native FMU of FMI 2 or FMI 3 into a directory and return its path.
 
+    `overwrite` replaces what is not an FMU of ours.
+
     Raises:
         KeyError: an unknown component
-        LoomfmuError: it does not translate, an unknown platform, or no compiler
-        OSError: the directory cannot be written
+        LoomfmuError: it does not translate, an unknown platform, no compiler, or the file cannot be written
     """
-    return write(name, directory, zipped(contents(COMPONENTS[name], platforms, fmi)))
+    component = COMPONENTS[name]
+    target = file_in(directory, name, overwrite)
+    return write_file(target, zipped(contents(component, platforms, fmi)), FMU, overwrite=overwrite)
 
 
 def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:

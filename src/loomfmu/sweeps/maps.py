@@ -1,6 +1,7 @@
 """The picture of a sweep: a column over one axis or two, and where a claim's verdict flips."""
 
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
 from .. import units
+from ..files import PICTURE, write_file
 from .axes import Axis
 from .plan import Plan
 from .ranking import distance
@@ -139,9 +141,9 @@ class _Picture:
         """Write it: whole, or not under that name."""
         if self.handles:
             self.figure.legend(handles=self.handles, loc="outside lower center", fontsize=9)
-        temporary = path.with_name(path.name + ".partial")
-        self.figure.savefig(temporary, format="png", metadata={"Software": None})
-        temporary.replace(path)
+        drawn = BytesIO()
+        self.figure.savefig(drawn, format="png", metadata={"Software": None})
+        write_file(path, drawn.getvalue(), PICTURE)
 
     # ---- two axes of a grid
 

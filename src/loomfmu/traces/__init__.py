@@ -1,8 +1,19 @@
 """Recorded runs: in HDF5, written block by block while a run goes on and read by any tool, or in memory."""
 
 from .chunks import ROWS
+from .kinds import PARTIAL, TRACE
 from .reader import Trace
 from .signals import Channel, Recording, Signals
-from .writer import TraceWriter
+from .writer import TraceWriter, partial_of
 
-__all__ = ["ROWS", "Channel", "Recording", "Signals", "Trace", "TraceWriter"]
+__all__ = [
+    "PARTIAL",
+    "ROWS",
+    "TRACE",
+    "Channel",
+    "Recording",
+    "Signals",
+    "Trace",
+    "TraceWriter",
+    "partial_of",
+]

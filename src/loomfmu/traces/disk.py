@@ -2,7 +2,32 @@
 
 import errno
 import os
+import shutil
 from pathlib import Path
+
+
+def largest(rows: int, reals: int, integers: int) -> int:
+    """Bytes that the signals of a trace take before they are packed, with time and shaft angle."""
+    return rows * (8 * (reals + 2) + 4 * integers)
+
+
+def check_room(path: Path, size: int) -> None:
+    """Raise OSError where a new file of that size under this name would not find the space."""
+    there = next(folder for folder in path.absolute().parents if folder.exists())
+    disk = shutil.disk_usage(there)
+    free = disk.free + (path.stat().st_size if path.exists() else 0)
+    if size > free and disk.total:  # what has no size, such as /proc, cannot tell
+        need, have = size_text(size), size_text(free)
+        raise OSError(errno.ENOSPC, f"it takes up to {need}, and the disk has {have} free")
+
+
+def size_text(size: int) -> str:
+    """A number of bytes as people read it.
+
+    >>> size_text(69_120_000_000), size_text(512_345)
+    ('69.1 GB', '0.5 MB')
+    """
+    return f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{size / 1e6:.1f} MB"
 
 
 def reserve(file: int, size: int) -> None:

@@ -6,7 +6,7 @@ name only once it is complete; until then every block written can be read, even 
 
 import contextlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,13 @@ from .places import replace
 from .signals import Channel, Floats, Integers
 
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
+PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
+
+
+def partial_of(path: Path) -> Path:
+    """What the file of a trace is called until it is complete."""
+    return path.with_name(path.name + ".partial")
 
 
 class TraceWriter:
@@ -30,16 +36,17 @@ class TraceWriter:
     def __init__(
         self,
         path: Path,
-        attributes: dict[str, str],
+        attributes: Mapping[str, Any],
         channels: Sequence[Channel],
-        parameters: dict[str, dict[str, float | int | bool]],
+        groups: Mapping[str, Mapping[str, Any]],
     ):
         self.path = path
-        self.partial = path.with_name(path.name + ".partial")
+        self.partial = partial_of(path)
         self.channels = channels
         self.rows = 0
         self.partial.parent.mkdir(parents=True, exist_ok=True)
-        texts = sum(len(text.encode()) for text in attributes.values())
+        said = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
+        texts = sum(PER_ATTRIBUTE + len(text.encode()) for text in said)
         header = SPARE + texts + PER_DATASET * (len(channels) + 2)
         self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:
@@ -62,7 +69,7 @@ class TraceWriter:
             datasets = [self._channel(channel) for channel in channels]
             self._reals, self._real_columns = self._chosen(datasets, real=True)
             self._integers, self._integer_columns = self._chosen(datasets, real=False)
-            for instance, values in parameters.items():
+            for instance, values in groups.items():
                 self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
         except BaseException:
@@ -89,7 +96,8 @@ class TraceWriter:
     def _channel(self, channel: Channel) -> Any:
         group = self._file.require_group(channel.instance)
         if "time" not in group:
-            group["time"] = self._time  # a hard link: without it xarray loses the axis
+            group["time"] = self._time  # hard links: without the time xarray loses the axis
+            group["shaft_angle"] = self._angle
         dataset = self._dataset(
             f"/{channel.instance}/{channel.variable}",
             "f8" if channel.real else "i4",
@@ -98,6 +106,10 @@ class TraceWriter:
             channel.description,
         )
         dataset.dims[0].attach_scale(self._time)
+        # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
+        dataset.attrs["coordinates"] = "shaft_angle"
+        if channel.boolean:
+            dataset.attrs["dtype"] = "bool"  # xarray reads it so; an enumeration would be texts in MATLAB
         if channel.display != channel.unit:
             dataset.attrs["DISPLAY_UNIT"] = channel.display
         if channel.rate:

@@ -6,6 +6,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..files import PICTURE, check_target, write_file
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -51,19 +53,20 @@ def figures() -> dict[str, tuple[float, Draw]]:
     return plots_weft.FIGURES | plots_dobby.FIGURES | plots_others.FIGURES
 
 
-def write(directory: Path) -> list[Path]:
-    """Draw all figures into a directory."""
+def write(directory: Path, overwrite: bool = False) -> list[Path]:
+    """Draw all figures into a directory; `overwrite` replaces files that are not pictures."""
     import matplotlib
     from matplotlib.figure import Figure
 
-    directory.mkdir(parents=True, exist_ok=True)
+    for name in figures():
+        check_target(directory / name, PICTURE, overwrite=overwrite)
     paths = []
     for name, (height, draw) in figures().items():
         with matplotlib.rc_context(STYLE):
             figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
             draw(figure)
             paths.append(directory / name)
-            _save(figure, paths[-1])
+            write_file(paths[-1], _png(figure), PICTURE, overwrite=overwrite)
     return paths
 
 
@@ -77,8 +80,8 @@ def _palette() -> list[int]:
     return values
 
 
-def _save(figure: "Figure", path: Path) -> None:
-    """Write a figure with a palette, which makes it a third as large, and without a date."""
+def _png(figure: "Figure") -> bytes:
+    """A figure with a palette, which makes it a third as large, and without a date."""
     from PIL import Image
 
     drawn = BytesIO()
@@ -86,4 +89,6 @@ def _save(figure: "Figure", path: Path) -> None:
     palette = Image.new("P", (1, 1))
     palette.putpalette(_palette())
     image = Image.open(drawn).convert("RGB")
-    image.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
+    packed = BytesIO()
+    image.quantize(palette=palette, dither=Image.Dither.NONE).save(packed, format="png", optimize=True)
+    return packed.getvalue()

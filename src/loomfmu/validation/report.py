@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from ..files import check_target, starts_with, write_file
 from . import (
     accuracy,
     belt,
@@ -24,6 +25,7 @@ from . import (
 from .sections import CALCULATION, MEASUREMENT, Chapter, Pair, Section, number
 
 NAME = "validation.md"
+REPORT = starts_with("a report of loomfmu validate", b"# Validation\n")
 
 
 def _share(value: float) -> str:
@@ -91,12 +93,15 @@ def text() -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def write(directory: Path) -> list[Path]:
-    """Write the report into a directory, and its figures beside it if matplotlib is there."""
-    directory.mkdir(parents=True, exist_ok=True)
+def write(directory: Path, overwrite: bool = False) -> list[Path]:
+    """Write the report into a directory, and its figures beside it if matplotlib is there.
+
+    `overwrite` replaces what is neither such a report nor a picture. Raises LoomfmuError.
+    """
     path = directory / NAME
-    path.write_text(text(), encoding="utf-8")
-    return [path, *(plots.write(directory / "validation") if plots.available() else [])]
+    check_target(path, REPORT, overwrite=overwrite)
+    figures = plots.write(directory / "validation", overwrite) if plots.available() else []
+    return [write_file(path, text().encode(), REPORT, overwrite=overwrite), *figures]
 
 
 def _counts(pairs: list[Pair]) -> list[str]:

@@ -1,0 +1,84 @@
+"""How a run was made, as its trace tells it: enough to see what was run, and to run it again."""
+
+import json
+import shlex
+from importlib.metadata import version
+from typing import Any
+
+from .fmus import Fmu
+from .instances import Instance
+from .lean import effective
+from .play import Plan
+from .scene import Scene
+
+
+def attributes(plan: Plan, flavour: str) -> dict[str, str]:
+    """What the root of a trace says of the run.
+
+    `set` are the values that differ from the scene, as they were given; `command` repeats the run.
+    """
+    scene = plan.scene
+    fmus = _fmus(plan.lean.scene)
+    return {
+        "title": scene.title,
+        "scene": scene.text,
+        "set": json.dumps(scene.overrides, default=_plain),
+        "flavour": flavour,
+        **_command(scene, flavour),
+        "software": f"loomfmu {version('loomfmu')}",
+        **(
+            {"steps_per_revolution": str(scene.steps_per_revolution)}
+            if scene.step is None
+            else {"step": f"{scene.step!r} s"}
+        ),
+        "grid": scene.grid,
+        **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
+        **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
+        **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
+    }
+
+
+def groups(plan: Plan) -> dict[str, dict[str, Any]]:
+    """What the group of each instance says: what it is, its values at the start in SI, and their units."""
+    instances = plan.scene.instances
+    return {
+        name: _said(instances[name], list(values)) | values
+        for name, values in effective(plan.scene, plan.lean).items()
+    }
+
+
+def _said(instance: Instance, values: list[str]) -> dict[str, str]:
+    ports = instance.fmu.ports
+    units = {name: ports[name].unit for name in values if ports[name].kind == "Real" and ports[name].has_unit}
+    return {
+        "fmu": instance.fmu.name,
+        **instance.published,
+        "parameter_units": json.dumps(units),
+    }
+
+
+def _command(scene: Scene, flavour: str) -> dict[str, str]:
+    """The command that repeats a run, if its scene was read from a file."""
+    source = scene.package or scene.file
+    if source is None:
+        return {}
+    words = ["loomfmu", "run", str(source)]
+    for key, value in scene.overrides.items():
+        words += ["--set", f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"]
+    return {"command": shlex.join([*words, *(["--native"] if flavour == "native" else [])])}
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as Python's own."""
+    return value.item()
+
+
+def _fmus(scene: Scene) -> dict[str, Fmu]:
+    """The FMUs of a scene by their names; two that bear one name are told apart by an instance's."""
+    found: dict[str, Fmu] = {}
+    for name, instance in scene.instances.items():
+        fmu = instance.fmu
+        same = found.setdefault(fmu.name, fmu)
+        if same.sha256 != fmu.sha256:
+            found[f"{fmu.name}_{name}"] = fmu
+    return found

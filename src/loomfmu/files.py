@@ -1,0 +1,95 @@
+"""Files that are written: whole or not at all, and never over an input, a device or somebody else's file."""
+
+import secrets
+import stat
+import zipfile
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from .errors import LoomfmuError
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What files that we write are called, and how an existing one is known to be ours."""
+
+    name: str
+    ours: Callable[[Path], bool]
+
+
+def starts_with(name: str, start: bytes) -> Kind:
+    """The kind of files that begin so."""
+
+    def ours(path: Path) -> bool:
+        with path.open("rb") as file:
+            return file.read(len(start)) == start
+
+    return Kind(name, ours)
+
+
+PICTURE = starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n")
+
+
+def zip_with(name: str, member: str) -> Kind:
+    """The kind of archives of which a member names this package as its maker."""
+
+    def ours(path: Path) -> bool:
+        try:
+            with zipfile.ZipFile(path) as archive:
+                return b'generationTool="loomfmu' in archive.read(member)
+        except (zipfile.BadZipFile, KeyError, RuntimeError, NotImplementedError):
+            return False
+
+    return Kind(name, ours)
+
+
+def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:
+    """Refuse a path that may not be written.
+
+    Nothing ever replaces an input of the command or what is no regular file; only `overwrite` replaces a
+    file that is not of the kind to be written. Raises LoomfmuError.
+    """
+    try:
+        if any(given.exists() and path.exists() and path.samefile(given) for given in inputs):
+            raise LoomfmuError(f"{path}: cannot be written (it is an input of this command)")
+        if not path.name or path.is_dir():
+            raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
+        folder = next((folder for folder in path.parents if folder.exists()), path)
+        if folder != path and not folder.is_dir():
+            raise LoomfmuError(f"{path}: cannot be written ({folder} is not a directory)")
+        if not path.exists():
+            return
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise LoomfmuError(f"{path}: cannot be written (it is a device or a pipe, not a file)")
+        if overwrite or path.stat().st_size == 0 or kind.ours(path):
+            return
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    raise LoomfmuError(
+        f"{path}: it exists and is not {kind.name}; --force (overwrite=True in Python) replaces it"
+    )
+
+
+def write_file(
+    path: Path, content: bytes, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False
+) -> Path:
+    """Write a file, whole or not at all, and return its path. Raises LoomfmuError naming it."""
+    check_target(path, kind, inputs, overwrite)
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with temporary.open("xb") as file:
+                file.write(content)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    return path
+
+
+def cannot_write(path: Path, error: OSError) -> LoomfmuError:
+    """The message about a file that cannot be written; what the system says need not name it."""
+    return LoomfmuError(f"{path}: cannot be written ({error.strerror or error})")

@@ -1,0 +1,27 @@
+"""How the files of traces are known."""
+
+from pathlib import Path
+
+from ..errors import LoomfmuError
+from ..files import Kind
+from .reader import Trace
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+def _is_trace(path: Path) -> bool:
+    try:
+        Trace(path)
+    except LoomfmuError:
+        return False
+    return True
+
+
+def _is_partial(path: Path) -> bool:
+    """Whether a run could have left a file: a kill may come when only its space is reserved."""
+    with path.open("rb") as file:
+        return file.read(len(SIGNATURE)) in (SIGNATURE, bytes(len(SIGNATURE)))
+
+
+TRACE = Kind("a trace of loomfmu", _is_trace)
+PARTIAL = Kind("what an interrupted run of loomfmu left", _is_partial)
