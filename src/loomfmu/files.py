@@ -28,6 +28,7 @@ def starts_with(name: str, start: bytes) -> Kind:
     return Kind(name, ours)
 
 
+ANY = Kind("", lambda _path: True)  # what else tells whose it is
 PICTURE = starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n")
 
 

@@ -222,6 +222,12 @@ def test_corner_where_the_turn_closes_is_judged():
 def test_table_of_points(tmp_path):
     cam = design_cam(points=360)
     write_csv(cam, tmp_path / "cam.csv")
+    write_csv(cam, tmp_path / "cam.csv")  # over its own kind
+    (tmp_path / "costs.csv").write_text("my own")
+    with pytest.raises(LoomfmuError, match=r"costs\.csv: it exists and is not a table of a cam"):
+        write_csv(cam, tmp_path / "costs.csv")
+    write_csv(cam, tmp_path / "costs.csv", overwrite=True)
+    assert (tmp_path / "costs.csv").read_bytes() == (tmp_path / "cam.csv").read_bytes()
     rows = list(csv.DictReader((tmp_path / "cam.csv").read_text(encoding="utf-8").splitlines()))
     assert len(rows) == 361
     for k in (0, 90, 300):
@@ -237,6 +243,7 @@ def test_drawing(tmp_path):
     from ezdxf.filemanagement import readfile
 
     cam = design_cam(points=360)
+    write_dxf(cam, tmp_path / "cam.dxf")
     write_dxf(cam, tmp_path / "cam.dxf")
     drawing = readfile(tmp_path / "cam.dxf")
     assert drawing.header["$INSUNITS"] == 4  # mm

@@ -41,9 +41,21 @@ def plan(tmp_path: Path) -> Plan:
 def batch(rows: range) -> Batch:
     """Made-up results; every fifth row could not be run."""
     results = [
-        [None] * 9 + [f"row {row}"]
+        [None] * 10 + [f"row {row}"]
         if row % 5 == 4
-        else [70.0 + row, True, 0.1 * row, 0.0, row < 20, 70.0 + row, 60.0, row < 20, None, None]
+        else [
+            70.0 + row,
+            True,
+            0.1 * row,
+            0.0,
+            row < 20,
+            70.0 + row,
+            60.0,
+            row < 20,
+            None if row < 20 else "second",
+            None,
+            None,
+        ]
         for row in rows
     ]
     return Batch(results, LABELS if any(row % 5 != 4 for row in rows) else (), 0.01)
@@ -95,7 +107,9 @@ def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: Plan, 
         assert store.left() == [range(10, 24)]
         store.write(range(10, 24), batch(range(10, 24)))
         table = store.finish()
-    assert sorted(os.listdir(place)) == ["batches", "lock", "sweep.json", "table.parquet"]
+        store.tidy()
+        assert sorted(os.listdir(place)) == ["lock", "sweep.json", "table.parquet"]
+    assert sorted(os.listdir(place)) == ["sweep.json", "table.parquet"]
     assert not list(place.rglob("*.partial"))
     assert table["row"].to_pylist() == list(range(ROWS))
     assert pq.read_table(place / "table.parquet").equals(table, check_metadata=True)
@@ -135,7 +149,7 @@ def test_another_sweep_is_refused_until_it_is_thrown_away(plan: Plan, tmp_path: 
     assert sorted(path.relative_to(place) for path in place.rglob("*")) == before
     with opened(place, plan, "other", restart=True) as store:
         assert store.left() == [range(ROWS)]
-    assert sorted(os.listdir(place)) == ["batches", "lock", "notes.txt", "sweep.json"]
+    assert sorted(os.listdir(place)) == ["batches", "notes.txt", "sweep.json"]
 
 
 def test_results_without_identity_are_not_taken_for_ours(plan: Plan, tmp_path: Path) -> None:
@@ -176,3 +190,32 @@ def test_a_second_sweep_is_kept_out_and_a_killed_one_is_not_in_the_way(plan: Pla
     holder.stdout.close()
     with opened(place, plan, "one", restart=False) as store:
         assert store.left() == [range(ROWS)]
+
+
+RIVAL = """
+import sys, time
+from pathlib import Path
+from loomfmu import LoomfmuError
+from loomfmu.sweeps.store import _locked
+place, got, until = Path(sys.argv[1]), 0, time.monotonic() + 2.0
+while time.monotonic() < until:
+    try:
+        with _locked(place):
+            (place / "mine").mkdir()  # fails where two have the lock
+            (place / "mine").rmdir()
+            got += 1
+    except LoomfmuError:
+        pass
+print(got)
+"""
+
+
+def test_a_lock_that_is_deleted_by_its_holder_is_held_by_one_at_a_time(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", RIVAL, str(tmp_path)]
+    rivals = [
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(3)
+    ]
+    for rival in rivals:
+        printed, errors = rival.communicate(timeout=60)
+        assert errors == "" and int(printed) > 0
+    assert os.listdir(tmp_path) == []

@@ -169,7 +169,7 @@ def test_a_sweep_in_which_nothing_runs_is_still_a_table(
     assert "2 combinations: 0 hold, 0 fail, 2 could not be run" in printed
     assert "row 0 could not be run (weft.coupler_length = 500 mm): weft: the planar four-bar" in printed
     assert "no map: no row has a value of belt.lowest_speed_limit there" in printed
-    assert sorted(os.listdir(tmp_path / "out")) == ["batches", "lock", "sweep.json", "table.parquet"]
+    assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
     assert pq.read_table(tmp_path / "out" / "table.parquet").num_rows == 2
 
 
@@ -213,7 +213,8 @@ def test_what_is_wrong_with_the_machine_and_not_with_a_row_ends_the_sweep(
 # ---- processes
 
 
-def test_two_processes_make_the_table_of_one(tmp_path: Path) -> None:
+def test_two_processes_make_the_table_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("loomfmu.sweeps.store.Store.tidy", lambda _store: None)  # else none is left to see
     path = written(
         tmp_path, BROKEN + '[sample]\ncount = 20\nseed = 2\n"belt.head_mass" = [0.1, 0.2]\n' + NO_TRACES
     )
@@ -298,11 +299,45 @@ def test_a_finished_sweep_runs_nothing_again(tmp_path: Path, capsys: pytest.Capt
     arguments = ["sweep", str(path), "--output", str(tmp_path / "out"), "--processes", "1"]
     assert main(arguments) == 1
     assert "Swept: 6 combinations: 2 hold" in capsys.readouterr().out
-    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "out" / "batches").iterdir()}
-    (tmp_path / "out" / "table.parquet").unlink()
+    table = tmp_path / "out" / "table.parquet"
+    before, written_at = table.read_bytes(), table.stat().st_mtime_ns
+    assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
     assert main(arguments) == 1
     assert "Swept: 6 combinations (6 of them run before): 2 hold" in capsys.readouterr().out
-    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "out" / "batches").iterdir()} == before
+    assert (table.read_bytes(), table.stat().st_mtime_ns) == (before, written_at)
+    assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
+
+
+def test_the_first_claim_that_fails_has_a_column(tmp_path: Path) -> None:
+    scene = SCENE + '[[claims]]\nkind = "above"\nsignal = "belt.lowest_margin"\nbound = 2.0\n'
+    path = written(tmp_path, GRID + NO_TRACES, scene=scene)
+    table = loomfmu.sweep(path, processes=1, output=tmp_path / "out").table
+    for row in table.to_pylist():
+        failing = [number for number in (1, 2, 3) if not row[f"claim_{number}.holds"]]
+        words = {1: "the belt does not buckle", 2: "the loom runs below its safe speed", 3: "stays above"}
+        assert row["first_failing_claim"] == words[failing[0]]
+    assert len(set(table["first_failing_claim"].to_pylist())) > 1
+    held = loomfmu.sweep(written(tmp_path, GRID + NO_TRACES), processes=1, output=tmp_path / "two").table
+    for row in held.to_pylist():
+        assert (row["first_failing_claim"] is None) == row["holds"]
+
+
+def test_a_sweep_writes_over_nothing_that_it_reads_or_that_is_not_its_own(tmp_path: Path) -> None:
+    path = written(tmp_path, GRID + NO_TRACES)
+    for name in ("table.parquet", "sweep.json", "lock", "map.png"):
+        own = path.rename(tmp_path / name)
+        with pytest.raises(LoomfmuError, match=rf"{name}: cannot be written \(it is an input of this"):
+            loomfmu.sweep(own, processes=1, output=tmp_path, restart=True)
+        path = own.rename(tmp_path / "swept.toml")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "lock").write_text("my package manager's")
+    with pytest.raises(LoomfmuError, match="lock: it is not the lock of a sweep"):
+        loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True)
+    assert os.listdir(tmp_path / "out") == ["lock"]
+    (tmp_path / "out" / "lock").rename(tmp_path / "out" / "map.png")
+    with pytest.raises(LoomfmuError, match="it holds results of no known sweep"):
+        loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    assert os.listdir(tmp_path / "out") == ["map.png"]
 
 
 @pytest.mark.parametrize("change", ["sweep", "scene", "machine data"])

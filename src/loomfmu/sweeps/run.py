@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..cosim.inputs import files_of
 from ..errors import LoomfmuError, path_of, shown
 from . import plan as plans
 from .plan import Plan
@@ -119,7 +120,8 @@ def sweep(
     job = job_of(plan)
     directory = path_of(output, "output") if output is not None else Path("results") / plan.name
     try:
-        with opened(directory, plan, _fingerprint(plan, job), restart) as store, ExitStack() as pools:
+        fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
+        with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
             here = _local(plan.rows, processes)
             pools.callback(here.close)
             rows_pool = _cluster(scheduler, pools) if scheduler else here
@@ -127,6 +129,7 @@ def sweep(
             table = store.finish()
             picture = _draw(store, table)
             traces = _run_traces(store, job, table, here, progress)
+            store.tidy()
     except KeyboardInterrupt:
         raise KeyboardInterrupt(
             f"interrupted; what is finished is kept in {directory}, the same command goes on from there"

@@ -1,11 +1,11 @@
-"""The directory of a sweep: its finished batches, each a file that is there whole or not at all.
+"""The directory of a sweep: what is finished, each a file that is there whole or not at all.
 
 sweep.json        which sweep it is
-batches/          rows_000000_000041.parquet ...
+batches/          rows_000000_000041.parquet ...; gone when the sweep is done
 table.parquet     all rows
 traces/           row_000017.h5 ...
 map.png
-lock              held while a sweep writes there; a process that ends, however, lets it go
+lock              there while a sweep writes; a process that ends, however, lets it go
 """
 
 import contextlib
@@ -13,7 +13,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,12 +21,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import LoomfmuError
+from ..files import ANY, cannot_write, check_target
 from .plan import Plan
-from .tables import table_of, whole_table
+from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
 PARTIAL = ".partial"
+LOCK, IDENTITY = "lock", "sweep.json"
 FAR = 1 << 30  # where Windows locks a byte: a locked byte cannot be read
 
 
@@ -55,6 +57,8 @@ class Store:
 
     def left(self) -> list[range]:
         """Rows that are not."""
+        if self.table_path.exists():
+            return []
         gaps, end = [], 0
         for rows in [*self.done(), range(self.plan.rows, self.plan.rows)]:
             if rows.start > end:
@@ -67,16 +71,30 @@ class Store:
 
     def write(self, rows: range, batch: Batch) -> None:
         """Keep a finished batch."""
+        self.batches.mkdir(exist_ok=True)
         _write(table_of(self.plan, rows, batch), self._path(rows))
 
     def finish(self) -> Any:
-        """The table of all rows, written and returned."""
-        parts = [self._read(self._path(rows)) for rows in self.done()]
-        table = whole_table(self.plan, parts)
-        if not table["row"].equals(pa.chunked_array([range(self.plan.rows)], pa.int64())):
-            raise LoomfmuError(f"{self.batches}: rows are missing or double; --restart runs them all again")
-        _write(table, self.table_path)
+        """The table of all rows, written unless it was, and returned."""
+        finished = self.table_path.exists()
+        if finished:
+            table = self._read(self.table_path)
+        else:
+            table = whole_table(self.plan, [self._read(self._path(rows)) for rows in self.done()])
+        numbers = pa.chunked_array([range(self.plan.rows)], pa.int64())
+        if table.column_names != schema_of(self.plan, ()).names or not table["row"].equals(numbers):
+            where = self.table_path if finished else self.batches
+            raise LoomfmuError(f"{where}: rows are missing or double; --restart runs them all again")
+        if not finished:
+            _write(table, self.table_path)
         return table
+
+    def tidy(self) -> None:
+        """Delete the batches of a sweep that is done: the table has their rows."""
+        for path in self.batches.glob("rows_*.parquet"):
+            path.unlink()
+        with contextlib.suppress(OSError):  # it holds something that is not ours, or is gone
+            self.batches.rmdir()
 
     def _read(self, path: Path) -> Any:
         try:
@@ -93,7 +111,7 @@ class Store:
         patterns = (("batches", "rows_*.parquet"), ("traces", "row_*.h5"), ("traces", "row_*.h5.partial"))
         own += [path for folder, pattern in patterns for path in (self.directory / folder).glob(pattern)]
         # its identity last: what a kill leaves over is still known
-        for path in [*own, *self.partial(), self.directory / "sweep.json"]:
+        for path in [*own, *self.partial(), self.directory / IDENTITY]:
             path.unlink(missing_ok=True)
 
     def partial(self) -> list[Path]:
@@ -103,27 +121,30 @@ class Store:
 
 
 @contextlib.contextmanager
-def opened(directory: Path, plan: Plan, fingerprint: str, restart: bool) -> Iterator[Store]:
-    """The store of a sweep, ours alone, with what was finished before.
+def opened(
+    directory: Path, plan: Plan, fingerprint: str, restart: bool, inputs: Iterable[Path] = ()
+) -> Iterator[Store]:
+    """The store of a sweep, ours alone, with what was finished before. None of `inputs` is written.
 
     Raises:
         LoomfmuError: another sweep is there, finished or not, or is running there now
     """
-    directory.mkdir(parents=True, exist_ok=True)
     store = Store(directory, plan)
+    for target in (store.table_path, store.map_path, directory / LOCK, directory / IDENTITY):
+        check_target(target, ANY, inputs)
+    directory.mkdir(parents=True, exist_ok=True)
     with _locked(directory):
         if restart:
             store.clear()
         _check_identity(store, fingerprint)
         for path in store.partial():
             path.unlink(missing_ok=True)
-        store.batches.mkdir(exist_ok=True)
         yield store
 
 
 def _check_identity(store: Store, fingerprint: str) -> None:
     """Refuse to mix two sweeps."""
-    path = store.directory / "sweep.json"
+    path = store.directory / IDENTITY
     if path.exists():
         try:
             known = json.loads(path.read_text(encoding="utf-8"))["fingerprint"]
@@ -134,7 +155,7 @@ def _check_identity(store: Store, fingerprint: str) -> None:
                 f"{store.directory}: it holds another sweep, or its file, its scene, an FMU or loomfmu has"
                 " changed since; --restart throws that away, --output names another place"
             )
-    elif store.done() or store.table_path.exists():
+    elif store.done() or store.table_path.exists() or store.map_path.exists():
         raise LoomfmuError(
             f"{store.directory}: it holds results of no known sweep; --output names another place"
         )
@@ -152,29 +173,56 @@ def _write(table: Any, path: Path) -> None:
 
 def _replace(path: Path, content: Any) -> None:
     temporary = path.with_name(path.name + PARTIAL)
-    with temporary.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    temporary.replace(path)
+    try:
+        with temporary.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        raise cannot_write(path, error) from None
 
 
 @contextlib.contextmanager
 def _locked(directory: Path) -> Iterator[None]:
     """Keep other sweeps out of a directory. The system frees the lock with the process that has it."""
-    with (directory / "lock").open("a+") as file:
-        try:
-            _lock(file)
-        except (BlockingIOError, PermissionError):
-            file.seek(0)
-            holder = file.read(20).strip()
-            who = f" (process {holder})" if holder else ""
-            raise LoomfmuError(f"{directory}: another sweep is running there{who}") from None
+    path = directory / LOCK
+    with _held(path) as file:
         file.seek(0)
         file.truncate()
         file.write(str(os.getpid()))
         file.flush()
-        yield
+        try:
+            yield
+        finally:
+            with contextlib.suppress(PermissionError):  # Windows deletes no file that is open
+                path.unlink(missing_ok=True)
+    with contextlib.suppress(PermissionError):
+        if sys.platform == "win32":
+            path.unlink(missing_ok=True)
+
+
+def _held(path: Path) -> IO[str]:
+    """The lock of a directory, open and ours."""
+    while True:
+        file = path.open("a+", errors="replace")
+        try:
+            file.seek(0)
+            holder = file.read(20).strip()
+            if holder and not holder.isdecimal():
+                raise LoomfmuError(f"{path}: it is not the lock of a sweep; --output names another place")
+            _lock(file)
+            with contextlib.suppress(FileNotFoundError):
+                if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                    return file
+            file.close()  # its last holder has deleted it meanwhile
+        except (BlockingIOError, PermissionError):
+            file.close()
+            who = f" (process {holder})" if holder else ""
+            raise LoomfmuError(f"{path.parent}: another sweep is running there{who}") from None
+        except BaseException:
+            file.close()
+            raise
 
 
 if sys.platform == "win32":

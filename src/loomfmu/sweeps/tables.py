@@ -1,9 +1,9 @@
 """The table of a sweep: its columns, and what they and the whole say of themselves.
 
 One row for each combination: its number, the value on each axis, final values of signals, of each claim
-whether it holds, its worst value and its bound, whether all hold, warnings, and why a row could not be run.
-All in SI; a column's metadata has `unit`, `display_unit` and `description`, the table's the texts of sweep
-and scene.
+whether it holds, its worst value and its bound, whether all hold, the first one that fails, warnings, and
+why a row could not be run. All in SI; a column's metadata has `unit`, `display_unit` and `description`, the
+table's the texts of sweep and scene.
 """
 
 import json
@@ -56,6 +56,7 @@ def schema_of(plan: Plan, labels: tuple[Label, ...]) -> Any:
         fields += _claim(number, labels[number] if labels else None)
     fields += [
         pa.field("holds", pa.bool_(), metadata={"description": "Whether all claims hold"}),
+        pa.field("first_failing_claim", pa.string(), metadata={"description": "The first claim that fails"}),
         pa.field("warnings", pa.string(), metadata={"description": "What FMUs and master warned of"}),
         pa.field("error", pa.string(), metadata={"description": "Why the combination could not be run"}),
     ]

@@ -50,7 +50,7 @@ class Label:
 @dataclass(frozen=True)
 class Batch:
     """Results of some rows, each: final values, then whether it holds, worst value and bound of each claim,
-    whether all hold, warnings, and what went wrong; None where there is none.
+    whether all hold, the first claim that fails, warnings, and what went wrong; None where there is none.
 
     `labels` are empty if no row could be run. `seconds` each row took on average.
     """
@@ -122,14 +122,17 @@ def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], t
         return failed(job, scene, str(error)), ()
     except Exception as error:  # one row of thousands must not end the others
         return failed(job, scene, f"{type(error).__name__}: {error}"), ()
-    for verdict in found.claims:
+    first = None
+    for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
         values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound)]
-    return [*values, found.holds, "; ".join(found.warnings) or None, None], found.claims
+        if not verdict.holds and first is None:
+            first = str(claim.get("name") or verdict.claim)
+    return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
 
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * (len(job.values) + 3 * len(scene.claims) + 2) + [reason]
+    return [None] * (len(job.values) + 3 * len(scene.claims) + 3) + [reason]
 
 
 def _finite(value: float) -> float | None:
