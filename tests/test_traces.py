@@ -170,6 +170,7 @@ steps_per_revolution = 60
 [loom]
 machine = "WL680-3600"
 head = "G6300 left"
+weave = "10/01"
 [shaft]
 ripple_amplitude = 0.02
 [belt]
@@ -204,13 +205,40 @@ def test_a_trace_says_how_to_repeat_it(
         assert set(other) == set(first.trace)
         for signal_ in other:
             np.testing.assert_array_equal(other[signal_], first.trace[signal_])
-    # a scene that was read with values of its own keeps them
+    # a scene that was read with values of its own tells them too; others take their place
     read = scenes.load("a loom.toml", set_)
-    third = loomfmu.run(read, set={"shaft.speed": "450 rpm"}, output="4.h5")
-    assert json.loads(third.trace.attributes["set"]) == set_ | {"shaft.speed": "450 rpm"}
-    assert third.trace.parameter("belt.guide_clearance") == 0.00047
+    third = loomfmu.run(read, output="4.h5")
+    assert (third.trace.attributes["set"], third.trace.attributes["command"]) == (
+        said["set"],
+        said["command"],
+    )
+    other = loomfmu.run(read, set={"shaft.speed": "450 rpm"}, output="5.h5")
+    assert json.loads(other.trace.attributes["set"]) == {"shaft.speed": "450 rpm"}
+    assert other.trace.parameter("belt.guide_clearance") == 0.0003
     with pytest.raises(LoomfmuError, match=r"no parameter 'belt\.head' is recorded"):
         third.trace.parameter("belt.head")
+
+
+IDLE = {  # what is said of the loom, and values that have no effect then
+    "[shaft]\nripple_amplitude = 0.02": {"belt.speed": 50.0, "weft.start_angle": 1.0, "dobby.speed": 9.0},
+    "[belt]\nfollow_shaft = false\nshaft_angle = 0.1": {"belt.shaft_angle": 0.7},
+    "[belt]\nprescribe_length_factor = false": {"belt.prescribed_length_factor": 0.7},
+    "[belt]\nprescribe_length_factor = true": {"belt.guide_clearance": 0.9e-3},
+    "[heald_1]\nfollow_lift = false\nlift_rate = 0.1": {"heald_1.lift_rate": 0.7},
+}
+
+
+@pytest.mark.parametrize("said", IDLE)
+def test_what_is_left_out_had_no_effect(tmp_path: Path, said: str, fmu_cache: None) -> None:
+    scene = tmp_path / "loom.toml"
+    scene.write_text(SHARED_SPEED.partition("[shaft]")[0] + said + "\n")
+    one = loomfmu.run(scene, output=tmp_path / "1.h5").trace
+    two = loomfmu.run(scene, set=IDLE[said], output=tmp_path / "2.h5").trace
+    for name in IDLE[said]:
+        with pytest.raises(LoomfmuError, match="no parameter"):
+            two.parameter(name)
+    for signal_ in one:
+        np.testing.assert_array_equal(one[signal_], two[signal_])
 
 
 def test_choices_are_flags_with_their_own_numbers(tmp_path: Path) -> None:

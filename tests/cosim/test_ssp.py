@@ -288,7 +288,7 @@ CASES = {
     ),
     "directory": (
         ["export", str(DEMO), "--ssp", "text.ssp/x.ssp", "--flavour", "live"],
-        "text.ssp: File exists",
+        "text.ssp/x.ssp: cannot be written (text.ssp is not a directory)",
     ),
 }
 

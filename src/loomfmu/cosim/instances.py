@@ -38,7 +38,7 @@ TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Bo
 SWITCHES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "follow_shaft": (tuple(standard_loom.FOLLOWED), ("speed", "start_angle")),
     "follow_lift": (("lift_fraction", "lift_rate", "lift_acceleration"), ()),
-    "prescribe_length_factor": (("prescribed_length_factor",), ()),
+    "prescribe_length_factor": (("prescribed_length_factor",), ("guide_clearance",)),
 }
 SHAFTS = ("MainShaft", "DrivenShaft")
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}

@@ -205,9 +205,6 @@ def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
     if isinstance(scene, Scene):
         if not overrides:
             return scene
-        # what it was read with stays, in the order that it would have had on one command line
-        kept = {key: value for key, value in scene.overrides.items() if key not in overrides}
-        overrides = kept | overrides
         if scene.package is None:
             made = scenes.parse(scene.text, scene.name, overrides, scene.directory)
             return replace(made, file=scene.file)
