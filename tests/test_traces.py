@@ -221,10 +221,10 @@ def test_a_trace_says_how_to_repeat_it(
 
 IDLE = {  # what is said of the loom, and values that have no effect then
     "[shaft]\nripple_amplitude = 0.02": {"belt.speed": 50.0, "weft.start_angle": 1.0, "dobby.speed": 9.0},
-    "[belt]\nfollow_shaft = false\nshaft_angle = 0.1": {"belt.shaft_angle": 0.7},
+    "[belt]\nfollow_shaft = false\n[wires]\n'belt.shaft_angle' = false": {"belt.shaft_angle": 0.7},
     "[belt]\nprescribe_length_factor = false": {"belt.prescribed_length_factor": 0.7},
     "[belt]\nprescribe_length_factor = true": {"belt.guide_clearance": 0.9e-3},
-    "[heald_1]\nfollow_lift = false\nlift_rate = 0.1": {"heald_1.lift_rate": 0.7},
+    "[wires]\n'heald_1.lift_fraction' = false\n'heald_1.lift_rate' = false": {"heald_1.lift_rate": 0.7},
 }
 
 
