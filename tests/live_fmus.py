@@ -48,7 +48,9 @@ class Live:
         self.freed = False
 
     def _log(self, _environment: Any, _instance: bytes, status: int, category: bytes, text: bytes) -> None:
-        self.log.append((status, category.decode(), text.decode()))
+        # the wrapper puts a line of its own before what it could not do
+        said = text.decode().partition("\n")[2] if status == FATAL else text.decode()
+        self.log.append((status, (category or b"").decode(), said))
 
     @property
     def texts(self) -> list[str]:

@@ -5,6 +5,7 @@ import json
 import math
 import random
 import struct
+import subprocess
 import sys
 from collections.abc import Callable
 
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 from live_fmus import (
     COMPONENTS,
-    DISCARD,
+    FATAL,
     NAMES,
     OK,
     REVOLUTION,
@@ -224,7 +225,7 @@ def test_a_state_keeps_a_refusal(live: Open) -> None:
     assert instance.step(0.0, STEP) == OK
     assert instance.call("setFMUState", instance.slave.deSerializeFMUstate(data)) == OK
     instance.log.clear()
-    assert instance.step(STEP, STEP) == DISCARD
+    assert instance.step(STEP, STEP) == FATAL
     assert instance.texts == ["guide_clearance = 9000 mm is outside [0, 50] mm"]
 
 
@@ -251,14 +252,14 @@ for name in NAMES:
         state = instance.slave.deSerializeFMUstate(junk)
         instance.log.clear()
         assert instance.call("setFMUState", state) == OK  # the wrapper can return nothing else
-        assert instance.step(0.0, 1e-3) == DISCARD, (name, junk)
-        assert instance.step(0.0, 1e-3) == DISCARD, (name, junk)
+        assert instance.step(0.0, 1e-3) == FATAL, (name, junk)
+        assert instance.step(0.0, 1e-3) == FATAL, (name, junk)
         said.update(instance.texts)
     # one flipped byte among the values cannot be told from a state: it may run or be refused
     for place in range(60, len(data), 7) if name != "HealdDamper" else ():
         junk = data[:place] + bytes([data[place] ^ rng.randint(1, 255)]) + data[place + 1:]
         instance.call("setFMUState", instance.slave.deSerializeFMUstate(junk))
-        assert instance.step(0.0, 1e-3) in (OK, DISCARD)
+        assert instance.step(0.0, 1e-3) in (OK, FATAL)
         instance.variables()
     instance.free()
 print("\\n".join(sorted(said)))
@@ -271,13 +272,14 @@ print("\\n".join(sorted(said)))
 
 
 def refused(instance: Live, text: str) -> None:
-    """The complaint was logged under a declared category, and the next steps are discarded with it."""
+    """The complaint was logged under a declared category, and the next steps fail with it."""
     status, category, said = instance.log[-1]
+    if status != FATAL:
+        assert category == CATEGORIES[status][0]
     assert said == text
-    assert category == CATEGORIES[status][0]
     instance.log.clear()
-    assert instance.step(0.0, STEP) == DISCARD
-    assert instance.step(0.0, STEP) == DISCARD
+    assert instance.step(0.0, STEP) == FATAL
+    assert instance.step(0.0, STEP) == FATAL
     assert instance.texts == [text, text]
 
 
@@ -369,7 +371,7 @@ def test_a_step_that_is_not_finite_and_forward_is_refused(
     live: Open, name: str, time: float, step_size: float
 ) -> None:
     instance = live(name).start()
-    assert instance.step(time, step_size) == DISCARD
+    assert instance.step(time, step_size) == FATAL
     said = f"a step from {time!r} s by {step_size!r} s: finite and forward is asked for"
     assert set(instance.texts) == {said}
 
@@ -378,13 +380,13 @@ def test_a_step_that_is_not_finite_and_forward_is_refused(
 def test_a_step_before_the_initialization_is_refused(live: Open, name: str) -> None:
     said = "a step was asked for before the initialization was finished"
     instance = live(name)
-    assert instance.step(0.0, STEP) == DISCARD
+    assert instance.step(0.0, STEP) == FATAL
     assert set(instance.texts) == {said}
     instance.call("reset")
     instance.call("setupExperiment", None, 0.0, None)
     instance.call("enterInitializationMode")
     instance.log.clear()
-    assert instance.step(0.0, STEP) == DISCARD
+    assert instance.step(0.0, STEP) == FATAL
     assert set(instance.texts) == {said}
     instance.call("reset")
     instance.start()
@@ -401,7 +403,7 @@ def test_a_linkage_that_does_not_close_is_told_with_its_values(live: Open) -> No
         "the spherical linkage does not close over a whole turn: |cos(rocker_angle = 60 deg)| reaches or"
         " exceeds |cos(crank_cone = 80 deg)|"
     )
-    assert instance.step(0.0, STEP) == DISCARD
+    assert instance.step(0.0, STEP) == FATAL
     assert instance.call("reset") == OK
     instance.start()
     assert instance.step(0.0, STEP) == OK
@@ -426,7 +428,7 @@ for angle in (1e12, 1e20, 1e300):
         instance = Live("DobbyDrive").start(follow_shaft=follow)
         if follow:
             instance.set(shaft_angle=angle)
-        assert instance.step(min(angle, 1e14), 1e-3) == DISCARD
+        assert instance.step(min(angle, 1e14), 1e-3) == FATAL
         assert instance.get("pick") == [0]
         instance.slave.serializeFMUState(instance.slave.getFMUState())
         print(instance.texts[-1])
@@ -453,10 +455,78 @@ for cycle in range(300):
     instance = Live(name).start()
     port = next(p for p in instance.fmu.ports.values() if p.kind == "Real" and p.causality != "output")
     instance.set(**{port.name: math.nan})
-    assert instance.step(0.0, 1e-3) == DISCARD
+    assert instance.step(0.0, 1e-3) == FATAL
     if cycle % 3:
         instance.call("terminate")
     instance.free()
+print("done")
+"""
+    )
+    assert text == "done\n"
+
+
+BAD = """
+import math, sys
+import fmpy, numpy as np
+from fmpy.fmi1 import FMICallException
+rising = np.array([(0.0, 1.0), (0.05, 1.0), (0.1, 1e9)], dtype=[("time", float), ("yarn_tension", float)])
+wrong = {wrong}
+for path, given in zip(sys.argv[1:], wrong.values()):
+    for debug_logging in (False, True):
+        try:
+            rows = fmpy.simulate_fmu(
+                path, stop_time=0.1, debug_logging=debug_logging, logger=lambda *said: None, **given)
+            print(f"{len(rows)} rows, as if all was well")
+        except FMICallException as error:
+            print(error.function)
+"""
+WRONG = {
+    "MainShaft": "dict(start_values={'speed': math.nan})",
+    "WeftInsertion": "dict(start_values={'crank_cone': math.radians(80.0)})",  # the linkage does not close
+    "DobbyDrive": "dict(start_values={'speed': 1e12})",
+    "BeltMonitor": "dict(input=rising)",
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_in_fmpy_a_wrong_value_fails_and_says_why_even_without_logging(name: str) -> None:
+    script = BAD.replace("{wrong}", f"{{{name!r}: {WRONG[name]}}}")
+    done = subprocess.run(
+        [sys.executable, "-X", "faulthandler", "-c", script, str(fmus.of_component(name).path)],
+        capture_output=True, text=True, timeout=300, check=True,
+    )  # fmt: skip
+    function = "fmi2DoStep" if name == "BeltMonitor" else "fmi2ExitInitializationMode"
+    failed = [line for line in done.stdout.splitlines() if not line.startswith("Warning: missing input")]
+    assert failed == [function] * 2  # a run that ends early would look like a result
+    said = done.stderr.splitlines()
+    assert len(said) == 2 and all(line.startswith(f"{name}: ") for line in said), said
+
+
+def test_a_failed_instance_is_freed_whole_however_often_it_failed() -> None:
+    text = in_a_process(
+        """
+import gc, weakref
+import logging
+from live_fmus import *
+logging.disable()
+def instances():
+    gc.collect()
+    return sum(type(each).__name__ == "BeltMonitorSlave" for each in gc.get_objects())
+for calls in range(30):
+    instance = Live("BeltMonitor")
+    instance.call("setupExperiment", None, 0.0, None)
+    instance.set(head_mass=-1.0)
+    assert instance.call("enterInitializationMode") == OK
+    for _ in range(calls):
+        assert instance.call("exitInitializationMode") == FATAL
+        assert instance.step(0.0, 1e-3) == FATAL
+    if calls % 2:
+        assert instance.call("reset") == OK
+        instance.start()
+        assert instance.step(0.0, 1e-3) == OK
+    assert instances() == 1
+    instance.free()
+    assert instances() == 0, calls
 print("done")
 """
     )
@@ -547,6 +617,6 @@ def test_what_a_state_holds_is_packed_without_gaps(live: Open) -> None:
 @pytest.mark.parametrize("time", [1e16, -1e300, math.inf, math.nan])
 def test_a_time_at_which_angles_would_overflow_is_refused(live: Open, time: float) -> None:
     instance = live("MainShaft").start()
-    assert instance.step(time, 1e-3) == DISCARD
+    assert instance.step(time, 1e-3) == FATAL
     assert instance.texts[-1] == f"a step from {time!r} s by 0.001 s: finite and forward is asked for"
     assert all(math.isfinite(value) for value in instance.outputs())

@@ -7,6 +7,7 @@ the cost of fmpy's public methods, and the same calls.
 
 import atexit
 import ctypes
+import logging
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 from urllib.parse import unquote
@@ -31,6 +32,7 @@ WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
 REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
 NEEDS_TOOL = "it says that it needs the tool that made it: needsExecutionTool = true"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
+PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
 
 
 class Ended(LoomfmuError):
@@ -81,6 +83,8 @@ class Slave:
 
     def _open(self) -> Any:
         """fmpy's slave, instantiated."""
+        # live FMUs say there why they fail, for hosts without FMI's logging: here it is in `messages`
+        logging.getLogger("loomfmu.live").addHandler(_unheard)
         slave = FMU2Slave(
             guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
@@ -109,7 +113,8 @@ class Slave:
     def _log(
         self, _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
     ) -> None:
-        self.messages.append((status, (message or b"").decode(errors="replace")))
+        text = (message or b"").decode(errors="replace")
+        self.messages.append((status, text.partition("\n")[2] if text.startswith(PYTHONFMU) else text))
 
     def _reason(self, error: Exception | None = None) -> str:
         """The last complaint that the FMU logged, in one line."""
@@ -124,7 +129,7 @@ class Slave:
             function(*arguments)
         except FMICallException as error:
             failure = error
-            self.fatal = self.fatal or error.status == FATAL
+            self._note(error.status)
         if failure or any(status >= DISCARD for status, _text in self.messages[seen:]):
             raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
 
@@ -146,9 +151,9 @@ class Slave:
 
     def finish_initialization(self) -> None:
         """Leave the initialization; what the FMU complains of, or complained of before, is raised."""
-        self._do(self._slave.exitInitializationMode)
         if any(status >= DISCARD for status, _text in self.messages):
             raise LoomfmuError(f"{self.name}: {self._reason()}")
+        self._do(self._slave.exitInitializationMode)
 
     # ---- prepared calls
 
@@ -195,7 +200,7 @@ class Slave:
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
         """What to raise for a status that is not OK, of a call in the step from `time` on."""
-        self.fatal = self.fatal or status == FATAL
+        self._note(status)
         if status == REFUSED:
             return LoomfmuError(f"{self.name} at {time:.9g} s: {self._reason()}")
         if status == DISCARD and action.endswith("DoStep"):
@@ -210,6 +215,10 @@ class Slave:
         return None
 
     # ---- end
+
+    def _note(self, status: int) -> None:
+        """After a fatal status nothing more may be called. Our own live FMUs know no other and outlive it."""
+        self.fatal = self.fatal or (status == FATAL and not self.fmu.ours)
 
     def rest(self) -> bool:
         """Terminate and reset for another run; whether it can be used again."""
@@ -233,6 +242,7 @@ class Slave:
             self.fatal = True
 
 
+_unheard = logging.NullHandler()
 _resting: dict[tuple[str, str], list[Slave]] = {}
 
 

@@ -8,12 +8,13 @@ import zipfile
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 
 from .. import units
 from ..components import COMPONENTS
 from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
-from . import documentation, live_slave
+from . import documentation, live_slave, live_wrapper
 from .model_description import FMI_TYPES, model_description
 from .parameter_sets import parameter_files, parameter_note
 from .source import flatten
@@ -84,7 +85,7 @@ def guid(component: type[Component]) -> str:
     digest = hashlib.sha256(model_description(component, "", version()))
     for content in _told(component).values():
         digest.update(content)
-    for part in (_rows(component), flatten(component), _slave_source()):
+    for part in (_rows(component), flatten(component), _source(live_slave), _source(live_wrapper)):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
 
@@ -121,7 +122,8 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
         f"resources/{package}_entry.py": _entry(component, package, identity).encode(),
         f"resources/{package}/__init__.py": b"",
         f"resources/{package}/component.py": flatten(component).encode(),
-        f"resources/{package}/slave.py": _slave_source().encode(),
+        f"resources/{package}/slave.py": _source(live_slave).encode(),
+        f"resources/{package}/live_wrapper.py": _source(live_wrapper).encode(),
     }
     for binary in sorted((_wrapper() / "resources" / "binaries").rglob("*")):
         if binary.is_file():
@@ -178,8 +180,10 @@ def _rows(component: type[Component]) -> str:
     return "\n".join(lines)
 
 
-def _slave_source() -> str:
-    return Path(live_slave.__file__).read_text(encoding="utf-8")
+def _source(module: ModuleType) -> str:
+    """The text of a module that is copied into each live FMU."""
+    assert module.__file__ is not None, "modules of this package have files"
+    return Path(module.__file__).read_text(encoding="utf-8")
 
 
 def license_of(distribution: str) -> bytes:

@@ -1,19 +1,17 @@
-"""What runs a component inside a live FMU. Copied into the FMU, so it imports nothing of loomfmu.
+"""What runs a component inside a live FMU. Copied into the FMU, so it imports only what is copied beside it.
 
-pythonfmu's compiled wrapper calls the methods below by name. It asks for a class with a base called
-`Fmi2Slave` and takes an exception for the end of the process' peace (`fmi2Fatal`, then a crash when the
-instance is freed), so nothing may raise: every complaint is logged, remembered, and ends the next step
-with `fmi2Discard`, the one status that can be returned.
+pythonfmu's compiled wrapper calls the methods below by name and asks for a class with a base called
+`Fmi2Slave`. Every complaint is logged and remembered. Nothing raises but the end of the initialization and
+the step: from a complaint on they are refused, which `live_wrapper` makes safe.
 """
 
-import atexit
 import math
 import operator
-import os
 import struct
-import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
+
+from .live_wrapper import let_go_at_exit, refuse
 
 WARNING, DISCARD, ERROR = 1, 2, 3
 CATEGORIES = {
@@ -77,7 +75,7 @@ class LiveSlave(Fmi2Slave):
         self.warned: set[int] = set()
         self.readers: dict[tuple[int, ...], Callable[[Any], Any]] = {}
         self.writers: dict[tuple[Any, ...], list[tuple[str, float, float]]] = {}
-        _let_go_at_exit(str(kwargs.get("resources", "")), type(self.component).__name__)
+        let_go_at_exit(str(kwargs.get("resources", "")), type(self.component).__name__)
 
     # ---- life cycle
 
@@ -91,27 +89,35 @@ class LiveSlave(Fmi2Slave):
         self.stale = True
 
     def exit_initialization_mode(self) -> None:
-        """Compute the start, if that was not done for a reading already."""
-        self._refresh()
+        """Compute the start, if that was not done for a reading already. Raises Refused."""
+        self._refresh(logged=False)
         self.mode = STEPPING
+        if self.failure:
+            refuse(self, self.failure)
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """One communication step; False where it cannot be made."""
-        if self.mode != STEPPING:
-            self._fail(DISCARD, "a step was asked for before the initialization was finished")
-        elif not (abs(current_time) <= LONGEST and 0.0 <= step_size <= LONGEST):
-            text = f"a step from {current_time!r} s by {step_size!r} s: finite and forward is asked for"
-            self._fail(DISCARD, text)
+        """One communication step. Raises Refused where it cannot be made."""
+        if not self.failure:
+            self._step(current_time, step_size)
         if self.failure:
-            self._log(DISCARD, self.failure)
-            return False
+            refuse(self, self.failure)
+        return not self.failure
+
+    def _step(self, time: float, step_size: float) -> None:
+        """One step, or the reason why there is none as `failure`."""
+        if self.mode != STEPPING:
+            self.failure = "a step was asked for before the initialization was finished"
+            return
+        if not (abs(time) <= LONGEST and 0.0 <= step_size <= LONGEST):
+            self.failure = f"a step from {time!r} s by {step_size!r} s: finite and forward is asked for"
+            return
         try:
-            problem = self.component.step(current_time, step_size)
-        except BaseException as error:  # Ctrl-C too: nothing may reach the wrapper
-            self._fail(DISCARD, f"at {current_time!r} s: {type(error).__name__}: {error}")
-            return False
-        self.time = current_time + step_size
-        return problem == 0 or self._report(problem, DISCARD)
+            problem = self.component.step(time, step_size)
+        except BaseException as error:  # Ctrl-C too: it would cut the wrapper's own bookkeeping short
+            self.failure = f"at {time!r} s: {type(error).__name__}: {error}"
+            return
+        self.time = time + step_size
+        self._report(problem)
 
     def terminate(self) -> None:
         """Nothing is held that would have to be given back."""
@@ -127,7 +133,7 @@ class LiveSlave(Fmi2Slave):
         values = self._get(references, "Integer", 0)
         for reference, value in zip(references, values, strict=True):
             if not -LARGEST_INTEGER <= value <= LARGEST_INTEGER:
-                self._fail(ERROR, f"{self.rows[reference].name} = {value} is more than an FMI integer holds")
+                self._fail(f"{self.rows[reference].name} = {value} is more than an FMI integer holds")
                 return [0] * len(references)
         return values
 
@@ -137,7 +143,7 @@ class LiveSlave(Fmi2Slave):
 
     def get_string(self, references: list[int]) -> list[str]:
         """No component has text variables."""
-        self._fail(ERROR, f"value reference {references} is no text variable")
+        self._fail(f"value reference {references} is no text variable")
         return [""] * len(references)
 
     def set_real(self, references: list[int], values: list[float]) -> None:
@@ -154,7 +160,7 @@ class LiveSlave(Fmi2Slave):
 
     def set_string(self, references: list[int], values: list[str]) -> None:
         """No component has text variables."""
-        self._fail(ERROR, f"value reference {references} is no text variable")
+        self._fail(f"value reference {references} is no text variable")
 
     def _get(self, references: list[int], kind: str, nothing: Any) -> list[Any]:
         if self.stale and self.mode == INITIALIZING:
@@ -172,7 +178,7 @@ class LiveSlave(Fmi2Slave):
     def _reader(self, key: tuple[int, ...], kind: str) -> Callable[[Any], Any] | None:
         for reference in key:
             if not 0 <= reference < len(self.rows) or self.rows[reference].kind != kind:
-                self._fail(ERROR, f"value reference {reference} is no {kind} variable")
+                self._fail(f"value reference {reference} is no {kind} variable")
                 return None
         names = [self.rows[reference].name for reference in key]
         return operator.attrgetter(*names) if names else None
@@ -203,39 +209,38 @@ class LiveSlave(Fmi2Slave):
 
     def _refuse(self, reference: int, value: Any, kind: str) -> None:
         if not 0 <= reference < len(self.rows) or self.rows[reference].kind != kind:
-            self._fail(ERROR, f"value reference {reference} is no {kind} variable")
+            self._fail(f"value reference {reference} is no {kind} variable")
             return
         row = self.rows[reference]
         if not self._settable(row):
             when = "while stepping" if row.causality == "parameter" else "at all"
-            self._fail(ERROR, f"{row.name} is a {row.causality} and cannot be set {when}")
+            self._fail(f"{row.name} is a {row.causality} and cannot be set {when}")
             return
         unit = "" if row.display == "1" else f" {row.display}"
         low, high = (
             bound / row.factor if abs(bound) < LARGEST else math.copysign(math.inf, bound)
             for bound in (row.low, row.high)
         )
-        self._fail(
-            ERROR, f"{row.name} = {value / row.factor:.7g}{unit} is outside [{low:.7g}, {high:.7g}]{unit}"
-        )
+        self._fail(f"{row.name} = {value / row.factor:.7g}{unit} is outside [{low:.7g}, {high:.7g}]{unit}")
 
-    def _refresh(self) -> None:
-        """Compute the start from the parameters and inputs as they now stand."""
+    def _refresh(self, logged: bool = True) -> None:
+        """Compute the start from the parameters and inputs as they now stand; tell why if it cannot be."""
         if not self.stale or self.failure:
             return
         self.stale = False
         try:
-            problem = self.component.initialize(self.time)
-        except BaseException as error:  # Ctrl-C too: nothing may reach the wrapper
-            self._fail(ERROR, f"at the start: {type(error).__name__}: {error}")
-            return
-        if problem:
-            self._report(problem, ERROR)
+            self._report(self.component.initialize(self.time))
+        except BaseException as error:  # Ctrl-C too: it would cut the wrapper's own bookkeeping short
+            self.failure = f"at the start: {type(error).__name__}: {error}"
+        if self.failure and logged:
+            self._log(ERROR, self.failure)
 
     # ---- complaints
 
-    def _report(self, problem: int, status: int) -> bool:
-        """Tell a problem of the component; whether the run can go on."""
+    def _report(self, problem: int) -> None:
+        """Log what a component warns of, once, and remember as `failure` what ends the run."""
+        if problem == 0:
+            return
         text, warning = self.problems[problem - 1]
         shown = {
             row.name: f"{getattr(self.component, row.name) / row.factor:.7g}"
@@ -244,16 +249,14 @@ class LiveSlave(Fmi2Slave):
         }
         text = text.format(**shown)
         if not warning:
-            self._fail(status, text)
-            return False
-        if problem not in self.warned:
+            self.failure = text
+        elif problem not in self.warned:
             self.warned.add(problem)
             self._log(WARNING, text)
-        return True
 
-    def _fail(self, status: int, text: str) -> None:
+    def _fail(self, text: str) -> None:
         self.failure = text
-        self._log(status, text)
+        self._log(ERROR, text)
 
     def _log(self, status: int, text: str) -> None:
         self.log_queue.append(Message(status, CATEGORIES[status][0], text))
@@ -266,7 +269,7 @@ class LiveSlave(Fmi2Slave):
 
     def _set_fmu_state(self, state: Any) -> None:
         if not isinstance(state, tuple) or state[0] != self.guid:
-            self._fail(ERROR, "the FMU state to be set is not one of this FMU")
+            self._fail("the FMU state to be set is not one of this FMU")
             return
         _guid, self.mode, self.time, self.stale, self.failure, values = state
         for row, value in zip(self.rows, values, strict=True):
@@ -308,31 +311,3 @@ class LiveSlave(Fmi2Slave):
     @classmethod
     def _unpack(cls, data: bytes) -> Iterator[Any]:
         return iter(struct.unpack_from(cls._format(), data))
-
-
-# ---- the end of the process
-
-_libraries: set[str] = set()  # those that are told to let go
-
-
-def _let_go_at_exit(resources: str, name: str) -> None:
-    """Make pythonfmu's wrapper let go of its `PyState` before the end of the process: it would do so twice.
-
-    In a library that is not unloaded before, `exit` first runs the destructor of the pointer, which frees
-    the state and keeps its address, then `onLibraryUnload`, which counts down in the freed memory. That
-    corrupts the heap wherever the memory has another use by then. Once let go, both find nothing.
-    On Windows they run in the other order. A host that is no Python has its interpreter ended by the state.
-    """
-    library = f"{resources.rstrip('/').rpartition('/')[0]}/binaries/linux64/{name}.so"
-    if sys.platform == "linux" and sys.orig_argv and library not in _libraries:
-        _libraries.add(library)
-        atexit.register(_let_go, library)
-
-
-def _let_go(library: str) -> None:
-    try:
-        import ctypes
-
-        ctypes.CDLL(library, os.RTLD_NOLOAD).finalizePythonInterpreter()
-    except (ImportError, OSError, AttributeError):  # no ctypes here, or the library was unloaded
-        pass
