@@ -258,7 +258,7 @@ def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> No
 def test_value_references_and_identity_are_those_of_the_file(name: str) -> None:
     fmu = fmus.of_component(name)
     assert fmu.guid == builder.guid(COMPONENTS[name])
-    assert [port.reference for port in fmu.ports.values()] == list(range(len(fmu.ports)))
+    assert [port.reference for port in fmu.ports.values()] == list(range(1, len(fmu.ports) + 1))
     assert fmu.identifier == name
 
 

@@ -98,7 +98,7 @@ def test_names_are_structured_and_those_of_the_declarations_in_scenes(name: str)
 
 @every_fmu
 def test_every_variable_is_told_as_it_is_declared(name: str) -> None:
-    for reference, (variable, element, kind) in enumerate(listed(name)):
+    for reference, (variable, element, kind) in enumerate(listed(name), start=1):
         assert element.attrib["name"] == variable.structured
         assert element.attrib["valueReference"] == str(reference)
         assert element.attrib["causality"] == variable.causality

@@ -66,11 +66,12 @@ static double any_real(void)
 static double fitting_real(unsigned reference)
 {
     double low, high;
-    if (reference >= VARIABLES || pick(12) == 0) {
+    const unsigned place = reference - FIRST_REFERENCE;
+    if (place >= VARIABLES || pick(12) == 0) {
         return any_real();
     }
-    low = rows[reference].low > -1e6 ? rows[reference].low : -1e3;
-    high = rows[reference].high < 1e6 ? rows[reference].high : 1e3;
+    low = rows[place].low > -1e6 ? rows[place].low : -1e3;
+    high = rows[place].high < 1e6 ? rows[place].high : 1e3;
     return low + (high - low) * (double)pick(1000001) * 1e-6;
 }
 
@@ -88,12 +89,12 @@ static unsigned any_reference(Kind kind, bool setting)
         return pick(2) ? pick(VARIABLES + 3) : 4294967295U;
     }
     for (tries = 0; tries < 100; tries++) {
-        unsigned reference = pick(VARIABLES);
-        if (rows[reference].kind == kind && (!setting || rows[reference].causality <= INPUT)) {
-            return reference;
+        unsigned place = pick(VARIABLES);
+        if (rows[place].kind == kind && (!setting || rows[place].causality <= INPUT)) {
+            return place + FIRST_REFERENCE;
         }
     }
-    return pick(VARIABLES);
+    return pick(VARIABLES) + FIRST_REFERENCE;
 }
 
 static const char *any_token(void)

@@ -32,11 +32,12 @@ static double any_real(void)
 static double fitting_real(unsigned reference)
 {
     double low, high;
-    if (reference >= VARIABLES || pick(12) == 0) {
+    const unsigned place = reference - FIRST_REFERENCE;
+    if (place >= VARIABLES || pick(12) == 0) {
         return any_real();
     }
-    low = rows[reference].low > -1e6 ? rows[reference].low : -1e3;
-    high = rows[reference].high < 1e6 ? rows[reference].high : 1e3;
+    low = rows[place].low > -1e6 ? rows[place].low : -1e3;
+    high = rows[place].high < 1e6 ? rows[place].high : 1e3;
     return low + (high - low) * (double)pick(1000001) * 1e-6;
 }
 
@@ -44,9 +45,9 @@ static unsigned any_reference(Kind kind, bool setting)
 {
     unsigned tries;
     for (tries = 0; tries < 100 && pick(40) != 0; tries++) {
-        unsigned reference = pick(VARIABLES);
-        if (rows[reference].kind == kind && (!setting || rows[reference].causality <= INPUT)) {
-            return reference;
+        unsigned place = pick(VARIABLES);
+        if (rows[place].kind == kind && (!setting || rows[place].causality <= INPUT)) {
+            return place + FIRST_REFERENCE;
         }
     }
     return pick(2) ? pick(VARIABLES + 3) : 4294967295U;

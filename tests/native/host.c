@@ -45,12 +45,12 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
         exit(3);                                          \
     }
 
-/* host FMU GUID STEPS STEP_SIZE KINDS: KINDS has a letter for each value reference, r, i or b */
+/* host FMU GUID STEPS STEP_SIZE KINDS: KINDS has a letter for each value reference from 1 on: r, i or b */
 int main(int count, char **words)
 {
     fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
     fmi2Component component;
-    unsigned reference;
+    unsigned place;
     int step;
     if (count != 6 || (library = dlopen(words[1], RTLD_NOW | RTLD_LOCAL)) == NULL) {
         fprintf(stderr, "%s\n", count == 6 ? dlerror() : "usage: host FMU GUID STEPS STEP_SIZE KINDS");
@@ -77,17 +77,18 @@ int main(int count, char **words)
     for (step = 0; step < atoi(words[3]); step++) {
         MUST(fmi2DoStep(component, step * atof(words[4]), atof(words[4]), fmi2True))
     }
-    for (reference = 0; reference < strlen(words[5]); reference++) {
+    for (place = 0; place < strlen(words[5]); place++) {
+        fmi2ValueReference reference = place + 1;
         fmi2Real real = 0.0;
         fmi2Integer integer = 0;
-        if (words[5][reference] == 'r') {
+        if (words[5][place] == 'r') {
             MUST(fmi2GetReal(component, &reference, 1, &real))
-        } else if (words[5][reference] == 'i') {
+        } else if (words[5][place] == 'i') {
             MUST(fmi2GetInteger(component, &reference, 1, &integer))
         } else {
             MUST(fmi2GetBoolean(component, &reference, 1, &integer))
         }
-        printf("%.17g\n", words[5][reference] == 'r' ? real : (double)integer);
+        printf("%.17g\n", words[5][place] == 'r' ? real : (double)integer);
     }
     MUST(fmi2Terminate(component))
     fmi2FreeInstance(component);

@@ -58,9 +58,9 @@ class Native3:
         self.logger = LOGGER(self._log)
         self.rows = {
             variable.name: (place, variable.type)
-            for place, variable in enumerate(variables_of(fmu.component))
+            for place, variable in enumerate(variables_of(fmu.component), start=1)
         }
-        self.rows[TIME] = (len(self.rows), float)
+        self.rows[TIME] = (len(self.rows) + 1, float)
         create: Callable[..., Any] = getattr(self.library, f"fmi3Instantiate{kind}")
         create.restype = c_void_p
         own_token = (guid(fmu.component) if token is None else token).encode()

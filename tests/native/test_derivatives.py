@@ -145,8 +145,8 @@ def test_better_than_holding_the_inputs(native):
 @pytest.mark.parametrize(
     ("derivatives", "reason"),
     [
-        ({("travel", 1): 1.0}, "value reference 22 is no input: travel"),
-        ({("follow_shaft", 1): 1.0}, "value reference 2 is no Real variable"),
+        ({("travel", 1): 1.0}, "value reference 23 is no input: travel"),
+        ({("follow_shaft", 1): 1.0}, "value reference 3 is no Real variable"),
         ({("shaft_angle", 0): 1.0}, "a finite derivative of order 1 to 3 is asked for"),
         ({("shaft_angle", 4): 1.0}, "a finite derivative of order 1 to 3 is asked for"),
         ({("shaft_angle", -2147483648): 1.0}, "a finite derivative of order 1 to 3 is asked for"),

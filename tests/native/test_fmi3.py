@@ -78,7 +78,7 @@ def test_its_variables_are_those_of_fmi_2_and_the_time(built, built3, name):
     found = {each.get("name"): each for each in listed}
     assert list(found) == [*(port.own for port in built[name].ports.values()), TIME]
     assert found[TIME].get("causality") == "independent" and found[TIME].get("valueReference") == str(
-        len(found) - 1
+        len(found)
     )
     for variable in variables_of(COMPONENTS[name]):
         port, element = built[name].ports[variable.name], found[variable.structured]
@@ -95,8 +95,8 @@ def test_outputs_depend_on_what_they_are_declared_to(built3):
     root = ElementTree.parse(built3["WeftInsertion"].directory / "modelDescription.xml").getroot()
     names = [each.get("name") for each in root.find("ModelVariables")]
     depends = {
-        names[int(each.get("valueReference"))]: {
-            names[int(word)] for word in each.get("dependencies").split()
+        names[int(each.get("valueReference")) - 1]: {
+            names[int(word) - 1] for word in each.get("dependencies").split()
         }
         for each in root.iter("Output")
     }
@@ -209,12 +209,12 @@ def test_words_of_refusal(native3):
     assert instance.set(guide_clearance=0.1) == ERROR
     assert instance.log == [(ERROR, "logStatusError", "guide_clearance = 100 mm is outside [0, 50] mm")]
     instance = native3("MainShaft")
-    reference, one = (ctypes.c_uint32 * 1)(8), c_size_t(1)
+    reference, one = (ctypes.c_uint32 * 1)(9), c_size_t(1)
     assert instance.call("SetFloat64", reference, one, byref(c_double(1.0)), one) == ERROR  # the time
-    assert instance.texts == ["value reference 8 is no Float64 variable"]
+    assert instance.texts == ["value reference 9 is no Float64 variable"]
     instance = native3("MainShaft")
     assert instance.call("GetInt32", reference, one, byref(c_double()), one) == ERROR
-    assert instance.texts == ["value reference 8 is no Int32 variable"]
+    assert instance.texts == ["value reference 9 is no Int32 variable"]
     instance = native3("MainShaft")
     assert instance.call("GetFloat64", reference, one, byref(c_double()), c_size_t(2)) == ERROR
     assert instance.texts == ["each value reference has one value"]

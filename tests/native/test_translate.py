@@ -199,7 +199,7 @@ static void logger(void *e, fmi2String i, fmi2Status s, fmi2String c, fmi2String
 int main(void)
 {
     fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, NULL};
-    fmi2ValueReference share = 0;
+    fmi2ValueReference share = FIRST_REFERENCE;
     fmi2Real value = 1.5;
     fmi2Component c = fmi2Instantiate("100 %s %n", fmi2CoSimulation, MODEL_TOKEN, "", &callbacks, 0, 1);
     if (c == NULL || fmi2SetReal(c, &share, 1, &value) != fmi2Error || marks != 1) return 1;

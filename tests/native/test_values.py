@@ -5,7 +5,7 @@ from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
 
 import pytest
 from live_fmus import live
-from natives import DISCARD, ERROR, OK
+from natives import DISCARD, ERROR, FATAL, OK
 
 from loomfmu.components import COMPONENTS, WeftInsertion
 from loomfmu.variables import variables_of
@@ -66,8 +66,9 @@ def test_parameters_are_fixed_and_outputs_not_set(native):
 
 def test_references_of_another_kind(native):
     for kind, reference, word in (
-        ("Real", 2, "Real"),
-        ("Boolean", 0, "Boolean"),
+        ("Real", 3, "Real"),
+        ("Boolean", 1, "Boolean"),
+        ("Real", 0, "Real"),
         ("Integer", 999, "Integer"),
     ):
         instance = native("WeftInsertion").start()
@@ -116,7 +117,7 @@ def test_problems_are_told_as_the_live_flavour_tells_them(native, live, name, va
     python.set(**values)
     python.call("enterInitializationMode")
     python.call("exitInitializationMode")
-    assert compiled.log == python.log[:1] and len(compiled.log) == 1
+    assert compiled.texts == python.texts and len(compiled.texts) == 1
     assert compiled.step(0.0, 0.1) == ERROR
 
 
@@ -140,8 +141,8 @@ def test_a_warning_is_told_once(native, live):
 )  # fmt: skip
 def test_a_step_that_is_none(native, live, time, size):
     compiled, python = native("MainShaft").start(), live("MainShaft").start()
-    assert (compiled.step(time, size), python.step(time, size)) == (DISCARD, DISCARD)
-    assert compiled.log[0] == python.log[0]
+    assert (compiled.step(time, size), python.step(time, size)) == (DISCARD, FATAL)
+    assert compiled.texts[0] == python.texts[0]
 
 
 def test_after_a_step_that_could_not_be_made(native):

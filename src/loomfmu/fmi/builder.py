@@ -15,7 +15,7 @@ from ..components import COMPONENTS
 from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
 from . import documentation, live_slave, live_wrapper
-from .model_description import FMI_TYPES, model_description
+from .model_description import FIRST_REFERENCE, FMI_TYPES, model_description
 from .parameter_sets import parameter_files, parameter_note
 from .source import flatten
 from .terminals import terminal_files
@@ -157,9 +157,9 @@ class {component.__name__}Slave(_slave.LiveSlave):
     component_class = _component.{component.__name__}
     guid = {identity!r}
     problems = {tuple((problem.text, problem.warning) for problem in component.problems)!r}
-    rows = (
+    rows = {{
 {_rows(component)}
-    )
+    }}
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -167,16 +167,16 @@ class {component.__name__}Slave(_slave.LiveSlave):
 
 
 def _rows(component: type[Component]) -> str:
-    """The variables as the live slave needs them: the index is the value reference."""
+    """The variables as the live slave needs them, by value reference."""
     lines = []
-    for variable in variables_of(component):
+    for reference, variable in enumerate(variables_of(component), start=FIRST_REFERENCE):
         low = -live_slave.LARGEST if variable.minimum is None else variable.minimum
         high = live_slave.LARGEST if variable.maximum is None else variable.maximum
         row = (
             variable.name, FMI_TYPES[variable.type], variable.causality, low, high, variable.display,
             units.unit(variable.display).factor,
         )  # fmt: skip
-        lines.append(f"        _Row{row!r},")
+        lines.append(f"        {reference}: _Row{row!r},")
     return "\n".join(lines)
 
 

@@ -27,7 +27,7 @@ FORMATS = {"Real": "d", "Integer": "q", "Boolean": "?"}
 
 
 class Row(NamedTuple):
-    """One variable: the index of its row is its value reference."""
+    """One variable."""
 
     name: str
     kind: str
@@ -60,7 +60,7 @@ class LiveSlave(Fmi2Slave):
 
     # set by the entry module of each FMU
     component_class: Callable[[], Any]
-    rows: tuple[Row, ...]
+    rows: dict[int, Row]  # by value reference
     problems: tuple[tuple[str, bool], ...]
     guid: str
 
@@ -177,7 +177,7 @@ class LiveSlave(Fmi2Slave):
 
     def _reader(self, key: tuple[int, ...], kind: str) -> Callable[[Any], Any] | None:
         for reference in key:
-            if not 0 <= reference < len(self.rows) or self.rows[reference].kind != kind:
+            if reference not in self.rows or self.rows[reference].kind != kind:
                 self._fail(f"value reference {reference} is no {kind} variable")
                 return None
         names = [self.rows[reference].name for reference in key]
@@ -198,20 +198,19 @@ class LiveSlave(Fmi2Slave):
 
     def _limits(self, reference: int, kind: str) -> tuple[str, float, float]:
         """Name and limits of a variable; limits that let nothing pass for one that may not be set now."""
-        if 0 <= reference < len(self.rows):
-            row = self.rows[reference]
-            if row.kind == kind and self._settable(row):
-                return row.name, row.low, row.high
+        row = self.rows.get(reference)
+        if row is not None and row.kind == kind and self._settable(row):
+            return row.name, row.low, row.high
         return "", math.inf, -math.inf
 
     def _settable(self, row: Row) -> bool:
         return row.causality == "input" or (row.causality == "parameter" and self.mode != STEPPING)
 
     def _refuse(self, reference: int, value: Any, kind: str) -> None:
-        if not 0 <= reference < len(self.rows) or self.rows[reference].kind != kind:
+        row = self.rows.get(reference)
+        if row is None or row.kind != kind:
             self._fail(f"value reference {reference} is no {kind} variable")
             return
-        row = self.rows[reference]
         if not self._settable(row):
             when = "while stepping" if row.causality == "parameter" else "at all"
             self._fail(f"{row.name} is a {row.causality} and cannot be set {when}")
@@ -245,7 +244,7 @@ class LiveSlave(Fmi2Slave):
         shown = {
             row.name: f"{getattr(self.component, row.name) / row.factor:.7g}"
             + ("" if row.display == "1" else f" {row.display}")
-            for row in self.rows
+            for row in self.rows.values()
         }
         text = text.format(**shown)
         if not warning:
@@ -264,7 +263,7 @@ class LiveSlave(Fmi2Slave):
     # ---- state
 
     def _get_fmu_state(self) -> tuple[Any, ...]:
-        values = tuple(getattr(self.component, row.name) for row in self.rows)
+        values = tuple(getattr(self.component, row.name) for row in self.rows.values())
         return (self.guid, self.mode, self.time, self.stale, self.failure, values)
 
     def _set_fmu_state(self, state: Any) -> None:
@@ -272,12 +271,12 @@ class LiveSlave(Fmi2Slave):
             self._fail("the FMU state to be set is not one of this FMU")
             return
         _guid, self.mode, self.time, self.stale, self.failure, values = state
-        for row, value in zip(self.rows, values, strict=True):
+        for row, value in zip(self.rows.values(), values, strict=True):
             setattr(self.component, row.name, value)
 
     @classmethod
     def _format(cls) -> str:
-        return "<36s12sd?H" + "".join(FORMATS[row.kind] for row in cls.rows)
+        return "<36s12sd?H" + "".join(FORMATS[row.kind] for row in cls.rows.values())
 
     @classmethod
     def _fmu_state_to_bytes(cls, state: Any) -> bytes:

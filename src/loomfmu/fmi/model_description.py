@@ -12,6 +12,7 @@ AUTHOR = "the loomfmu authors"
 COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
 RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
+FIRST_REFERENCE = 1  # not 0: then a value reference is a variable's place too, for which OMSimulator takes it
 DEFAULT_STOP_TIME = 1.0
 DEFAULT_STEP_SIZE = 1e-4
 
@@ -57,7 +58,7 @@ def model_description(
         stepSize=repr(DEFAULT_STEP_SIZE),
     )  # fmt: skip
     listed = SubElement(root, "ModelVariables")
-    for reference, variable in enumerate(variables):
+    for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _scalar(listed, reference, variable, name)
     _structure(root, variables)
     return text_of(root)

@@ -5,7 +5,14 @@ from xml.etree.ElementTree import Element, SubElement
 from ..variables import Component, Variable, variables_of
 from .live_slave import CATEGORIES
 from .memoryless import is_memoryless
-from .model_description import DEFAULT_STEP_SIZE, DEFAULT_STOP_TIME, about, attributes_of, unit_definitions
+from .model_description import (
+    DEFAULT_STEP_SIZE,
+    DEFAULT_STOP_TIME,
+    FIRST_REFERENCE,
+    about,
+    attributes_of,
+    unit_definitions,
+)
 from .native_tables import output_order
 from .xml_text import text_of
 
@@ -36,10 +43,10 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         stepSize=repr(DEFAULT_STEP_SIZE),
     )  # fmt: skip
     listed = SubElement(root, "ModelVariables")
-    for reference, variable in enumerate(variables):
+    for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _variable(listed, reference, variable, name)
     SubElement(
-        listed, "Float64", name="time", valueReference=str(len(variables)), causality="independent",
+        listed, "Float64", name="time", valueReference=str(_time_reference(variables)), causality="independent",
         variability="continuous", unit="s", description="Simulation time",
     )  # fmt: skip
     _structure(root, variables)
@@ -73,9 +80,16 @@ def _variable(listed: Element, reference: int, variable: Variable, model: str) -
     SubElement(listed, kind, about | attributes_of(variable, model))
 
 
+def _time_reference(variables: tuple[Variable, ...]) -> int:
+    """The value reference of the time: the one after all others."""
+    return FIRST_REFERENCE + len(variables)
+
+
 def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
     """Outputs with what they depend on (inputs, parameters and time), and the unknowns of the start."""
-    references = {variable.name: reference for reference, variable in enumerate(variables)}
+    references = {
+        variable.name: reference for reference, variable in enumerate(variables, start=FIRST_REFERENCE)
+    }
     inputs = [variable.name for variable in variables if variable.causality == "input"]
     parameters = [variable.name for variable in variables if variable.causality == "parameter"]
     structure = SubElement(root, "ModelStructure")
@@ -83,7 +97,7 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
     for variable in outputs:
         needed = inputs if variable.depends is None else list(variable.depends)
         found = sorted(references[name] for name in (*needed, *parameters))
-        found += [] if variable.depends == () else [len(variables)]
+        found += [] if variable.depends == () else [_time_reference(variables)]
         SubElement(
             structure, "Output", valueReference=str(references[variable.name]),
             dependencies=" ".join(map(str, found)),

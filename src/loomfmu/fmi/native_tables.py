@@ -8,6 +8,7 @@ from ..variables import Component, Variable, variables_of
 from .c_expressions import c_name
 from .live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .memoryless import is_memoryless
+from .model_description import FIRST_REFERENCE
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 
@@ -24,6 +25,7 @@ MODEL = """/* {name}: its variables and problems, written by loomfmu from its de
 #define MODEL_NAME "{name}"
 #define MODEL_TOKEN "{token}"
 #define VARIABLES {count}
+#define FIRST_REFERENCE {first}U /* the value reference of the first row, from where they count on */
 #define PROBLEMS {problem_count}
 #define INDICATORS {indicator_count}
 #define MEMORYLESS {memoryless} /* 1: all outputs are functions of time, parameters and inputs alone */
@@ -37,7 +39,6 @@ typedef struct {name} Component;
 /* The parameter that says that inputs hold at the end of a step; NONE without one. */
 #define INPUTS_AT_STEP_END {at_step_end}
 
-/* The index of a row is the variable's value reference. */
 static const Row rows[VARIABLES] = {{
 {rows}
 }};
@@ -66,6 +67,7 @@ def tables(component: type[Component], token: str) -> str:
         name=component.__name__,
         token=token,
         count=len(variables),
+        first=FIRST_REFERENCE,
         problem_count=len(component.problems),
         indicator_count=sum(variable.indicator for variable in variables),
         indicators=", ".join([*(str(names.index(v.name)) for v in variables if v.indicator), "NONE"]),

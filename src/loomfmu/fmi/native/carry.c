@@ -1,20 +1,20 @@
 /* Inputs that a host gives with their derivatives, carried to the end of the step (FMI 2). */
 
-/* The n-th time derivative of an input: given for this step, or read through its declared rates. */
-static double fmu_input_derivative(const Instance *instance, int reference, int order)
+/* The n-th time derivative of the input in a row: given for this step, or read through its declared rates. */
+static double fmu_input_derivative(const Instance *instance, int place, int order)
 {
     const State *state = &instance->state;
     while (order > 0) {
-        if ((state->given[reference] & (1 << (order - 1))) != 0) {
-            return state->derivatives[reference][order - 1];
+        if ((state->given[place] & (1 << (order - 1))) != 0) {
+            return state->derivatives[place][order - 1];
         }
-        if (rows[reference].rate == NONE || rows[rows[reference].rate].causality != INPUT) {
+        if (rows[place].rate == NONE || rows[rows[place].rate].causality != INPUT) {
             return 0.0;
         }
-        reference = rows[reference].rate;
+        place = rows[place].rate;
         order--;
     }
-    return fmu_value(instance, &rows[reference]);
+    return fmu_value(instance, &rows[place]);
 }
 
 static Status fmu_set_derivative(Instance *instance, unsigned reference, int order, double value)
@@ -30,8 +30,8 @@ static Status fmu_set_derivative(Instance *instance, unsigned reference, int ord
         return fmu_refuse(instance, "value reference %lu: a finite derivative of order 1 to 3 is asked for%s",
                           reference, "");
     }
-    instance->state.derivatives[reference][order - 1] = value;
-    instance->state.given[reference] |= (unsigned char)(1 << (order - 1));
+    instance->state.derivatives[row - rows][order - 1] = value;
+    instance->state.given[row - rows] |= (unsigned char)(1 << (order - 1));
     instance->state.carried = true;
     return OK;
 }

@@ -34,7 +34,7 @@ fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference refe
         if (value < -2147483647 || value > 2147483647) {
             char message[256];
             (void)snprintf(message, sizeof message, "%s = %lld is more than an FMI integer holds",
-                           rows[references[i]].name, (long long)value);
+                           rows[references[i] - FIRST_REFERENCE].name, (long long)value);
             return (fmi2Status)fmu_complain(instance, FAILED, message);
         }
         values[i] = (fmi2Integer)value;

@@ -1,6 +1,7 @@
-/* FMI 3.0: values of variables, and the state as a whole. The reference after the last is the time's. */
+/* FMI 3.0: values of variables, and the state as a whole. */
 
 #define READING MODES
+#define TIME_REFERENCE (FIRST_REFERENCE + VARIABLES)
 #define CONTINUOUS_SETTING (SETTING | CONTINUOUS_TIME)
 
 /* Whether values may be read or set: as many as there are references, since all variables are scalars. */
@@ -28,7 +29,7 @@ fmi3Status fmi3GetFloat64(fmi3Instance handle, const fmi3ValueReference referenc
     }
     status = fmu_prepare(instance);
     for (i = 0; i < count && status == OK; i++) {
-        if (references[i] == VARIABLES) {
+        if (references[i] == TIME_REFERENCE) {
             values[i] = instance->state.time;
         } else {
             status = fmu_get_real(instance, references[i], &values[i]);

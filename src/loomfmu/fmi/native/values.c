@@ -5,8 +5,11 @@ static const char *const causality_names[] = {"parameter", "input", "output", "l
 /* The variable of that reference and kind, or NULL and a message. */
 static const Row *fmu_row(Instance *instance, unsigned reference, Kind kind)
 {
-    if (reference < VARIABLES && rows[reference].kind == kind) {
-        return &rows[reference];
+    if (reference >= FIRST_REFERENCE && reference - FIRST_REFERENCE < VARIABLES) {
+        const Row *row = &rows[reference - FIRST_REFERENCE];
+        if (row->kind == kind) {
+            return row;
+        }
     }
     (void)fmu_refuse(instance, "value reference %lu is no %s variable", reference, kind_names[kind]);
     return NULL;
