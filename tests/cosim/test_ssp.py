@@ -124,6 +124,47 @@ def test_the_step_is_what_libcosim_looks_for(demo: Path) -> None:
     assert float(experiment.get("stopTime")) == scenes.load(DEMO, SHORT).step_size * 45
 
 
+def test_it_has_what_omsimulator_asks_for_and_nothing_that_it_refuses(demo: Path) -> None:
+    found = structure(demo)
+    place = "ssd:System/ssd:Annotations/ssc:Annotation"
+    assert found.find(place, NAMESPACES).get("type") == "org.openmodelica"
+    master = found.find(f"{place}/oms:Annotations/oms:SimulationInformation/oms:FixedStepMaster", NAMESPACES)
+    assert master.get("description") == "oms-ma"
+    assert float(master.get("stepSize")) == scenes.load(DEMO, SHORT).step_size
+    # oms::Model::importFromSnapshot and oms::System::importFromSnapshot end at any other element
+    names = [element.tag.rpartition("}")[2] for element in found]
+    assert names == ["System", "Units", "DefaultExperiment"]
+    names = [element.tag.rpartition("}")[2] for element in found.find("ssd:System", NAMESPACES)]
+    assert names == ["Elements", "Connections", "Annotations"]
+    with zipfile.ZipFile(demo) as archive:  # it looks for the prefix as it stands
+        assert b"<oms:FixedStepMaster " in archive.read("SystemStructure.ssd")
+
+
+def test_a_choice_is_written_by_its_name_and_only_where_it_is_not_the_default(
+    demo: Path, tmp_path: Path
+) -> None:
+    def choices(path: Path) -> list[str]:
+        parameters = []
+        with zipfile.ZipFile(path) as archive:
+            for name in archive.namelist():
+                if name.endswith(".ssv"):
+                    parameters += ElementTree.fromstring(archive.read(name)).iter(
+                        f"{{{NAMESPACES['ssv']}}}Enumeration"
+                    )
+        return [element.get("value") for element in parameters]
+
+    assert choices(demo) == []  # libcosim and ecos take no package with one
+    scene = scenes.load(DEMO, SHORT | {"dobby.law": "harmonic_ends"})
+    path = packed(scene, tmp_path)
+    assert choices(path) == ["harmonic_ends"]
+    with zipfile.ZipFile(path) as archive:
+        validate_tree(
+            etree.fromstring(archive.read("resources/dobby.ssv")), "SystemStructureParameterValues.xsd"
+        )
+    before = run(scene, output=tmp_path / "before.h5")
+    equal(before.trace, run(path, output=tmp_path / "after.h5").trace)
+
+
 def test_what_tells_of_our_master_is_left_to_others(tmp_path: Path) -> None:
     # they hand over values of the start of a step, which is what inputs_at_step_end says by default
     with zipfile.ZipFile(packed(small(90), tmp_path)) as archive:
@@ -234,6 +275,30 @@ def test_what_another_tool_has_changed_in_it_holds(demo: Path, tmp_path: Path) -
         )
 
 
+def test_a_package_of_the_form_before_is_still_read(demo: Path, tmp_path: Path) -> None:
+    # our annotation at the end of the root, a choice by its number
+    text = zipfile.ZipFile(demo).read("SystemStructure.ssd").decode()
+    ours = text[text.index('<ssc:Annotation type="org.pypi.loomfmu">') : text.index("</loomfmu:Scene>")]
+    ours += "</loomfmu:Scene></ssc:Annotation>"
+    rest = text[text.index("</loomfmu:Scene>") :]
+    end = rest[len("</loomfmu:Scene>") :].replace("</ssc:Annotation>", "", 1)
+    path = edited(
+        demo, tmp_path / "before.ssp", "SystemStructure.ssd",
+        (ours[: ours.index("</loomfmu:Scene>")] + rest, end),
+        ("</ssd:SystemStructureDescription>", f"<ssd:Annotations>{ours}</ssd:Annotations></ssd:SystemStructureDescription>"),
+    )  # fmt: skip
+    path = edited(
+        path, tmp_path / "old.ssp", "resources/dobby.ssv",
+        ("</ssv:Parameters>",
+         '<ssv:Parameter name="law"><ssv:Integer value="2"/></ssv:Parameter></ssv:Parameters>'),
+    )  # fmt: skip
+    assert [element.tag.rpartition("}")[2] for element in structure(path)][-1] == "Annotations"
+    after = run(path, output=tmp_path / "after.h5")
+    expected = run(DEMO, set=SHORT | {"dobby.law": "harmonic_ends"}, output=tmp_path / "expected.h5")
+    equal(after.trace, expected.trace)
+    assert list(map(str, after.claims)) == list(map(str, expected.claims))
+
+
 # ---- the command
 
 
@@ -259,7 +324,8 @@ def test_export_and_run_by_the_command(
 def test_what_others_cannot_set_is_told(demo: Path, tmp_path: Path) -> None:
     scene = scenes.load(DEMO, SHORT | {"dobby.law": "uniform"})
     assert ssp.export(scene, tmp_path / "law.ssp", "live") == [
-        "dobby.law is an enumeration: libcosim and ecos leave it at its default"
+        "dobby.law is an enumeration: libcosim and ecos do not take the package, OMSimulator leaves it at its"
+        " default"
     ]
     assert ssp.export(scenes.load(DEMO, SHORT), tmp_path / "law.ssp", "live") == []  # it is the default
     with pytest.raises(LoomfmuError, match=r"a system package brings its own FMUs; its flavour is settled$"):

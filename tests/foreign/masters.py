@@ -122,4 +122,41 @@ def fmpy(scene: Scene, directory: Path) -> Signals:
     return {signal: rows[signal] for signal in reals(scene)}
 
 
-MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy}
+def oms_library() -> ctypes.CDLL:
+    """OMSimulator's C functions, which its command and OMEdit call. Its Python classes go other ways."""
+    module = pytest.importorskip(
+        "OMSimulator", reason="OMSimulator is not installed: its package fetches binaries, or it is built"
+    )
+    folder = Path(module.__file__).parent
+    places = (folder / "libOMSimulator.so", folder.parent / "libOMSimulator.so")
+    return ctypes.CDLL(str(next(place for place in places if place.exists())))
+
+
+def omsimulator(scene: Scene, directory: Path) -> Signals:
+    """OMSimulator imports the package, with its master, its step and its values."""
+    library, model = oms_library(), ctypes.c_char_p()
+    assert library.oms_setTempDirectory(str(directory).encode()) == 0
+    path = str(packed(scene, directory)).encode()
+    assert library.oms_importFile(path, ctypes.byref(model)) == 0
+    assert model.value is not None
+    rows = {signal: [] for signal in reals(scene)}
+    crefs = {signal: f"{model.value.decode()}.{scene.name}.{signal}".encode() for signal in rows}
+    value = ctypes.c_double()
+    assert library.oms_setResultFile(model, b"", 1) == 0
+    assert library.oms_instantiate(model) == library.oms_initialize(model) == 0
+    for step in range(1, scene.steps + 1):
+        # it takes whole steps until it is there: half of one before, rounding decides nothing
+        assert library.oms_stepUntil(model, ctypes.c_double((step - 0.5) * scene.step_size)) == 0
+        for signal, values in rows.items():
+            assert library.oms_getReal(crefs[signal], ctypes.byref(value)) == 0
+            values.append(value.value)
+    assert library.oms_terminate(model) == library.oms_delete(model) == 0
+    return {signal: np.array(values) for signal, values in rows.items()}
+
+
+MASTERS: dict[str, Master] = {
+    "libcosim": libcosim,
+    "ecos": ecos,
+    "fmpy": fmpy,
+    "OMSimulator": omsimulator,
+}

@@ -37,7 +37,7 @@ def test_mechanisms_at_their_own_speed_need_no_wire(tmp_path: Path, master: str)
 
 
 @pytest.mark.usefixtures("natives")
-@pytest.mark.parametrize("master", ["libcosim", "ecos"])
+@pytest.mark.parametrize("master", ["libcosim", "ecos", "OMSimulator"])
 def test_a_wired_loom_converges_to_ours_with_the_step(tmp_path: Path, master: str) -> None:
     # fmpy's master is left out: it starts all wires at 0, which the springs of the dampers do not forget
     away: dict[str, list[float]] = {signal: [] for signal in ORDERS}

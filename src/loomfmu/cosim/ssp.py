@@ -1,7 +1,9 @@
 """A scene as a system package (SSP 1.0) for other tools.
 
 It holds the FMUs, the wiring with units and a diagram, the values of each instance as a parameter set, the
-step in the annotation that the Open Simulation Platform reads, and the text of the scene in one of our own.
+step in the annotations that the Open Simulation Platform and OMSimulator read, and the text of the scene in
+one of our own. OMSimulator refuses elements that it does not know, so there is no ssd:SystemGeometry, and our
+annotation stands where it passes over the ones of others.
 """
 
 import math
@@ -12,6 +14,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ..errors import LoomfmuError
 from ..files import check_target, write_file, zip_with
 from ..fmi import builder, native_builder
+from ..fmi.model_description import DEFAULT_TOLERANCE
 from ..fmi.xml_text import text_of
 from . import fmus
 from .fmus import Fmu, Port, Value
@@ -20,7 +23,7 @@ from .instances import Instance
 from .ports import Definition
 from .scene import Scene
 from .ssp_layout import Box, bends, layout
-from .ssp_xml import FMU, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
+from .ssp_xml import FMU, OMS, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
 
 PACKAGE = zip_with("a system package of loomfmu", SSD_FILE)
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
@@ -62,16 +65,14 @@ def _driven(scene: Scene) -> list[str]:
 
 
 def _enumerated(scene: Scene) -> list[str]:
-    """Choices that the masters of libcosim and ecos do not set, since they know no enumerations."""
-    found = []
-    for name, instance in scene.instances.items():
-        for variable, value in instance.values.items():
-            port = instance.fmu.ports[variable]
-            if port.base_type == "Enumeration" and value != port.start:
-                found.append(
-                    f"{name}.{variable} is an enumeration: libcosim and ecos leave it at its default"
-                )
-    return found
+    """Choices in the package that the masters of other tools do not set, since they know no enumerations."""
+    return [
+        f"{name}.{variable} is an enumeration: libcosim and ecos do not take the package, OMSimulator leaves"
+        " it at its default"
+        for name, instance in scene.instances.items()
+        for variable in _values(scene, instance)
+        if instance.fmu.ports[variable].choices
+    ]
 
 
 def default_flavour() -> str:
@@ -116,17 +117,20 @@ def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
     """What is set at the start, an input driven along a table to its first value.
 
     `inputs_at_step_end` tells of the master, not of the loom: other tools hand over values of the step's
-    start, which is what it says by default. So it is left out, unless the scene itself says so.
+    start, which is what it says by default. So it is left out, unless the scene itself says so. A choice
+    is left out where it is the default: libcosim and ecos take no package in which one is set.
     """
     driven = {d.variable: d.values[0] for d in scene.drives if d.instance == instance.name}
-    values = instance.values | driven
     return {
-        name: value for name, value in values.items() if not (name == "inputs_at_step_end" and value is True)
+        name: value
+        for name, value in (instance.values | driven).items()
+        if not (name == "inputs_at_step_end" and value is True)
+        and not (instance.fmu.ports[name].choices and value == instance.fmu.ports[name].start)
     }
 
 
 def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
-    """The values of an instance. Enumerations are written as integers: libcosim reads no other."""
+    """The values of an instance, those of an enumeration as the names of its items."""
     document = root(
         "ssv:ParameterSet", "ssv", "ssc", version="1.0", name=SET_NAME,
         generationTool=f"loomfmu {builder.version()}",
@@ -136,6 +140,9 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
     for name, value in values.items():
         port = instance.fmu.ports[name]
         parameter = SubElement(listed, "ssv:Parameter", name=port.own)
+        if port.choices:
+            SubElement(parameter, "ssv:Enumeration", value=port.choices[int(value) - port.first_choice])
+            continue
         attributes = {"value": str(value).lower() if port.kind == "Boolean" else repr(value)}
         if port.kind == "Real" and port.has_unit and port.definition is not None:
             attributes["unit"] = port.unit
@@ -149,7 +156,7 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
 
 
 def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
-    prefixes = ("ssd", "ssc", "osp", "loomfmu")
+    prefixes = ("ssd", "ssc", "osp", "oms", "loomfmu")
     document = root(
         "ssd:SystemStructureDescription", *prefixes, version="1.0", name=scene.name,
         description=scene.title, generationTool=f"loomfmu {builder.version()}",
@@ -165,11 +172,7 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
         bound = f"resources/{name}.ssv" if f"resources/{name}.ssv" in files else None
         _component(elements, name, sources[name], ports[name], boxes[name], bound)
     _connections(system, scene, boxes)
-    SubElement(
-        system, "ssd:SystemGeometry",
-        x1=repr(min(box.left for box in boxes.values())), y1=repr(min(box.bottom for box in boxes.values())),
-        x2=repr(max(box.right for box in boxes.values())), y2=repr(max(box.top for box in boxes.values())),
-    )  # fmt: skip
+    _master(system, scene)
     every = [port for ins, outs in ports.values() for port in (*ins, *outs)]
     used = {p.unit: p.definition for p in every if p.kind == "Real" and p.has_unit and p.definition}
     write_units(document, "ssd:Units", used)
@@ -236,12 +239,23 @@ def _connections(system: Element, scene: Scene, boxes: dict[str, Box]) -> None:
         )  # fmt: skip
 
 
+def _master(system: Element, scene: Scene) -> None:
+    """What OMSimulator asks for before it takes a system: which of its masters steps it, and how far."""
+    (annotation,) = _annotations(system, OMS)
+    information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
+    SubElement(
+        information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(scene.step_size),
+        relativeTolerance=repr(DEFAULT_TOLERANCE),
+    )  # fmt: skip
+
+
 def _experiment(document: Element, scene: Scene) -> None:
     """Start, stop and step, and the text of the scene."""
     experiment = SubElement(
         document, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(scene.steps * scene.step_size)
     )
-    algorithm = SubElement(_annotation(experiment, OSP), "osp:Algorithm")
+    theirs, ours = _annotations(experiment, OSP, OURS)
+    algorithm = SubElement(theirs, "osp:Algorithm")
     SubElement(algorithm, "osp:FixedStepAlgorithm", baseStepSize=repr(_whole_nanoseconds(scene.step_size)))
     if scene.step is None:
         times = {
@@ -249,7 +263,7 @@ def _experiment(document: Element, scene: Scene) -> None:
         }  # fmt: skip
     else:
         times = {"duration": repr(scene.revolutions), "step": repr(scene.step)}
-    SubElement(_annotation(document, OURS), "loomfmu:Scene", times).text = scene.text
+    SubElement(ours, "loomfmu:Scene", times).text = scene.text
 
 
 def _whole_nanoseconds(step_size: float) -> float:
@@ -263,5 +277,6 @@ def _whole_nanoseconds(step_size: float) -> float:
     return nearest if int(nearest * 1e9) == count else math.nextafter(nearest, math.inf)
 
 
-def _annotation(parent: Element, kind: str) -> Element:
-    return SubElement(SubElement(parent, "ssd:Annotations"), "ssc:Annotation", type=kind)
+def _annotations(parent: Element, *kinds: str) -> list[Element]:
+    section = SubElement(parent, "ssd:Annotations")
+    return [SubElement(section, "ssc:Annotation", type=kind) for kind in kinds]

@@ -94,7 +94,7 @@ class _Package:
 
     def scene(self, overrides: dict[str, Any]) -> Scene:
         """The scene that the package describes, with some values changed."""
-        annotation = _annotation(self.root, OURS, "loomfmu:Scene")
+        annotation = self._scene_of_ours()
         system = self.root.find(full("ssd:System"))
         if system is None:
             raise LoomfmuError(f"{SSD_FILE} describes no system")
@@ -115,6 +115,13 @@ class _Package:
         for name, variable in changed:
             check_free(made, name, variable)
         return made
+
+    def _scene_of_ours(self) -> Element | None:
+        """The text of the scene, if the package is ours. Packages of version 0.1.0 have it at the end of the root."""
+        experiment = self.root.find(full("ssd:DefaultExperiment"))
+        places = (self.root,) if experiment is None else (experiment, self.root)
+        found = [_annotation(place, OURS, "loomfmu:Scene") for place in places]
+        return next((element for element in found if element is not None), None)
 
     # ---- instances
 

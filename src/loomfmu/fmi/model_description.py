@@ -15,6 +15,7 @@ FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 FIRST_REFERENCE = 1  # not 0: then a value reference is a variable's place too, for which OMSimulator takes it
 DEFAULT_STOP_TIME = 1.0
 DEFAULT_STEP_SIZE = 1e-4
+DEFAULT_TOLERANCE = 1e-6  # for hosts that ask for one; nothing here is solved to a tolerance
 
 
 def model_description(
@@ -55,7 +56,7 @@ def model_description(
         SubElement(categories, "Category", name=category, description=description)
     SubElement(
         root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
-        stepSize=repr(DEFAULT_STEP_SIZE),
+        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
     )  # fmt: skip
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):

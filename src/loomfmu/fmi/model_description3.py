@@ -8,6 +8,7 @@ from .memoryless import is_memoryless
 from .model_description import (
     DEFAULT_STEP_SIZE,
     DEFAULT_STOP_TIME,
+    DEFAULT_TOLERANCE,
     FIRST_REFERENCE,
     about,
     attributes_of,
@@ -40,7 +41,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         SubElement(categories, "Category", name=category, description=description)
     SubElement(
         root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
-        stepSize=repr(DEFAULT_STEP_SIZE),
+        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
     )  # fmt: skip
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
