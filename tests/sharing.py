@@ -9,6 +9,7 @@ from filelock import FileLock
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim import fmus
+from loomfmu.fmi.cache import cache_directory
 from loomfmu.fmi.native_builder import host_platform
 
 
@@ -31,7 +32,7 @@ def native_fmus() -> dict[str, fmus.Fmu]:
 
     One process builds them, on all cores, while the others wait.
     """
-    cache = fmus.cache_directory()
+    cache = cache_directory()
     cache.mkdir(parents=True, exist_ok=True)
     with FileLock(cache / "native.lock"), ThreadPoolExecutor(max_workers=4) as pool:
         list(pool.map(lambda name: fmus.file_of(name, "native", (host_platform(),)), COMPONENTS))

@@ -14,6 +14,7 @@ from live_fmus import NAMES, fmu_cache
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.cosim import fmus
+from loomfmu.fmi.cache import cache_directory
 
 __all__ = ["fmu_cache"]
 
@@ -648,7 +649,7 @@ def test_files_that_are_no_fmus_are_told_in_one_line(tmp_path: Path) -> None:
         fmus.load(tmp_path / "none.fmu")
     with pytest.raises(LoomfmuError, match=r": not a readable FMU \(\[Errno 21\] Is a directory"):
         fmus.load(tmp_path)
-    unpacked = fmus.cache_directory() / "unpacked"
+    unpacked = cache_directory() / "unpacked"
     assert all(len(entry.name) == 64 for entry in unpacked.iterdir())  # nothing half unpacked is left
 
 

@@ -347,6 +347,17 @@ def test_an_fmu_that_cannot_be_instantiated_is_told(monkeypatch: pytest.MonkeyPa
     assert "\n" not in said
 
 
+def test_a_live_fmu_where_its_wrapper_has_no_library_is_told_with_what_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fmu = fmus.of_component("MainShaft")
+    monkeypatch.setattr("fmpy.platform", "darwin64")
+    with pytest.raises(LoomfmuError) as raised:
+        slave.Slave(fmu, "mine")
+    said = "has no library for this platform, darwin64; it has linux64, win64"
+    assert str(raised.value) == f"mine: {fmu.path} {said}"
+
+
 def test_an_instance_that_ended_fatally_is_neither_reused_nor_freed(
     monkeypatch: pytest.MonkeyPatch, counted: list[str]
 ) -> None:

@@ -142,6 +142,10 @@ def test_better_than_holding_the_inputs(native):
     assert carried < 1e-3 * held
 
 
+def test_none_at_all_are_taken_by_one_without_inputs(native):
+    assert native("MainShaft").start().set_derivatives({}) == OK
+
+
 @pytest.mark.parametrize(
     ("derivatives", "reason"),
     [

@@ -1,28 +1,28 @@
 """FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
-import os
 import shutil
-import tempfile
 import zipfile
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from io import BytesIO
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import fmpy
 
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
 from ..fmi import builder, native_builder
+from ..fmi.cache import cache_directory
 from ..fmi.model_description import model_description
 from .descriptions import is_ours, ports_of
 from .ports import Port, Value
 
 FLAVOURS = ("live", "native")
 
-__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "cache_directory", "file_of", "load", "of_component"]
+__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "file_of", "load", "of_component"]
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,6 @@ class Fmu:
 
     def check_platform(self, where: str) -> None:
         """Refuse a file that has no library for this machine, naming the platforms that it has."""
-        if self.given is None:
-            return
         here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
         libraries = self.directory / "binaries"
         if (libraries / here / f"{self.identifier}{fmpy.sharedLibraryExtension}").exists():
@@ -120,13 +118,6 @@ class Fmu:
         if name not in self.ports:
             raise LoomfmuError(f"{where}: {self.name} has no variable {name!r}{suggestion(name, self.ports)}")
         return self.ports[name]
-
-
-def cache_directory() -> Path:
-    """Where built and unpacked FMUs are kept: LOOMFMU_CACHE, or loomfmu in the user's cache directory."""
-    if "LOOMFMU_CACHE" in os.environ:
-        return Path(os.environ["LOOMFMU_CACHE"])
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "loomfmu"
 
 
 @cache
@@ -214,7 +205,8 @@ def _unpacked(path: Path, sha256: str) -> Path:
     target = cache_directory() / "unpacked" / sha256
     if not target.exists():
         target.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(dir=target.parent))
+        temporary = target.with_name(f"{sha256}.{uuid4().hex}")
+        temporary.mkdir()  # as open to others as the umask lets it be: a cache may be shared
         try:
             fmpy.extract(str(path), unzipdir=str(temporary))
             temporary.rename(target)

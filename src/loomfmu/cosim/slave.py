@@ -71,6 +71,7 @@ class Slave:
         self.fatal = False
         self.started = False
         self._saved: int | None = None
+        fmu.check_platform(name)
         try:
             self._slave = self._open()
         except Exception as error:

@@ -244,7 +244,7 @@ def _master(system: Element, scene: Scene) -> None:
     (annotation,) = _annotations(system, OMS)
     information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
     SubElement(
-        information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(scene.step_size),
+        information, "oms:FixedStepMaster", description="oms-ma", stepSize=_plain(scene.step_size),
         relativeTolerance=repr(DEFAULT_TOLERANCE),
     )  # fmt: skip
 
@@ -252,7 +252,7 @@ def _master(system: Element, scene: Scene) -> None:
 def _experiment(document: Element, scene: Scene) -> None:
     """Start, stop and step, and the text of the scene."""
     experiment = SubElement(
-        document, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(scene.steps * scene.step_size)
+        document, "ssd:DefaultExperiment", startTime="0.0", stopTime=_plain(scene.steps * scene.step_size)
     )
     theirs, ours = _annotations(experiment, OSP, OURS)
     algorithm = SubElement(theirs, "osp:Algorithm")
@@ -264,6 +264,15 @@ def _experiment(document: Element, scene: Scene) -> None:
     else:
         times = {"duration": repr(scene.revolutions), "step": repr(scene.step)}
     SubElement(ours, "loomfmu:Scene", times).text = scene.text
+
+
+def _plain(time: float) -> str:
+    """A time without the rounding of the products that it comes from.
+
+    >>> _plain(0.09999999999999999)
+    '0.1'
+    """
+    return repr(float(f"{time:.15g}"))
 
 
 def _whole_nanoseconds(step_size: float) -> float:

@@ -17,9 +17,10 @@ from urllib.parse import unquote, urlsplit
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
 from ..errors import LoomfmuError
+from ..fmi.cache import cache_directory
 from . import fmus
 from .descriptions import plain_names
-from .fmus import Fmu, cache_directory
+from .fmus import Fmu
 from .graph import Wire
 from .instances import (
     PARAMETER_SETS,
@@ -117,7 +118,7 @@ class _Package:
         return made
 
     def _scene_of_ours(self) -> Element | None:
-        """The text of the scene, if the package is ours. Packages of version 0.1.0 have it at the end of the root."""
+        """The text of the scene, if the package is ours; those of version 0.1.0 have it at the root's end."""
         experiment = self.root.find(full("ssd:DefaultExperiment"))
         places = (self.root,) if experiment is None else (experiment, self.root)
         found = [_annotation(place, OURS, "loomfmu:Scene") for place in places]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
 from ..fmi import native_builder
-from .fmus import cache_directory
+from ..fmi.cache import cache_directory
 from .grid import Span
 from .slave import WARNING, Call, Ended, Slave
 

@@ -47,8 +47,8 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _variable(listed, reference, variable, name)
     SubElement(
-        listed, "Float64", name="time", valueReference=str(_time_reference(variables)), causality="independent",
-        variability="continuous", unit="s", description="Simulation time",
+        listed, "Float64", name="time", valueReference=str(_time_reference(variables)),
+        causality="independent", variability="continuous", unit="s", description="Simulation time",
     )  # fmt: skip
     _structure(root, variables)
     return text_of(root)

@@ -20,10 +20,11 @@ from ..errors import LoomfmuError, suggestion
 from ..files import write_file
 from ..variables import Component
 from .builder import FMU, described, file_in, folder, guid, license_of, version, zipped
+from .cache import compiler_environment
 from .fat_binary import fat_binary
 from .model_description import model_description
 from .model_description3 import model_description3
-from .native_tables import has_inputs, output_order, tables
+from .native_tables import output_order, tables
 from .translate import translate
 
 SHELL = Path(__file__).with_name("native")
@@ -138,7 +139,8 @@ def _description(component: type[Component], fmi: int) -> bytes:
     if fmi == 3:
         return model_description3(component, guid(component), version())
     capabilities = {
-        "canInterpolateInputs": str(has_inputs(component)).lower(),
+        # of one without inputs too: PyFMI's master extrapolates a whole system or nothing of it
+        "canInterpolateInputs": "true",
         "maxOutputDerivativeOrder": str(output_order(component)),
     }
     return model_description(component, guid(component), version(), capabilities)
@@ -234,7 +236,14 @@ def _compile(source: str, output: Path, target: str, directory: Path) -> None:
     platform = next(each for each in PLATFORMS.values() if target in each.targets)
     options = [option.format(name=output.stem) for option in platform.options]
     call = [sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-o", str(output), source]
-    run = subprocess.run([*call, *options], cwd=directory, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [*call, *options],
+        cwd=directory,
+        env=compiler_environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if run.returncode != 0:
         reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
         raise LoomfmuError(f"{output.stem} cannot be compiled for {target}: {reason}")

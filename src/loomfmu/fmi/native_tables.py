@@ -94,11 +94,6 @@ def output_order(component: type[Component]) -> int:
     return longest
 
 
-def has_inputs(component: type[Component]) -> bool:
-    """Whether there are inputs that a shell can carry over a step."""
-    return any(v.causality == "input" and v.type is float for v in variables_of(component))
-
-
 def _row(variable: Variable, names: list[str]) -> str:
     low = "-DBL_MAX" if variable.minimum is None else repr(float(variable.minimum))
     high = "DBL_MAX" if variable.maximum is None else repr(float(variable.maximum))
