@@ -89,7 +89,8 @@ def fuzzed(host: Path, seed: int) -> list[int]:
 )
 def test_random_calls_and_random_bytes_do_no_harm(fuzzer, name, fmi):
     stepped, other, unpacked, refused = fuzzed(fuzzer(name, fmi), 1)
-    assert stepped > 2000 and unpacked > 100 and unpacked + refused > 2000
+    # by the seed 1800 to 4800 calls are steps that could be made
+    assert stepped > 1500 and unpacked > 100 and unpacked + refused > 2000
     assert other > 50 or (fmi == 3 and name not in MEMORYLESS)
 
 
