@@ -19,9 +19,9 @@ def coefficient() -> Section:
     rows = []
     for row in table("productivity"):
         width, rate = float(row["width_m"]), float(row["rate_m_min"])
-        speed = 2.0 * math.pi * rate / width  # rad/min: the coefficient comes out per minute
+        speed = 2.0 * math.pi * rate / 60.0 / width
         slip = row["machine"].startswith(("TM", "Jurgens"))
-        pair = Pair(row["coefficient"], productivity_coefficient(width, speed), 1, misprint=slip)
+        pair = Pair(row["coefficient"], 60.0 * productivity_coefficient(width, speed), 1, misprint=slip)
         rows.append(Row((row["machine"], row["width_m"], row["rate_m_min"], pair)))
     return Section(
         "Table 1.1: productivity coefficient, m/min over the square root of m",
