@@ -7,6 +7,7 @@ documentation, the checks of limits and the C struct all come from `variables_of
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from typing import Any, ClassVar
 
@@ -21,7 +22,8 @@ class Variable:
     `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
-    output jumps.
+    output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
+    instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds.
     """
 
     name: str
@@ -40,6 +42,9 @@ class Variable:
     depends: tuple[str, ...] | None = None
     choices: tuple[str, ...] = ()
     indicator: bool = False
+    source: str | None = None
+    lowest_of: str | None = None
+    highest_of: str | None = None
 
     @property
     def settable(self) -> bool:
@@ -100,6 +105,12 @@ class Problem:
 
     text: str
     warning: bool = False
+
+
+# What a component carries from step to step, where its inputs hold at the step's end: nothing, so that its
+# outputs are functions of time, parameters and inputs; extremes, so that all other outputs are; or its motion,
+# which integrates over its inputs.
+NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 
 @dataclass(frozen=True)
@@ -170,12 +181,13 @@ def input_(
     nominal: float | None = None,
     unbounded: bool = False,
     rate: str | None = None,
+    source: str | None = None,
 ) -> Any:
     """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
     variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "input", variability, unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate,
+        minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate, source=source,
     )  # fmt: skip
 
 
@@ -190,11 +202,14 @@ def output(
     unbounded: bool = False,
     rate: str | None = None,
     depends: tuple[str, ...] | None = None,
+    lowest_of: str | None = None,
+    highest_of: str | None = None,
 ) -> Any:
     """A value that the component computes."""
     return _declare(
         "output", variability, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
+        lowest_of=lowest_of, highest_of=highest_of,
     )  # fmt: skip
 
 
@@ -226,12 +241,23 @@ class Component:
 
     problems: ClassVar[tuple[Problem, ...]] = ()
     terminals: ClassVar[tuple[Terminal, ...]] = ()
+    # what it carries from step to step; where nothing is said, the case in which every step counts
+    keeps: ClassVar[str] = MOTION
+    # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
+    windows: ClassVar[tuple[str, ...]] = ()
+    # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
+    unsteady: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         for variable in variables_of(type(self)):
             complaint = variable.complaint(getattr(self, variable.name)) if variable.settable else ""
             if complaint:
                 raise ValueError(f"{type(self).__name__}.{complaint}")
+
+    @classmethod
+    def longest_step(cls, values: Mapping[str, Any]) -> tuple[float, str]:
+        """The longest step that shows how its outputs change with these parameters [s], and why."""
+        return math.inf, ""
 
     def check(self) -> int:
         """The number of the first problem of the parameters, or 0."""

@@ -5,10 +5,23 @@ import random
 import re
 
 import pytest
-from driving import advance, assign, declared, drawn_inputs, flags, inputs, moved, span, values
+from driving import (
+    advance,
+    assign,
+    declared,
+    drawn_inputs,
+    drawn_parameters,
+    flags,
+    inputs,
+    moved,
+    span,
+    values,
+)
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim import standard_loom
+from loomfmu.variables import EXTREMES, MOTION, NOTHING
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 every_flag = pytest.mark.parametrize(
@@ -27,6 +40,54 @@ def finite(component):
         value = getattr(component, variable.name)
         assert type(value) is variable.type, variable.name
         assert math.isfinite(value), variable.name
+
+
+# What a component says of itself
+
+
+@every_component
+def test_what_is_said_of_variables_names_variables(component):
+    outputs = {variable.name for variable in declared(component) if variable.causality == "output"}
+    held = {v.name: v.lowest_of or v.highest_of for v in declared(component) if v.lowest_of or v.highest_of}
+    assert set(held) | set(held.values()) | set(component.windows) <= outputs
+    assert component.keeps in (NOTHING, EXTREMES, MOTION)
+    assert bool(held) == (component.keeps == EXTREMES)
+    assert set(component.unsteady) <= {v.name for v in declared(component) if v.causality == "parameter"}
+
+
+@every_component
+def test_every_usual_source_is_an_output_of_the_standard_loom(component):
+    for sink, source in standard_loom.wires("damper_1", component).items():
+        owner, variable = source.split(".")
+        feeding = COMPONENTS[standard_loom.COMPONENT_OF[standard_loom.stem(owner)]]
+        units_of = {v.name: v.unit for v in declared(feeding) if v.causality == "output"}
+        assert units_of[variable] == next(v.unit for v in declared(component) if v.name == sink)
+
+
+@every_component
+@pytest.mark.parametrize("seed", range(5))
+def test_what_keeps_no_motion_shows_what_its_inputs_ask_for(component, seed):
+    """Whatever came before; only the extremes that it holds may differ."""
+    if component.keeps == MOTION:
+        return
+    rng = random.Random(seed)
+    parameters = drawn_parameters(component, rng)
+    if component.keeps == EXTREMES:
+        parameters["inputs_at_step_end"] = True  # as our master sets it: nothing is carried over a step
+    used, fresh = component(**parameters), component(**parameters)
+    if used.initialize(0.0) != 0:
+        return
+    for step in range(9):
+        assign(used, drawn_inputs(component, rng))
+        if used.step(0.01 * step, 0.01) != 0:
+            return
+    assign(fresh, values(used, "input"))
+    fresh.initialize(0.08)
+    assert fresh.step(0.08, 0.01) == 0
+    for variable in declared(component):
+        if variable.causality == "output" and not (variable.lowest_of or variable.highest_of):
+            # the same operations on the same numbers: no tolerance
+            assert getattr(fresh, variable.name) == getattr(used, variable.name), variable.name
 
 
 # Declaration

@@ -438,3 +438,11 @@ def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> N
     assert math.isclose(result.scene.speed, 700 * RPM)
     assert math.isclose(scene.speed, 400 * RPM)
     assert result.trace["shaft.velocity"][0] == result.scene.speed
+
+
+def test_a_mechanism_that_follows_no_shaft_beside_one_is_named() -> None:
+    cut = "\n".join(f'"weft.shaft_{name}" = false' for name in ("angle", "velocity", "acceleration"))
+    scene = scenes.parse(f'[loom]\nmachine = "WL680-3600"\n[wires]\n{cut}\n')
+    note = "weft turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+    assert note in scene.notes
+    assert scenes.parse('[loom]\nmachine = "WL680-3600"\n').notes == ()

@@ -7,7 +7,9 @@ from typing import Any
 
 from fmpy import calloc, free, platform
 
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.fmus import Fmu
+from loomfmu.variables import NOTHING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
@@ -166,3 +168,6 @@ class Native:
 
     def drop(self, state: c_void_p) -> int:
         return self.call("FreeFMUstate", byref(state))
+
+
+MEMORYLESS = tuple(name for name, component in COMPONENTS.items() if component.keeps == NOTHING)

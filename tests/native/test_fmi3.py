@@ -15,12 +15,12 @@ import fmpy
 import pytest
 from driving import assign, drawn_inputs, drawn_parameters
 from fmpy.validation import validate_fmu
+from natives import MEMORYLESS
 from natives3 import DISCARD, ERROR, OK, TIME, TYPES, Native3, Unpacked3
 
 from loomfmu.components import COMPONENTS
 from loomfmu.fmi import native_builder
 from loomfmu.fmi.builder import guid
-from loomfmu.fmi.memoryless import MEMORYLESS
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 from fmpy import platform
+from natives import MEMORYLESS
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi.memoryless import MEMORYLESS
 from loomfmu.fmi.native_builder import HEADERS, sources
 from loomfmu.variables import variables_of
 

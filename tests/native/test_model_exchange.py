@@ -9,11 +9,10 @@ import fmpy
 import numpy as np
 import pytest
 from driving import assign, drawn_inputs
-from natives import ERROR, OK, Native
+from natives import ERROR, MEMORYLESS, OK, Native
 
 from loomfmu.components import COMPONENTS
 from loomfmu.fmi import native_builder
-from loomfmu.fmi.memoryless import MEMORYLESS
 from loomfmu.variables import variables_of
 
 solved = pytest.mark.parametrize("name", MEMORYLESS)

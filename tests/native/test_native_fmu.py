@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from fmpy.validation import validate_fmu
-from natives import library
+from natives import MEMORYLESS, library
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim import fmus
@@ -18,7 +18,6 @@ from loomfmu.errors import LoomfmuError
 from loomfmu.fmi import native_builder
 from loomfmu.fmi.builder import guid
 from loomfmu.fmi.fat_binary import ALIGNMENT, fat_binary
-from loomfmu.fmi.memoryless import MEMORYLESS
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

@@ -22,7 +22,7 @@ from ..physics.motion import (
     sample_noise,
 )
 from ..physics.shaft import carried, too_far
-from ..variables import Problem, Terminal, input_, output, parameter, state
+from ..variables import EXTREMES, Problem, Terminal, input_, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -46,6 +46,8 @@ class BeltMonitor(ShaftDriven):
         ),
         TOO_FAR,
     )
+    keeps: ClassVar[str] = EXTREMES
+    windows: ClassVar[tuple[str, ...]] = ("free_length", "axial_force")
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *ShaftDriven.terminals,
         HEAD.of("travel", "velocity", "acceleration"),
@@ -104,21 +106,23 @@ class BeltMonitor(ShaftDriven):
     )  # fmt: skip
     length_factor: float = output("1", "Column length factor in use", depends=("guide_clearance",))
     margin: float = output("1", "Margin against buckling, 1 - compression / critical load")
-    lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve")
+    lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve", lowest_of="margin")
     speed_limit: float = output(
         "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min for none",
         display="rev/min", nominal=100.0,
     )  # fmt: skip
     lowest_speed_limit: float = output(
-        "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0
-    )
+        "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0,
+        lowest_of="speed_limit",
+    )  # fmt: skip
     deflection: float = output("m", "Largest deflection of the buckled belt, exact elastica", display="mm")
     at_risk: bool = output(
         "1", "The belt is outside its guide and under compression", start=False, variability="discrete"
     )
     buckled: bool = output(
-        "1", "The belt has buckled at some time so far", start=False, variability="discrete"
-    )
+        "1", "The belt has buckled at some time so far", start=False, variability="discrete",
+        lowest_of="margin",
+    )  # fmt: skip
 
     acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
     bend_rate: float = state("m/s", "Rate of the second derivative by shaft angle between the samples")

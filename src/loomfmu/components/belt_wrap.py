@@ -1,14 +1,17 @@
 """BeltWrap: what holds the rapier belt on its wheel."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
-from ..variables import Component, input_, output, parameter
+from ..variables import NOTHING, Component, input_, output, parameter
 
 
 @dataclass(slots=True)
 class BeltWrap(Component):
     """Belt wrapped on the rapier wheel: load of the blocks that press it there."""
+
+    keeps: ClassVar[str] = NOTHING
 
     bending_stiffness: float = parameter(
         "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6

@@ -14,7 +14,7 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, indicator, input_, output, parameter
+from ..variables import NOTHING, Problem, indicator, input_, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
@@ -28,6 +28,7 @@ class DetachingRoller(ShaftDriven):
     built-in motion, an assumption; without it the inputs say how they move.
     """
 
+    keeps: ClassVar[str] = NOTHING
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "the top roller's inertia takes more than the friction of the nip can hold at roller_acceleration"

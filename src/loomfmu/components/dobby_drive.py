@@ -17,7 +17,7 @@ from ..physics.rotor_mechanisms import (
 from ..physics.rotor_table import TABLE
 from ..physics.shaft import too_far
 from ..physics.shed_cam import SPLINE_CAM, cam_phase
-from ..variables import Terminal, indicator, output
+from ..variables import NOTHING, Terminal, indicator, output
 from .rotor_laws import RotorLaws
 from .terminals import ROTOR
 
@@ -30,6 +30,7 @@ class DobbyDrive(RotorLaws):
     two picks, and the rotor angle is only its phase.
     """
 
+    keeps: ClassVar[str] = NOTHING
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *RotorLaws.terminals,
         ROTOR.of(

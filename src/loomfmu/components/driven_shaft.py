@@ -40,11 +40,11 @@ class DrivenShaft(Component):
     )
     torque_1: float = input_(
         "N.m", 0.0, "Torque that a first mechanism asks of the shaft; positive brakes it", nominal=10.0,
-        minimum=-1e12, maximum=1e12,
+        minimum=-1e12, maximum=1e12, source="weft.shaft_torque",
     )  # fmt: skip
     torque_2: float = input_(
         "N.m", 0.0, "Torque that a second mechanism asks of the shaft", nominal=10.0,
-        minimum=-1e12, maximum=1e12,
+        minimum=-1e12, maximum=1e12, source="reed.shaft_torque",
     )  # fmt: skip
     torque_3: float = input_(
         "N.m", 0.0, "Torque that a third mechanism asks of the shaft", nominal=10.0,

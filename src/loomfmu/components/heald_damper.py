@@ -81,8 +81,9 @@ class HealdDamper(Component):
         "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
     )
     warp_force: float = input_(
-        "N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0, minimum=-1e12, maximum=1e12
-    )
+        "N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0, minimum=-1e12, maximum=1e12,
+        source="warp_#.frame_load",
+    )  # fmt: skip
     displacement: float = output(
         "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
     )

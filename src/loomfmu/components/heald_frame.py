@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..physics.heald import lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import Component, Problem, Terminal, indicator, input_, output, parameter
+from ..variables import NOTHING, Component, Problem, Terminal, indicator, input_, output, parameter
 from .terminals import FRAME, ROTOR
 
 
@@ -24,6 +24,7 @@ class HealdFrame(Component):
             " 2e-7 rad; start nearer to time and angle 0"
         ),
     )
+    keeps: ClassVar[str] = NOTHING
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",

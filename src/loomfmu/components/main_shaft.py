@@ -1,11 +1,15 @@
 """MainShaft: the loom's main shaft, which all mechanisms follow."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from math import inf, pi
+from typing import Any, ClassVar
 
 from ..physics.shaft import shaft_motion
-from ..variables import Component, Terminal, output, parameter
+from ..variables import NOTHING, Component, Terminal, output, parameter
 from .terminals import SHAFT
+
+WAVE = 16  # least steps in a ripple of the speed, and in the start-up
 
 
 @dataclass(slots=True)
@@ -13,6 +17,8 @@ class MainShaft(Component):
     """The loom's main shaft: constant speed, a smooth start-up ramp, a speed ripple."""
 
     terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
+    keeps: ClassVar[str] = NOTHING
+    unsteady: ClassVar[tuple[str, ...]] = ("ramp_duration", "ripple_amplitude")
 
     speed: float = parameter(
         "rad/s", 41.88790204786391, "Mean shaft speed after the start-up; a revolution is a pick",
@@ -34,6 +40,19 @@ class MainShaft(Component):
     )
     velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
+
+    @classmethod
+    def longest_step(cls, values: Mapping[str, Any]) -> tuple[float, str]:
+        """The longest step that shows a ripple of the speed, and the start-up."""
+        looks = [(inf, "")]
+        if values["ripple_amplitude"]:
+            order = values["ripple_order"]
+            wave = 2.0 * pi / (abs(values["speed"]) * order)
+            looks.append((wave / WAVE, f"the shaft ripples {order} times in a revolution"))
+        if values["ramp_duration"]:
+            ramp = values["ramp_duration"]
+            looks.append((ramp / WAVE, f"the shaft starts up in {ramp:.4g} s"))
+        return min(looks)
 
     def initialize(self, time: float) -> int:
         """Place the shaft where it is at the start."""

@@ -15,7 +15,7 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, indicator, output, parameter, state
+from ..variables import NOTHING, Problem, indicator, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -27,6 +27,7 @@ class PatternLock(ShaftDriven):
     start of the engagement to the next.
     """
 
+    keeps: ClassVar[str] = NOTHING
     problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
 
     pawl_mass: float = parameter(

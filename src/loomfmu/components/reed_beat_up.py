@@ -14,7 +14,7 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, output, parameter, state
+from ..variables import NOTHING, Problem, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -22,6 +22,7 @@ from .shaft_driven import TOO_FAR, ShaftDriven
 class ReedBeatUp(ShaftDriven):
     """Reed beat-up: a crank-rocker, a rod and a reed on a line; one beat-up in a revolution."""
 
+    keeps: ClassVar[str] = NOTHING
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "the crank does not turn over: crank_length = {crank_length}, coupler_length = {coupler_length},"

@@ -12,7 +12,7 @@ from ..physics.linkage import (
     wrapped,
 )
 from ..physics.shaft import too_far
-from ..variables import Problem, Terminal, output, parameter, state
+from ..variables import NOTHING, Problem, Terminal, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -35,6 +35,7 @@ class WeftInsertion(ShaftDriven):
         Problem("assembly = {assembly} is outside {{-1, 1}}"),
         TOO_FAR,
     )
+    keeps: ClassVar[str] = NOTHING
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *ShaftDriven.terminals,
         HEAD.of("travel", "velocity", "acceleration"),

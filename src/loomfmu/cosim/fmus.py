@@ -17,6 +17,7 @@ from ..errors import LoomfmuError, suggestion
 from ..fmi import builder, native_builder
 from ..fmi.cache import cache_directory
 from ..fmi.model_description import model_description
+from ..variables import MOTION, Component
 from .descriptions import is_ours, ports_of
 from .ports import Port, Value
 
@@ -56,6 +57,16 @@ class Fmu:
     needs_tool: bool = False
     flavour: str = ""
     given: Unpacked | None = field(default=None, repr=False)
+
+    @property
+    def component(self) -> type[Component] | None:
+        """The component it was made of, which declares what others must know; none of another maker's."""
+        return COMPONENTS.get(self.name) if self.ours else None
+
+    @property
+    def keeps(self) -> str:
+        """What it carries from step to step; of another maker's nobody knows, so that every step counts."""
+        return self.component.keeps if self.component else MOTION
 
     @property
     def built(self) -> bool:

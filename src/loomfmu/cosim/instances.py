@@ -40,7 +40,6 @@ SWITCHES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "follow_lift": (("lift_fraction", "lift_rate", "lift_acceleration"), ()),
     "prescribe_length_factor": (("prescribed_length_factor",), ("guide_clearance",)),
 }
-SHAFTS = ("MainShaft", "DrivenShaft")
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
 
@@ -66,8 +65,8 @@ class Instance:
             self._publish(key, given)
             return
         if self.fmu.ours and key == "pattern":
-            if self.fmu.name != "HealdFrame":
-                raise LoomfmuError(f"{self.name}.pattern: only a HealdFrame has a pattern")
+            if "pattern_length" not in self.fmu.ports:
+                raise LoomfmuError(f"{self.name}.pattern: a {self.fmu.name} has no pattern")
             self.values |= standard_loom.pattern(given, f"{self.name}.pattern")
             return
         name = self.fmu.name_of(key)
@@ -282,9 +281,10 @@ def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
     if "fmu" not in table:
         fmu = fmus.of_component(str(component))
-        if name == "shaft" and fmu.name not in SHAFTS:
+        shafts = standard_loom.shafts()
+        if name == "shaft" and fmu.name not in shafts:
             raise LoomfmuError(
-                f"shaft.component = {component!r}: the shaft of a scene is a {' or a '.join(SHAFTS)}"
+                f"shaft.component = {component!r}: the shaft of a scene is a {' or a '.join(shafts)}"
             )
         return fmu
     if "component" in table:

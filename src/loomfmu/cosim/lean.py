@@ -19,7 +19,6 @@ from .scene import Scene
 from .standard_loom import FOLLOWED
 
 Floats = NDArray[np.float64]
-VARYING = ("ramp_duration", "ripple_amplitude")  # parameters of a shaft whose speed is not constant
 
 
 @dataclass(frozen=True)
@@ -106,9 +105,9 @@ def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
 def _is_constant(scene: Scene, name: str) -> bool:
     """Whether an instance is a main shaft of constant speed that only mechanisms follow."""
     shaft = scene.instances[name]
-    if not shaft.fmu.ours or shaft.fmu.name != "MainShaft":
+    if shaft.fmu.component is None or not shaft.fmu.component.unsteady:
         return False
-    if any(shaft.values.get(variable, 0.0) != 0.0 for variable in VARYING):
+    if any(shaft.values.get(variable, 0.0) != 0.0 for variable in shaft.fmu.component.unsteady):
         return False
     return all(
         _follows(scene, sink, name) for sink in {w.sink[0] for w in scene.wires if w.source[0] == name}

@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
+from . import standard_loom
 from .drives import Drive
 from .graph import Wire
 from .instances import COARSE, KEYS, TIMES, Instance, instance, instance_tables, mixed, override
@@ -172,15 +173,20 @@ def assemble(
         coarse_steps_per_revolution=int(
             _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
-        notes=tuple(_notes(instances, drives)),
+        notes=tuple(_notes(instances, wires, drives)),
     )
     _check_time(scene)
     return scene
 
 
-def _notes(instances: dict[str, Instance], drives: list[Drive]) -> Iterable[str]:
+def _notes(instances: dict[str, Instance], wires: list[Wire], drives: list[Drive]) -> Iterable[str]:
     """What a user is to be warned of."""
     yield from mixed(instances)
+    fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
+    for name, each in instances.items() if "shaft" in instances else ():
+        inputs = standard_loom.shaft_inputs(each.fmu.component) if each.fmu.component else ()
+        if inputs and not any((name, variable) in fed for variable in inputs):
+            yield f"{name} turns at a speed of its own: none of its shaft inputs is wired to the shaft"
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 

@@ -5,7 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from .. import weave as weaves
+from ..components import COMPONENTS
+from ..components.shaft_driven import ShaftDriven
+from ..components.terminals import SHAFT
 from ..errors import LoomfmuError, suggestion
+from ..variables import Component, Terminal, variables_of
 
 COMPONENT_OF = {
     "shaft": "MainShaft",
@@ -21,44 +25,11 @@ COMPONENT_OF = {
     "roller": "DetachingRoller",
 }
 
-# input of a mechanism on the shaft -> output of the shaft that it follows
-FOLLOWED = {
-    "shaft_angle": "angle",
-    "shaft_velocity": "velocity",
-    "shaft_acceleration": "acceleration",
-}
-_SHAFT = {sink: f"shaft.{variable}" for sink, variable in FOLLOWED.items()}
+# kind of terminal -> the instance whose outputs it carries; # is the number of the instance that follows it
+SOURCES = {"shaft": "shaft", "head": "weft", "rotor": "dobby", "frame": "heald_#"}
 
-# component -> input -> output it is wired to if that instance is there; # is the instance's own number
-WIRES = {
-    "DrivenShaft": {"torque_1": "weft.shaft_torque", "torque_2": "reed.shaft_torque"},
-    "WeftInsertion": _SHAFT,
-    "DobbyDrive": _SHAFT,
-    "BeltMonitor": _SHAFT
-    | {"travel": "weft.travel", "velocity": "weft.velocity", "acceleration": "weft.acceleration"},
-    "HealdFrame": {
-        "rotor_angle": "dobby.rotor_angle",
-        "rotor_velocity": "dobby.rotor_velocity",
-        "rotor_acceleration": "dobby.rotor_acceleration",
-        "lift_fraction": "dobby.lift_fraction",
-        "lift_rate": "dobby.lift_rate",
-        "lift_acceleration": "dobby.lift_acceleration",
-    },
-    "HealdDamper": {
-        "lift": "heald_#.lift",
-        "velocity": "heald_#.velocity",
-        "acceleration": "heald_#.acceleration",
-        "warp_force": "warp_#.frame_load",
-    },
-    "WarpTension": {
-        "lift": "heald_#.lift",
-        "velocity": "heald_#.velocity",
-        "acceleration": "heald_#.acceleration",
-    },
-    "ReedBeatUp": _SHAFT,
-    "PatternLock": _SHAFT,
-    "DetachingRoller": _SHAFT,
-}
+# input of a mechanism on the shaft -> output of the shaft that it follows
+FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
 
 FRAME_FITTINGS = {"warps": "warp", "dampers": "damper"}  # one for each frame
 LOOM_FITTINGS = {"reed": "reed", "locks": "lock"}  # one for the loom
@@ -119,7 +90,37 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
-def wires(instance: str, component: str) -> dict[str, str]:
-    """Where the inputs of an instance are wired to in a standard loom."""
+def wires(instance: str, component: type[Component]) -> dict[str, str]:
+    """Where the inputs of an instance are wired to in a standard loom, by its declarations."""
+    inputs = {v.name: v.source for v in variables_of(component) if v.causality == "input"}
+    found = {name: source for name, source in inputs.items() if source}
+    for terminal in component.terminals:
+        if terminal.variables[0] in inputs:
+            owner = SOURCES[terminal.name]
+            outputs = _terminal(COMPONENTS[COMPONENT_OF[stem(owner.replace("_#", "_1"))]], terminal.name)
+            pairs = zip(terminal.variables, outputs.variables, strict=True)
+            found |= {sink: f"{owner}.{output}" for sink, output in pairs}
     number = instance.removeprefix(stem(instance))
-    return {name: source.replace("_#", number) for name, source in WIRES.get(component, {}).items()}
+    return {name: source.replace("_#", number) for name, source in found.items()}
+
+
+def _terminal(component: type[Component], name: str) -> Terminal:
+    return next(terminal for terminal in component.terminals if terminal.name == name)
+
+
+def shaft_inputs(component: type[Component]) -> tuple[str, ...]:
+    """The inputs by which a component follows a shaft; none where it follows none."""
+    inputs = {v.name for v in variables_of(component) if v.causality == "input"}
+    terminals = (t for t in component.terminals if t.name == SHAFT.name and t.variables[0] in inputs)
+    return next((terminal.variables for terminal in terminals), ())
+
+
+def shafts() -> list[str]:
+    """The components that turn others: those whose outputs are a shaft."""
+    return [name for name, each in COMPONENTS.items() if turns_others(each)]
+
+
+def turns_others(component: type[Component]) -> bool:
+    """Whether the outputs of a component are a shaft that others follow."""
+    outputs = {v.name for v in variables_of(component) if v.causality == "output"}
+    return any(t.name == SHAFT.name and t.variables[0] in outputs for t in component.terminals)

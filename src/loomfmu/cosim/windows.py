@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from .. import units
 from ..errors import LoomfmuError
 from ..traces import Recording
+from ..variables import MOTION, variables_of
 from . import claims, curves
 from .asked import shaft_angle, with_rates
 from .graph import step_order
@@ -26,6 +27,7 @@ from .grid import Grid, chosen, period, uniform
 from .lean import lean
 from .play import remembered
 from .scene import Scene
+from .standard_loom import turns_others
 
 Floats = NDArray[np.float64]
 Look = Callable[..., None]
@@ -34,10 +36,7 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
-WAVE = 16  # least steps in a ripple of the shaft's speed, and in its start-up
-INTEGRATING = ("HealdDamper", "WarpTension")  # over their inputs
-# latched output of a belt -> what it follows
-BELT = {"lowest_margin": "margin", "lowest_speed_limit": "speed_limit", "buckled": "margin"}
+WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that it stands for has none
 
 
 @dataclass
@@ -74,7 +73,7 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
         )
     longest = coarse
     for name, instance in needed.instances.items():
-        if instance.fmu.name in INTEGRATING and longest > fine:
+        if instance.fmu.keeps == MOTION and longest > fine:
             longest, why = fine, f"{name} integrates"
     places, scouted = _scouted(scene, signals, coarse, longest)
     points = _merged(_equal(scene, places.most), places, APART * period(scene))
@@ -87,7 +86,6 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
 
 def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float) -> tuple[Places, int]:
     """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
-    fine = period(scene) / scene.steps_per_revolution
     # an input that the scene drives has kinks
     kinks = [turn * period(scene) for drive in scene.drives for turn in drive.revolutions]
     places, scouted = Places(period(scene), longest, kinks), 0
@@ -100,9 +98,9 @@ def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float
         places = Places(period(scene), longest, list(kinks))
         for claim in scene.claims:
             arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
-            LOOKS.get(claim["kind"], _everywhere)(places, recording, fine, **arguments)
-        for belt, followed in _latched(scene, signals):
-            _risk(places, recording, fine, belt, followed)
+            LOOKS.get(claim["kind"], _everywhere)(places, recording, scene, **arguments)
+        for output in _latched(scene, signals):
+            _extremes(places, recording, scene, output)
     return places, scouted
 
 
@@ -119,7 +117,8 @@ def _unequal(needed: Scene) -> str:
     if lagged:
         return f"{lagged[0]} closes a loop"
     for name, instance in needed.instances.items():
-        if not instance.fmu.ours or instance.fmu.name == "DrivenShaft":
+        component = instance.fmu.component
+        if component is None or (component.keeps == MOTION and turns_others(component)):
             return f"{name} integrates"
     return ""
 
@@ -127,14 +126,9 @@ def _unequal(needed: Scene) -> str:
 def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move, how the shaft's speed changes, and why."""
     yield period(scene) / scene.coarse_steps_per_revolution, ""
-    shaft = scene.instances["shaft"]
-    if shaft.fmu.ours and shaft.fmu.name == "MainShaft":
-        values = shaft.effective()
-        if values["ripple_amplitude"]:
-            order = values["ripple_order"]
-            yield period(scene) / (WAVE * order), f"the shaft ripples {order} times in a revolution"
-        if values["ramp_duration"]:
-            yield values["ramp_duration"] / WAVE, f"the shaft starts up in {values['ramp_duration']:.4g} s"
+    for each in scene.instances.values():
+        if each.fmu.component:
+            yield each.fmu.component.longest_step(each.effective())
 
 
 def _check(scene: Scene) -> None:
@@ -162,30 +156,38 @@ def _equal(scene: Scene, longest: float) -> Floats:
     return np.linspace(0.0, end, max(1, math.ceil(end / longest - 1e-9)) + 1)
 
 
-def _latched(scene: Scene, signals: Iterable[str]) -> list[tuple[str, str]]:
-    """Belts whose latched values are among the signals, and what these follow."""
+def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
+    """The outputs of an instance that hold an extreme or are followed by one: of which, 1 for its lowest."""
+    component = scene.instances[instance].fmu.component
+    found: dict[str, tuple[str, float]] = {}
+    for variable in variables_of(component) if component else ():
+        for followed, sign in ((variable.lowest_of, 1.0), (variable.highest_of, -1.0)):
+            if followed:
+                found |= {variable.name: (followed, sign), followed: (followed, sign)}
+    return found
+
+
+def _latched(scene: Scene, signals: Iterable[str]) -> list[str]:
+    """The signals that hold an extreme so far."""
     parts = [signal.split(".") for signal in signals]
-    found = [(belt, BELT[name]) for belt, name in parts if name in BELT]
-    return [each for each in dict.fromkeys(found) if scene.instances[each[0]].fmu.name == "BeltMonitor"]
+    held = [(name, variable, _extremes_of(scene, name).get(variable)) for name, variable in parts]
+    return [f"{name}.{variable}" for name, variable, extreme in held if extreme and extreme[0] != variable]
 
 
 def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
     """The signals that tell where the claims look, and where what is latched in those kept comes from."""
-    wanted, belts = list(shaft_angle(scene)), list[str]()
+    wanted, owners = list(shaft_angle(scene)), list[str]()
     for claim in scene.claims:
         signals = claims.signals_of(claim, scene.instances)
         wanted += signals if LOOKS.get(claim["kind"]) not in (None, _nowhere) else []
-        belts += _belts(scene, signals)
-    belts += [belt for belt, _followed in _latched(scene, kept)]
-    for belt in dict.fromkeys(belts):
-        wanted += [f"{belt}.{name}" for name in ("free_length", "axial_force", *BELT.values())]
+        owners += [signal.split(".")[0] for signal in signals]
+    owners += [signal.split(".")[0] for signal in _latched(scene, kept)]
+    for owner in dict.fromkeys(owners):
+        followed = dict.fromkeys(name for name, _sign in _extremes_of(scene, owner).values())
+        component = scene.instances[owner].fmu.component
+        windows = component.windows if component and followed else ()
+        wanted += [f"{owner}.{name}" for name in (*windows, *followed)]
     return with_rates(scene, wanted)
-
-
-def _belts(scene: Scene, signals: Iterable[str]) -> list[str]:
-    """The belt monitors among the instances of some signals."""
-    owners = dict.fromkeys(signal.split(".")[0] for signal in signals)
-    return [name for name in owners if scene.instances[name].fmu.name == "BeltMonitor"]
 
 
 def _merged(equal: Floats, places: Places, apart: float) -> Floats:
@@ -205,9 +207,11 @@ def _merged(equal: Floats, places: Places, apart: float) -> Floats:
 # ---- where the claims of each kind look
 
 
-def _risk(places: Places, trace: Recording, fine: float, belt: str, followed: str) -> None:
-    """The edges of each window of risk, its lowest point once samples show it, else points within."""
-    for low, high in _risk_windows(trace, belt):
+def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> None:
+    """The edges of each window, the extreme within once samples show it, else points to see it by."""
+    instance, _, variable = signal.partition(".")
+    followed, sign = _extremes_of(scene, instance)[variable]
+    for low, high in _windows(trace, scene, instance):
         places.points += [low, high]
         inside = np.flatnonzero((trace.time > low) & (trace.time < high))
         if len(inside) < INSIDE:
@@ -215,25 +219,25 @@ def _risk(places: Places, trace: Recording, fine: float, belt: str, followed: st
             continue
         seen = slice(inside[0], inside[-1] + 1)
         spacing = (high - low) / (INSIDE + 1)
-        values = trace[f"{belt}.{followed}"][seen]
-        if followed == "speed_limit":
-            values = -(values**-2.0)  # it has poles at the edges, the load that it stands for has none
+        values = sign * trace[f"{instance}.{followed}"][seen]
+        if followed in WITH_POLES:
+            values = -(values**-2.0)
         for time in _lowest_points(trace.time[seen], values):
             places.bracket(time, REACH * spacing)
 
 
-def _risk_windows(trace: Recording, belt: str) -> list[tuple[float, float]]:
-    """Where the belt is outside its guide and compressed: the spline through the samples tells the edges."""
+def _windows(trace: Recording, scene: Scene, instance: str) -> list[tuple[float, float]]:
+    """Where all outputs that bound an instance's windows are positive: splines through the samples tell."""
     from scipy.interpolate import CubicSpline
 
-    length, force = (
-        CubicSpline(trace.time, trace[f"{belt}.{name}"]) for name in ("free_length", "axial_force")
-    )
-    ends = trace.time[[0, -1]]
-    edges = np.unique([*ends, *length.roots(extrapolate=False), *force.roots(extrapolate=False)])
+    component = scene.instances[instance].fmu.component
+    names = component.windows if component else ()
+    bounding = [CubicSpline(trace.time, trace[f"{instance}.{name}"]) for name in names]
+    roots = [root for each in bounding for root in each.roots(extrapolate=False)]
+    edges = np.unique([*trace.time[[0, -1]], *roots])
     middles = 0.5 * (edges[1:] + edges[:-1])
-    at_risk = (length(middles) > 0.0) & (force(middles) > 0.0)
-    return [(float(edges[place]), float(edges[place + 1])) for place in np.flatnonzero(at_risk)]
+    within = np.all([np.ones(len(middles), dtype=bool), *(each(middles) > 0.0 for each in bounding)], axis=0)
+    return [(float(edges[place]), float(edges[place + 1])) for place in np.flatnonzero(within)]
 
 
 def _lowest_points(time: Floats, values: Floats) -> list[float]:
@@ -249,17 +253,16 @@ def _bounded(sign: float) -> Look:
     """Looks of a claim that a signal stays on one side: its extremes, and the edges of the claim's window."""
 
     def look(
-        places: Places, trace: Recording, fine: float, signal: str, bound: object,
+        places: Places, trace: Recording, scene: Scene, signal: str, bound: object,
         window: Sequence[float | str] | None = None,
     ) -> None:  # fmt: skip
         instance, _, variable = signal.partition(".")
-        followed = BELT.get(variable, variable)
         for edge in window or ():
             places.points += curves.times_at(trace, units.parse(edge, "rad"))
-        if f"{instance}.speed_limit" in trace and followed in BELT.values():
-            _risk(places, trace, fine, instance, followed)
+        if variable in _extremes_of(scene, instance):
+            _extremes(places, trace, scene, signal)
         elif trace.rate(signal) is None:
-            _everywhere(places, trace, fine)
+            _everywhere(places, trace, scene)
         else:
             for time in _lowest_points(trace.time, sign * trace[signal]):
                 place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
@@ -268,12 +271,12 @@ def _bounded(sign: float) -> Look:
     return look
 
 
-def _lowest_margin(places: Places, trace: Recording, fine: float, bound: object, belt: str = "belt") -> None:
-    _risk(places, trace, fine, belt, "margin")
+def _lowest_margin(places: Places, trace: Recording, scene: Scene, bound: object, belt: str = "belt") -> None:
+    _extremes(places, trace, scene, f"{belt}.lowest_margin")
 
 
 def _dwell(
-    places: Places, trace: Recording, fine: float, heald: str, at_least: object,
+    places: Places, trace: Recording, scene: Scene, heald: str, at_least: object,
     tolerance: float | str = claims.TOLERANCE,
 ) -> None:  # fmt: skip
     stroke = trace.parameter(f"{heald}.stroke")
@@ -281,7 +284,7 @@ def _dwell(
 
 
 def _clear_shed(
-    places: Places, trace: Recording, fine: float, heald: str, clearance: float | str, at_least: object
+    places: Places, trace: Recording, scene: Scene, heald: str, clearance: float | str, at_least: object
 ) -> None:
     stroke, ratio = (trace.parameter(f"{heald}.{name}") for name in ("stroke", "warp_ratio"))
     _levels(places, trace, heald, 0.5 * stroke - units.parse(clearance, "m") / ratio)
@@ -295,20 +298,20 @@ def _levels(places: Places, trace: Recording, heald: str, distance: float) -> No
 
 
 def _dwell_contains(
-    places: Places, trace: Recording, fine: float, heald: str, angles: Sequence[float | str],
+    places: Places, trace: Recording, scene: Scene, heald: str, angles: Sequence[float | str],
     tolerance: object = None,
 ) -> None:  # fmt: skip
     for angle in angles:
         places.points += curves.times_at(trace, units.parse(angle, "rad"))
 
 
-def _nowhere(places: Places, trace: Recording, fine: float, **_: object) -> None:
+def _nowhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
     """A claim on what its component latches, on its own continuous curve."""
 
 
-def _everywhere(places: Places, trace: Recording, fine: float, **_: object) -> None:
+def _everywhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
     """A claim that is judged at the samples needs them all."""
-    places.most = min(places.most, fine)
+    places.most = min(places.most, period(scene) / scene.steps_per_revolution)
 
 
 LOOKS: dict[str, Look] = {

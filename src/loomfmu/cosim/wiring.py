@@ -16,7 +16,7 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any) -> list[Wire]:
         raise LoomfmuError('wires is no table of "instance.input" = "instance.output"')
     sources: dict[str, str] = {}
     for name, each in instances.items():
-        standard = standard_loom.wires(name, each.fmu.name) if each.fmu.ours else {}
+        standard = standard_loom.wires(name, each.fmu.component) if each.fmu.component else {}
         for sink, source in standard.items():
             if source.split(".")[0] in instances:
                 sources[f"{name}.{sink}"] = source

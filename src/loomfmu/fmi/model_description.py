@@ -3,9 +3,8 @@
 from xml.etree.ElementTree import Element, SubElement
 
 from .. import units
-from ..variables import Component, Variable, variables_of
+from ..variables import NOTHING, Component, Variable, variables_of
 from .live_slave import CATEGORIES
-from .memoryless import is_memoryless
 from .xml_text import text_of
 
 AUTHOR = "the loomfmu authors"
@@ -39,7 +38,7 @@ def model_description(
         "canGetAndSetFMUstate": "true",
         "canSerializeFMUstate": "true",
     }
-    if native is not None and is_memoryless(component):
+    if native is not None and (component.keeps == NOTHING):
         root.set("numberOfEventIndicators", str(sum(variable.indicator for variable in variables)))
         exchange = SubElement(
             root, "ModelExchange", capabilities | {"completedIntegratorStepNotNeeded": "false"}

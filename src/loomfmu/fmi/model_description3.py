@@ -2,9 +2,8 @@
 
 from xml.etree.ElementTree import Element, SubElement
 
-from ..variables import Component, Variable, variables_of
+from ..variables import NOTHING, Component, Variable, variables_of
 from .live_slave import CATEGORIES
-from .memoryless import is_memoryless
 from .model_description import (
     DEFAULT_STEP_SIZE,
     DEFAULT_STOP_TIME,
@@ -29,7 +28,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
         {"fmiVersion": "3.0", "modelName": name, "instantiationToken": token} | about(component, version),
     )
     common = {"modelIdentifier": name, "canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
-    if is_memoryless(component):
+    if component.keeps == NOTHING:
         SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "true"})
     order = str(output_order(component))
     steps = {"canHandleVariableCommunicationStepSize": "true", "maxOutputDerivativeOrder": order}

@@ -4,10 +4,9 @@ import json
 import re
 
 from .. import units
-from ..variables import Component, Variable, variables_of
+from ..variables import NOTHING, Component, Variable, variables_of
 from .c_expressions import c_name
 from .live_slave import CATEGORIES, DISCARD, ERROR, WARNING
-from .memoryless import is_memoryless
 from .model_description import FIRST_REFERENCE
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
@@ -71,7 +70,7 @@ def tables(component: type[Component], token: str) -> str:
         problem_count=len(component.problems),
         indicator_count=sum(variable.indicator for variable in variables),
         indicators=", ".join([*(str(names.index(v.name)) for v in variables if v.indicator), "NONE"]),
-        memoryless=int(is_memoryless(component)),
+        memoryless=int(component.keeps == NOTHING),
         at_step_end=at_step_end,
         rows="\n".join(_row(variable, names) for variable in variables),
         problems="".join(
