@@ -108,8 +108,8 @@ class Problem:
 
 
 # What a component carries from step to step, where its inputs hold at the step's end: nothing, so that its
-# outputs are functions of time, parameters and inputs; extremes, so that all other outputs are; or its motion,
-# which integrates over its inputs.
+# outputs are functions of time, parameters and inputs; extremes, so that all other outputs are; or its
+# motion, which integrates over its inputs.
 NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 

@@ -8,7 +8,7 @@ from peers import Ecos, Fmpy, Libcosim, absent
 from records import Notes, Row, Table, say
 from texts import Figures, Find, parts, shown, table
 
-from loomfmu.validation import plots
+from loomfmu.validation import plot_style
 
 NAME = "cost"
 STEPS = 1440  # in a revolution
@@ -130,7 +130,7 @@ def figures(find: Find) -> Figures:
         for panel, kind in zip(panels, kinds, strict=True):
             group = [row for row in rows if row["FMUs"] == kind]
             names = list(dict.fromkeys(f"{row['master']}, {row['recording']}" for row in group))
-            for place, (cores, colour) in enumerate((("all", plots.BLUE), ("one", plots.ORANGE))):
+            for place, (cores, colour) in enumerate((("all", plot_style.BLUE), ("one", plot_style.ORANGE))):
                 mine = [row for row in group if row["cores"] == cores]
                 if not mine:
                     continue

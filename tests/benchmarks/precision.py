@@ -16,7 +16,7 @@ from texts import Figures, Find, error, items, parts, pivot, shown, table
 
 from loomfmu.cosim.claims import judge
 from loomfmu.traces import Channel, Recording
-from loomfmu.validation import plots
+from loomfmu.validation import plot_style
 
 NAME = "precision"
 PLACES = 45  # of a revolution, at which signals are compared: every count of steps is a multiple
@@ -179,8 +179,8 @@ TARGETS = {
     "error of damper_1.displacement [share of largest]": 1e-4,
 }
 COLOURS = {
-    "loomfmu, live FMUs": plots.SKY, "loomfmu, native FMUs": plots.BLUE, CLAIMS: plots.GREEN,
-    "libcosim": plots.ORANGE, "ecos": plots.RED, "fmpy": plots.PURPLE,
+    "loomfmu, live FMUs": plot_style.SKY, "loomfmu, native FMUs": plot_style.BLUE, CLAIMS: plot_style.GREEN,
+    "libcosim": plot_style.ORANGE, "ecos": plot_style.RED, "fmpy": plot_style.PURPLE,
 }  # fmt: skip
 
 

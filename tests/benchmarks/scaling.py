@@ -13,7 +13,7 @@ from records import Notes, Table, say
 from texts import Figures, Find, parts, whole
 
 import loomfmu
-from loomfmu.validation import plots
+from loomfmu.validation import plot_style
 
 NAME = "scaling"
 STEPS = 360  # in a revolution
@@ -193,7 +193,7 @@ def figures(find: Find) -> Figures:
 
     def draw(figure: Any) -> None:
         left, middle_, right = figure.subplots(1, 3)
-        for recording, colour in (("none", plots.BLUE), ("HDF5", plots.ORANGE)):
+        for recording, colour in (("none", plot_style.BLUE), ("HDF5", plot_style.ORANGE)):
             rows = [row for row in instances if row["recording"] == recording]
             x, y = [row["instances"] for row in rows], [row["step [us]"] for row in rows]
             left.loglog(x, y, "o-", color=colour, label=f"recording: {recording}")
@@ -202,11 +202,11 @@ def figures(find: Find) -> Figures:
         left.set_ylabel("us per step")
         left.legend()
         counts = [row["steps"] for row in steps]
-        middle_.loglog(counts, [row["time [s]"] for row in steps], "o-", color=plots.BLUE)
+        middle_.loglog(counts, [row["time [s]"] for row in steps], "o-", color=plot_style.BLUE)
         middle_.yaxis.set_minor_formatter(lambda _value, _place: "")
         middle_.set_xlabel("steps")
         middle_.set_ylabel("time of a run, s")
-        right.semilogx(counts, [row["peak memory [MB]"] for row in steps], "o-", color=plots.BLUE)
+        right.semilogx(counts, [row["peak memory [MB]"] for row in steps], "o-", color=plot_style.BLUE)
         right.set_ylim(0.0, 1.25 * max(row["peak memory [MB]"] for row in steps))
         right.set_xlabel("steps")
         right.set_ylabel("peak memory, MB")

@@ -16,7 +16,7 @@ import writing
 from records import Row, read
 from texts import Draw, Figures, Find, items, parts, table
 
-from loomfmu.validation import plots
+from loomfmu.validation import plot_style, plots
 
 REPORT = "benchmarks.md"
 FOLDER = "benchmarks"
@@ -117,7 +117,7 @@ def _draw(height: float, draw: Draw, path: Path) -> None:
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(plots.STYLE):
+    with matplotlib.rc_context(plot_style.STYLE):
         figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
         draw(figure)
         figure.savefig(path, metadata={"Software": None})

@@ -14,7 +14,7 @@ from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
 from loomfmu import LoomfmuError, Trace, evaluate, run
 from loomfmu.cli import main
 from loomfmu.components import WeftInsertion
-from loomfmu.cosim import fmus, slave
+from loomfmu.cosim import fmus, pool
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.scene import Scene
 from loomfmu.machines import parameters
@@ -235,12 +235,12 @@ def test_a_unit_that_the_fmu_says_is_not_said_again_otherwise(place: Path) -> No
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    slave.free_all()
+    pool.free_all()
     made: list[str] = []
-    original = slave._opened
-    monkeypatch.setattr(slave, "_opened", lambda fmu, name: made.append(name) or original(fmu, name))
+    original = pool._opened
+    monkeypatch.setattr(pool, "_opened", lambda fmu, name: made.append(name) or original(fmu, name))
     yield made
-    slave.free_all()
+    pool.free_all()
 
 
 def test_they_are_made_anew_for_every_run(place: Path, tmp_path: Path, opened: list[str]) -> None:

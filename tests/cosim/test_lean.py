@@ -8,7 +8,7 @@ from direct_loom import small
 from live_fmus import fmu_cache
 
 import loomfmu
-from loomfmu.cosim import fmus, slave
+from loomfmu.cosim import fmus, pool
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.asked import judged_by, recorded
 from loomfmu.cosim.lean import Lean, lean
@@ -53,7 +53,7 @@ def test_a_scene_that_claims_the_belts_margin_alone_needs_two_fmus() -> None:
 def test_what_is_not_needed_is_neither_built_nor_loaded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slave.free_all()
+    pool.free_all()
     fmus.of_component.cache_clear()
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
     result = loomfmu.run(margin(), output=tmp_path / "margin.h5")
@@ -61,7 +61,7 @@ def test_what_is_not_needed_is_neither_built_nor_loaded(
     built = sorted(path.name for path in (tmp_path / "cache" / "fmus").glob("*/*.fmu"))
     assert built == ["BeltMonitor.fmu", "WeftInsertion.fmu"]
     assert len(list((tmp_path / "cache" / "unpacked").iterdir())) == 2
-    slave.free_all()
+    pool.free_all()
     fmus.of_component.cache_clear()
 
 

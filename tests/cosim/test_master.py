@@ -15,7 +15,7 @@ from live_fmus import fmu_cache
 from odd_components import odd
 
 from loomfmu import LoomfmuError
-from loomfmu.cosim import fmus, slave
+from loomfmu.cosim import fmus, pool, slave
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.master import Master
 from loomfmu.cosim.run import run
@@ -201,7 +201,7 @@ carrier_mass = 0.1105 # the head's own: the belt's force is 5 N more than what i
 @pytest.fixture
 def counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """Names of the instances that are made, of the freed ones with a minus."""
-    slave.free_all()
+    pool.free_all()
     made: list[str] = []
 
     class Counted(slave.Slave):
@@ -213,9 +213,9 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
             made.append(f"-{self.name}")
             super().free()
 
-    monkeypatch.setattr(slave, "Slave", Counted)
+    monkeypatch.setattr(pool, "Slave", Counted)
     yield made
-    slave.free_all()
+    pool.free_all()
 
 
 def test_a_second_run_makes_no_new_instances_and_gives_the_same_bits(
@@ -317,7 +317,7 @@ def test_instances_are_given_back_when_one_cannot_be_made(
     monkeypatch: pytest.MonkeyPatch, counted: list[str]
 ) -> None:
     scene = small(90)
-    borrowed = slave.borrow
+    borrowed = pool.borrow
 
     def failing(fmu: fmus.Fmu, name: str) -> slave.Slave:
         if name == "belt":
@@ -329,7 +329,7 @@ def test_instances_are_given_back_when_one_cannot_be_made(
     with pytest.raises(LoomfmuError, match="no belt"):
         master.__enter__()
     assert master.slaves == {}
-    resting = [resting.name for slaves in slave._resting.values() for resting in slaves]
+    resting = [resting.name for slaves in pool._resting.values() for resting in slaves]
     assert sorted(resting) == sorted(counted)
     assert "shaft" in resting
 
@@ -363,13 +363,13 @@ def test_an_instance_that_ended_fatally_is_neither_reused_nor_freed(
 ) -> None:
     # freeing it would be a use after free; the next run takes a new one. Our own outlive it
     fmu = replace(fmus.of_component("MainShaft"), ours=False)
-    broken = slave.borrow(fmu, "fatal")
+    broken = pool.borrow(fmu, "fatal")
     freed: list[str] = []
     monkeypatch.setattr(broken._slave, "freeInstance", lambda: freed.append("freed"))
     assert "fmi2DoStep gave fmi2Fatal" in str(broken.failed(4, "fmi2DoStep", 0.0))
-    slave.give_back(broken)
+    pool.give_back(broken)
     assert freed == []
-    assert slave.borrow(fmu, "fatal") is not broken
+    assert pool.borrow(fmu, "fatal") is not broken
 
 
 def test_ctrl_c_before_the_first_step_ends_the_run_too(

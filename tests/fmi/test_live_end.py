@@ -64,14 +64,14 @@ for path in sys.argv[2:]:
 """,
     "our master keeps its instances for another run": """
 import pathlib
-from loomfmu.cosim import fmus, slave
+from loomfmu.cosim import fmus, pool
 for path in sys.argv[2:]:
-    slave.give_back(slave.borrow(fmus.load(pathlib.Path(path)), "one"))
+    pool.give_back(pool.borrow(fmus.load(pathlib.Path(path)), "one"))
 """,
     "nobody frees the instances": """
 import pathlib
-from loomfmu.cosim import fmus, slave
-kept = [slave.borrow(fmus.load(pathlib.Path(path)), name) for path in sys.argv[2:] for name in ("one", "two")]
+from loomfmu.cosim import fmus, pool
+kept = [pool.borrow(fmus.load(pathlib.Path(path)), name) for path in sys.argv[2:] for name in ("one", "two")]
 kept[0].rest()
 """,
 }

@@ -22,8 +22,9 @@ from .graph import step_order
 from .grid import Grid, Span, uniform
 from .lean import ConstantShaft
 from .loops import Iteration, Swing
+from .pool import borrow, give_back
 from .scene import ITERATED, Scene
-from .slave import NEEDS_TOOL, Ended, Slave, borrow, give_back
+from .slave import NEEDS_TOOL, Ended, Slave
 from .start import Slot, Start
 from .steppers import Action, Driven, Memory, Stepper, stepper
 

@@ -5,7 +5,6 @@ Loading, checking and the life cycle go through fmpy. While stepping, the same l
 the cost of fmpy's public methods, and the same calls.
 """
 
-import atexit
 import ctypes
 import logging
 from collections.abc import Callable, Sequence
@@ -244,40 +243,3 @@ class Slave:
 
 
 _unheard = logging.NullHandler()
-_resting: dict[tuple[str, str], list[Slave]] = {}
-
-
-def borrow(fmu: Fmu, name: str) -> Slave:
-    """An instance: one that rests from an earlier run, or a new one."""
-    resting = _resting.get((fmu.sha256, name))
-    return resting.pop() if resting else _opened(fmu, name)
-
-
-def _opened(fmu: Fmu, name: str) -> Slave:
-    """A new instance, of the class that knows its version and what its maker may have left out."""
-    if fmu.fmi == 3:
-        from .fmi3_slave import Fmi3Slave
-
-        return Fmi3Slave(fmu, name)
-    if not fmu.ours:
-        from .foreign_slave import ForeignSlave
-
-        return ForeignSlave(fmu, name)
-    return Slave(fmu, name)
-
-
-def give_back(slave: Slave) -> None:
-    """Let an instance rest until it is borrowed again."""
-    if slave.rest():
-        _resting.setdefault((slave.fmu.sha256, slave.name), []).append(slave)
-    else:
-        slave.free()
-
-
-@atexit.register
-def free_all() -> None:
-    """Free all resting instances."""
-    for slaves in _resting.values():
-        for slave in slaves:
-            slave.free()
-    _resting.clear()

@@ -1,44 +1,16 @@
 """Figures of the report: one file each, 800 pixels wide. The only place that needs matplotlib."""
 
-from collections.abc import Callable
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..files import PICTURE, check_target, write_file
+from . import plots_dobby, plots_others, plots_weft
+from .plot_style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, STYLE, Draw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Draw = Callable[["Figure"], None]
-
-# colours that the colour-blind tell apart too (Okabe and Ito)
-BLUE, ORANGE, GREEN, PURPLE, SKY, RED, GREY, BLACK = (
-    "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#808080", "#000000",
-)  # fmt: skip
-SERIES = {"WL680": BLUE, "WL800": ORANGE, "WL450": GREEN}
-LAW_COLOURS = {
-    "uniform": GREY,
-    "harmonic ends": BLUE,
-    "sloped line": ORANGE,
-    "sloped sine": GREEN,
-    "slotted levers": PURPLE,
-    "non-circular gears": SKY,
-}
-
-STYLE: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 11,
-    "axes.grid": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.8,
-    "lines.linewidth": 1.8,
-    "legend.frameon": False,
-    "legend.fontsize": 10,
-}
 
 
 def available() -> bool:
@@ -48,8 +20,6 @@ def available() -> bool:
 
 def figures() -> dict[str, tuple[float, Draw]]:
     """File name of every figure, with its height in inches and what draws it."""
-    from . import plots_dobby, plots_others, plots_weft
-
     return plots_weft.FIGURES | plots_dobby.FIGURES | plots_others.FIGURES
 
 

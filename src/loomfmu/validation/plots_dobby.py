@@ -10,7 +10,7 @@ from ..machines import table
 from ..physics.rotor import dwell_angle
 from . import cam, rotor
 from .chain import HealdLine
-from .plots import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw
+from .plot_style import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..components.detaching_roller import DetachingRoller
 from . import accuracy, reed, roller
-from .plots import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, Draw
+from .plot_style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, Draw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

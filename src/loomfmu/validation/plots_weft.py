@@ -9,7 +9,7 @@ from ..design import loom
 from ..machines import HEADS, MACHINES, table
 from ..physics.belt import critical_force, length_factor
 from . import belt, wrap
-from .plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, SERIES, Draw
+from .plot_style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, SERIES, Draw
 from .sections import number
 
 if TYPE_CHECKING:
