@@ -141,10 +141,32 @@ def test_ripples_are_not_overlooked(order: int, amplitude: float) -> None:
     # no worse than the scene's own steps, which are off by 1e-5 at an order of 100
     worse = abs(even.claims[0].worst - exact.claims[0].worst)
     assert abs(found.claims[0].worst - exact.claims[0].worst) <= worse + 1e-9
-    told = {100: "the scene's own everywhere", 36: "576 in a revolution"}
+    told = {100: "1600 in a revolution", 36: "576 in a revolution"}
     if order in told:
         wanted = f"steps: {told[order]} (the shaft ripples {order} times in a revolution)"
         assert any(line.startswith(wanted) for line in found.skipped)
+
+
+def test_a_ripple_takes_more_steps_than_the_scene_has() -> None:
+    at = {"shaft.ripple_order": 7, "shaft.ripple_amplitude": 0.3, "revolutions": 1}
+    few = {"steps_per_revolution": 36, "coarse_steps_per_revolution": 24}
+    found = loomfmu.evaluate(BELT, set=few | at)
+    exact = loomfmu.evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 11520, **at})
+    assert found.claims[0].worst == pytest.approx(exact.claims[0].worst, abs=1e-9)
+    wanted = "steps: 112 in a revolution (the shaft ripples 7 times in a revolution), and landings"
+    assert any(line.startswith(wanted) for line in found.skipped)
+
+
+@pytest.mark.parametrize("steps", [7200, 14400])
+def test_steps_as_fine_as_points_are_kept_apart_stay(steps: int) -> None:
+    at = {"steps_per_revolution": steps, "shaft.speed": "300 rpm", "revolutions": 4}
+    found, even = (
+        loomfmu.evaluate(SIMS / "damper.toml", set={"grid": grid, **at}, flavour="native")
+        for grid in ("windows", "uniform")
+    )
+    assert 0.9 * even.steps < found.steps < 1.1 * even.steps
+    # steps of half that size change it by 1e-12 of it
+    assert found.claims[1].worst == pytest.approx(even.claims[1].worst, rel=1e-11)
 
 
 def test_a_quick_start_is_not_overlooked() -> None:
@@ -298,5 +320,11 @@ def test_a_grid_of_another_name_is_refused() -> None:
 
 def test_points_are_merged_in_order_of_their_weight() -> None:
     places = windows.Places(period=1.0, most=0.25, points=[0.3, 0.30001, 0.5, 2.0], about=[0.29999, 0.4])
-    merged = windows._merged(np.linspace(0.0, 1.0, 5), places, 1e-3)
+    merged = windows._merged(np.linspace(0.0, 1.0, 5), places)
     assert list(merged) == [0.0, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0]
+
+
+def test_points_are_kept_apart_from_the_last_one_that_stays() -> None:
+    close = [0.5 + 0.8e-4 * place for place in range(4)]  # 1/7200 is 1.4e-4
+    places = windows.Places(period=1.0, most=0.5, points=close)
+    assert list(windows._merged(np.linspace(0.0, 1.0, 3), places)) == [0.0, close[0], close[2], 1.0]

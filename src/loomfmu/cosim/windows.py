@@ -36,6 +36,7 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
+NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
 WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that it stands for has none
 
 
@@ -67,16 +68,14 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     needed = lean(scene, signals).scene
     coarse, why = min(_showing(scene))
     unequal = _unequal(needed)
-    if unequal or coarse <= fine:
-        return replace(
-            uniform(scene), notes=(f"steps: the scene's own everywhere{_because(unequal or why)}",)
-        )
+    if unequal:
+        return replace(uniform(scene), notes=(f"steps: the scene's own everywhere ({unequal})",))
     longest = coarse
     for name, instance in needed.instances.items():
         if instance.fmu.keeps == MOTION and longest > fine:
             longest, why = fine, f"{name} integrates"
     places, scouted = _scouted(scene, signals, coarse, longest)
-    points = _merged(_equal(scene, places.most), places, APART * period(scene))
+    points = _merged(_equal(scene, places.most), places)
     notes = (
         f"steps: {period(scene) / places.most:.0f} in a revolution{_because(why)}, and landings"
         f" where the claims look; {scouted} steps of FMUs to find these",
@@ -90,7 +89,7 @@ def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float
     kinks = [turn * period(scene) for drive in scene.drives for turn in drive.revolutions]
     places, scouted = Places(period(scene), longest, kinks), 0
     for _ in range(SCOUTS):
-        points = _merged(_equal(scene, coarse), places, APART * period(scene))
+        points = _merged(_equal(scene, coarse), places)
         recording, plan, steps, _ended, _warnings = remembered(
             scene, _watched(scene, signals), chosen(scene, points)
         )
@@ -190,18 +189,27 @@ def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
     return with_rates(scene, wanted)
 
 
-def _merged(equal: Floats, places: Places, apart: float) -> Floats:
+def _merged(equal: Floats, places: Places) -> Floats:
     """All points in order. Of two that are too close the one that a claim looks for stays."""
+    apart = min(APART * places.period, NARROW * float(equal[1] - equal[0]))
     kept = np.empty(0)
-    for points in (equal[[0, -1]], np.array(places.points), np.array(places.about), equal):
-        points = np.sort(points[(points >= equal[0]) & (points <= equal[-1])])
-        points = points[np.diff(points, prepend=-math.inf) > apart]
+    for points in (equal[[0, -1]], _thinned(places.points, apart), _thinned(places.about, apart), equal):
+        points = points[(points >= equal[0]) & (points <= equal[-1])]
         if len(kept):
             after = np.clip(np.searchsorted(kept, points), 1, len(kept) - 1)
             away = np.minimum(np.abs(points - kept[after - 1]), np.abs(kept[after] - points))
             points = points[away > apart]
         kept = np.sort(np.concatenate([kept, points]))
     return kept
+
+
+def _thinned(points: Sequence[float], apart: float) -> Floats:
+    """Points in order, without those that are too close to the one before them that stays."""
+    kept: list[float] = []
+    for point in sorted(points):
+        if not kept or point - kept[-1] > apart:
+            kept.append(point)
+    return np.array(kept)
 
 
 # ---- where the claims of each kind look
