@@ -28,6 +28,9 @@ __all__ = ["fmu_cache"]
 TURN = 2 * math.pi
 LOOM = 'revolutions = 3\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "{weave}"\n{rest}'
 
+BOUNDED = '[[claims]]\nkind = "below"\nsignal = "heald_1.lift"\nbound = 1.0\n'
+BOUNDED += '[[claims]]\nkind = "below"\nsignal = "shaft.velocity"\nbound = 1e3\n'
+
 
 @pytest.fixture(scope="module")
 def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Callable[..., Trace]:
@@ -258,6 +261,81 @@ def test_claims_on_the_loom_say_where_rates_are_missing(
         "; ".join(map(lacking, ("weft.travel", "heald_1.lift", "heald_2.lift"))),
         "; ".join(map(lacking, ("weft.travel", "reed.position"))),
     ]
+
+
+def test_a_bound_that_only_the_curve_between_samples_passes_is_held(tmp_path: Path) -> None:
+    # x rises to 1 with a jump of its second rate, and stays there: at 37.3 no sample lies
+    def x(t: np.ndarray) -> np.ndarray:
+        return 1.0 - np.where(t < 37.3, (37.3 - t) ** 2, 0.0)
+
+    trace = drawn(
+        tmp_path, lambda t: t, x, lambda t: np.where(t < 37.3, 2.0 * (37.3 - t), 0.0), np.arange(61.0)
+    )
+    found = judge(trace, kind="below", signal="a.x", bound=1.0)
+    assert found
+    assert found.worst > 1.0
+    assert re.fullmatch(
+        r"beyond the bound only between samples, where the curve may be off by \d\.\de[-+]\d\d mm", found.note
+    )
+    # a bound that a sample passes by more than rounding, 1e-12 of 1400, fails
+    assert not judge(trace, kind="below", signal="a.x", bound=1.0 - 2e-9)
+
+
+@pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 13))
+@pytest.mark.parametrize("power", [2, 3, 4, 5])
+def test_a_smooth_stop_is_not_passed_wherever_it_lies_between_samples(
+    tmp_path: Path, share: float, power: int
+) -> None:
+    def left(t: np.ndarray) -> np.ndarray:
+        return np.maximum(20.0 + share - t, 0.0)
+
+    trace = drawn(
+        tmp_path, lambda t: t, lambda t: -(left(t) ** power), lambda t: power * left(t) ** (power - 1),
+        np.arange(41.0),
+    )  # fmt: skip
+    assert judge(trace, kind="below", signal="a.x", bound=0.0)
+
+
+@pytest.mark.parametrize("samples", [20, 63, 200])
+def test_a_bound_that_the_motion_passes_between_samples_fails(tmp_path: Path, samples: int) -> None:
+    time = np.linspace(0.0, TURN, samples + 1)
+    trace = drawn(tmp_path, lambda t: t, lambda t: np.sin(t - 0.3), lambda t: np.cos(t - 0.3), time)
+    # the cubic is off by h^4 / 384, and held to be off by h^4 / 40: beyond that nothing is hidden
+    doubt = (TURN / samples) ** 4 / 40
+    for kind, sign in (("below", 1.0), ("above", -1.0)):
+        assert not judge(trace, kind=kind, signal="a.x", bound=sign * (1.0 - 1.5 * doubt))
+        assert judge(trace, kind=kind, signal="a.x", bound=sign * (1.0 + doubt))
+
+
+def test_where_one_extreme_is_in_doubt_another_one_still_counts(tmp_path: Path) -> None:
+    # a stop at 1 within an interval, which the cubic passes by some percent, then a clear excess of 0.001
+    def x(t: np.ndarray) -> np.ndarray:
+        return np.where(t < 10.4, 1.0 - np.maximum(10.4 - t, 0.0) ** 2, 1.0) + 1e-3 * np.where(
+            t > 20.0, np.sin(0.1 * (t - 20.0)) ** 4, 0.0
+        )
+
+    def rate(t: np.ndarray) -> np.ndarray:
+        wave = 4e-4 * np.sin(0.1 * (t - 20.0)) ** 3 * np.cos(0.1 * (t - 20.0))
+        return 2.0 * np.maximum(10.4 - t, 0.0) + np.where(t > 20.0, wave, 0.0)
+
+    trace = drawn(tmp_path, lambda t: t, x, rate, np.arange(41.0))
+    assert judge(trace, kind="below", signal="a.x", bound=1.0011).worst > 1.02
+    assert not judge(trace, kind="below", signal="a.x", bound=1.0009)
+
+
+@pytest.mark.parametrize("steps", [90, 360, 1000])
+@pytest.mark.parametrize("grid", ["uniform", "windows"])
+def test_a_start_up_stays_below_its_speed_and_frames_within_their_stroke(
+    loom: Callable[..., Trace], steps: int, grid: str
+) -> None:
+    start = loom(steps, grid=grid, shaft__speed="153 rpm", shaft__ramp_duration="0.02 s", rest=BOUNDED)
+    assert judge(start, kind="below", signal="shaft.velocity", bound="shaft.speed")
+    assert not judge(start, kind="below", signal="shaft.velocity", bound="152.99 rpm")
+    held = loom(steps, "1100", grid=grid, shaft__start_angle="10 deg", rest=BOUNDED)
+    assert judge(held, kind="above", signal="heald_1.lift", bound=0.0)
+    assert judge(held, kind="below", signal="heald_1.lift", bound="heald_1.stroke")
+    assert judge(held, kind="above", signal="weft.travel", bound=0.0)
+    assert not judge(held, kind="above", signal="heald_1.lift", bound="1e-3 mm")
 
 
 def test_a_window_that_the_run_never_enters_fails(tmp_path: Path) -> None:

@@ -4,8 +4,9 @@
 claim holds: `assert judge(...)`. Scenes state the same as `[[claims]]` tables, with units.
 
 Values between the samples count: a signal whose rate is recorded is followed on the cubic that joins
-its samples, a frame's lift, the reed, the rapier and the shaft on the quintic of value, velocity and
-acceleration. Where no rate is recorded the verdict's note says so.
+its samples, and where the rate's rate is recorded, too, on the quintic of value, velocity and acceleration.
+Where no rate is recorded the verdict's note says so. Where the curve passes a bound between two samples that
+do not, and by no more than it may be off there, the claim holds, and the note says so.
 """
 
 import inspect
@@ -241,8 +242,15 @@ def _bounded(
         if not within:
             reason = "the run is never in that window"
             return verdict(trace, claim, signal, False, limit, math.nan, unit, math.nan, reason)
-    motion = curves.Motion(trace, signal, rates=1)
+    motion = curves.Motion(trace, signal)
     worst = motion.lowest(sign, within)
-    holds = sign * worst.value >= sign * limit and not worst.coarse
-    notes = (motion.note, worst.note)
-    return verdict(trace, claim, signal, holds, limit, worst.value, unit, worst.time, *notes)
+    holds = sign * worst.sure >= sign * limit and not worst.coarse
+    found = verdict(
+        trace, claim, signal, holds, limit, worst.value, unit, worst.time, motion.note, worst.note
+    )
+    if holds and sign * worst.value < sign * limit:
+        doubt = found.displayed(motion.doubt_at(worst.time))
+        unit_text = "" if found.label == "1" else f" {found.label}"
+        note = f"beyond the bound only between samples, where the curve may be off by {doubt:.1e}{unit_text}"
+        return replace(found, note="; ".join(filter(None, (found.note, note))))
+    return found
