@@ -592,7 +592,7 @@ def test_values_that_do_not_go_together_are_told_in_one_line(
         (["show", "missing.h5"], "missing.h5: there is no such file"),
         (
             ["show", "scene.toml"],
-            "scene.toml: it is no readable trace"
+            "scene.toml: it cannot be read as a trace"
             " (Unable to synchronously open file (file signature not found))",
         ),
         (
@@ -611,6 +611,30 @@ def test_a_mistake_in_a_file_name_is_told_in_one_line(
     assert one_line(capsys) == said
 
 
+PIPED = {  # what names a pipe, and how the refusal begins
+    "run pipe": "pipe: cannot be read",
+    "run pipe.ssp": "pipe.ssp: cannot be read",
+    "sweep pipe": "pipe: cannot be read",
+    "sweep over.toml": "over.toml: {here}/pipe: cannot be read",
+    "show pipe": "pipe: it cannot be read as a trace",
+    "run woven.toml": "woven.toml: pipe.wif: cannot be read",
+    "run motor.toml": "motor.toml: motor.fmu: pipe: not a readable FMU",
+    "show /dev/zero": "/dev/zero: it cannot be read as a trace",
+}
+
+
+@pytest.mark.parametrize("command", PIPED)
+def test_what_is_not_a_file_is_not_read(capsys: pytest.CaptureFixture[str], command: str) -> None:
+    # to read a pipe would be to wait for ever
+    for name in ("pipe", "pipe.ssp", "pipe.wif"):
+        os.mkfifo(name)
+    Path("woven.toml").write_text(HEAD + LOOM.replace("10/01", "pipe.wif"))
+    Path("motor.toml").write_text('duration = 1\nstep = 0.1\n[motor]\nfmu = "pipe"\n')
+    Path("over.toml").write_text('scene = "pipe"\n[grid]\nmachine = ["WL680-3600"]\n')
+    assert main(command.split()) == 2
+    assert one_line(capsys) == f"{PIPED[command].format(here=Path.cwd())} (it is a device or a pipe, not a file)"
+
+
 def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     main(["run", scene(HEAD + LOOM)])
     whole = Path("results/scene.h5").read_bytes()
@@ -618,7 +642,7 @@ def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFix
     capsys.readouterr()
     assert main(["show", "cut.h5"]) == 2
     assert one_line(capsys).startswith(
-        "cut.h5: it is no readable trace (Unable to synchronously open file (trunc"
+        "cut.h5: it cannot be read as a trace (Unable to synchronously open file (trunc"
     )
 
 

@@ -666,24 +666,24 @@ def test_a_file_that_is_cut_short_is_refused_at_once(result: loomfmu.Result, tmp
     for length in (0, 7, 8, 30, 100, 5000, len(whole) // 2, len(whole) - 1):
         cut.write_bytes(whole[:length])
         begun = time.monotonic()
-        with pytest.raises(LoomfmuError, match="it is no readable trace"):
+        with pytest.raises(LoomfmuError, match="it cannot be read as a trace"):
             Trace(cut)
         # reading it as one that is being written takes HDF5 minutes of repetition
         assert time.monotonic() - begun < 5
     marked = bytearray(whole[:5000])
     marked[11] |= 5  # as a killed writer marks it
     cut.write_bytes(marked)
-    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+    with pytest.raises(LoomfmuError, match="it cannot be read as a trace"):
         Trace(cut)
 
 
 def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
     with pytest.raises(LoomfmuError, match=r"missing\.h5: there is no such file$"):
         Trace(tmp_path / "missing.h5")
-    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+    with pytest.raises(LoomfmuError, match="it cannot be read as a trace"):
         Trace(tmp_path)
     (tmp_path / "text.h5").write_text("not HDF5")
-    with pytest.raises(LoomfmuError, match="it is no readable trace"):
+    with pytest.raises(LoomfmuError, match="it cannot be read as a trace"):
         Trace(tmp_path / "text.h5")
     with h5py.File(tmp_path / "other.h5", "w") as other:
         other["time"] = [0.0, 1.0]

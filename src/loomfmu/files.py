@@ -1,5 +1,6 @@
-"""Files that are written: whole or not at all, and never over an input, a device or somebody else's file."""
+"""Files that are read, and files that are written: whole or not at all, never over what is not ours."""
 
+import errno
 import secrets
 import stat
 import zipfile
@@ -8,6 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import LoomfmuError
+
+
+NOT_A_FILE = "it is a device or a pipe, not a file"
+
+
+def source(path: Path) -> Path:
+    """A file that is about to be read. Raises OSError, also for a pipe or a device: reading might never end."""
+    mode = path.stat().st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # a directory is refused by whoever opens it
+        raise OSError(errno.EINVAL, NOT_A_FILE, str(path))
+    return path
 
 
 @dataclass(frozen=True)
@@ -62,7 +74,7 @@ def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite:
         if not path.exists():
             return
         if not stat.S_ISREG(path.stat().st_mode):
-            raise LoomfmuError(f"{path}: cannot be written (it is a device or a pipe, not a file)")
+            raise LoomfmuError(f"{path}: cannot be written ({NOT_A_FILE})")
         if overwrite or path.stat().st_size == 0 or kind.ours(path):
             return
     except OSError as error:

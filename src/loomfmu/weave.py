@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import LoomfmuError
+from .files import source
 
 MOST_FRAMES = 20  # of the KRU-20 dobby
 MOST_PICKS = 128  # that a heald frame's pattern holds
@@ -74,7 +75,7 @@ def read_wif(path: Path) -> Weave:
     """
     parser = configparser.ConfigParser(interpolation=None, strict=False)
     try:
-        parser.read_string(path.read_text(encoding="utf-8", errors="replace"))
+        parser.read_string(source(path).read_text(encoding="utf-8", errors="replace"))
     except OSError as error:
         raise LoomfmuError(f"{path}: cannot be read ({error.strerror})") from None
     except configparser.Error as error:

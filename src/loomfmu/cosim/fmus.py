@@ -14,6 +14,7 @@ import fmpy
 
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, suggestion
+from ..files import source
 from ..fmi import builder, native_builder
 from ..fmi.cache import cache_directory
 from ..fmi.model_description import model_description
@@ -168,7 +169,7 @@ def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
 def load(path: Path) -> Fmu:
     """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
     try:
-        sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
+        sha256 = hashlib.sha256(source(path).read_bytes()).hexdigest()
         directory = _unpacked(path, sha256)
         found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:
@@ -197,7 +198,8 @@ def load(path: Path) -> Fmu:
 
 
 def _first_line(error: Exception) -> str:
-    return (str(error) or type(error).__name__).splitlines()[0]
+    reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return str(reason).splitlines()[0]
 
 
 def _check_runnable(path: Path, description: Any) -> None:

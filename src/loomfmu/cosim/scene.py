@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
+from ..files import source
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
@@ -76,7 +77,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """Read a scene from a TOML file. Raises LoomfmuError naming the file and what is wrong."""
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = source(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     try:

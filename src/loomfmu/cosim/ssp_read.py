@@ -17,6 +17,7 @@ from urllib.parse import unquote, urlsplit
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
 from ..errors import LoomfmuError
+from ..files import source as readable
 from ..fmi.cache import cache_directory
 from . import fmus
 from .descriptions import plain_names
@@ -69,7 +70,7 @@ class _Package:
 
     def __init__(self, path: Path):
         self.path = path
-        content = path.read_bytes()
+        content = readable(path).read_bytes()
         self.directory = cache_directory() / "packages" / hashlib.sha256(content).hexdigest()
         with zipfile.ZipFile(path) as archive:
             self.files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}

@@ -15,6 +15,7 @@ from ..cosim.asked import check_claims, output_port
 from ..cosim.fmus import FLAVOURS, Port
 from ..cosim.scene import Scene
 from ..errors import LoomfmuError, suggestion
+from ..files import source
 from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
 from .request import Map, requested
 from .varied import Varied, varied
@@ -94,7 +95,7 @@ def load(path: str | Path) -> Plan:
     """Read a sweep file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = source(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     try:

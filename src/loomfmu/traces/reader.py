@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
+from ..files import source
 from .disk import superblock
 from .places import place_of
 from .signals import SHARED, Floats, Signals
@@ -57,9 +58,11 @@ class Trace(Signals):
         except FileNotFoundError:
             raise LoomfmuError(f"{self.path}: there is no such file") from None
         except (OSError, RuntimeError) as error:
-            raise LoomfmuError(f"{self.path}: it is no readable trace ({error})") from None
+            reason = getattr(error, "strerror", None) or error
+            raise LoomfmuError(f"{self.path}: it cannot be read as a trace ({reason})") from None
 
     def _hdf5(self) -> Any:
+        source(self.path)
         try:
             return h5py.File(self.path, "r")
         except OSError:
