@@ -26,7 +26,7 @@ import loomfmu
 from loomfmu import LoomfmuError, Trace, cli, units
 from loomfmu.cosim import fmus
 from loomfmu.cosim import scene as scenes
-from loomfmu.traces import ROWS, Channel, TraceWriter
+from loomfmu.traces import ROWS, TRACE, Channel, TraceWriter, damage
 from loomfmu.variables import variables_of
 
 __all__ = ["fmu_cache"]
@@ -687,10 +687,52 @@ def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
         Trace(tmp_path / "text.h5")
     with h5py.File(tmp_path / "other.h5", "w") as other:
         other["time"] = [0.0, 1.0]
-    with pytest.raises(
-        LoomfmuError, match="it is no trace of a run: it lacks /time, /shaft_angle or a title"
-    ):
+    with pytest.raises(LoomfmuError, match="it is not a trace of loomfmu: it lacks the dataset /shaft_angle$"):
         Trace(tmp_path / "other.h5")
+    with h5py.File(tmp_path / "other.h5", "a") as other:  # another tool's, much like ours
+        other["shaft_angle"] = [0.0, 1.0]
+        other.attrs.update({"title": "theirs", "status": "complete"})
+    with pytest.raises(LoomfmuError, match="it lacks the attribute 'software'$"):
+        Trace(tmp_path / "other.h5")
+    assert not TRACE.ours(tmp_path / "other.h5")  # it is not replaced
+
+
+def zeroed(path: Path, place: int, length: int) -> Path:
+    content = bytearray(path.read_bytes())
+    content[place : place + length] = bytes(length)
+    path.write_bytes(content)
+    return path
+
+
+def test_a_damaged_group_is_not_taken_for_a_missing_one(tmp_path: Path) -> None:
+    channels = [Channel("a", "x", "m", "m", "X", 0), Channel("b", "x", "m", "m", "X", 0)]
+    written(tmp_path / "lost.h5", channels, np.zeros((3, 1)), np.zeros((3, 1), dtype="i4"))
+    with h5py.File(tmp_path / "lost.h5") as file:
+        header = h5py.h5o.get_info(file["a"].id).addr
+    trace = Trace(zeroed(tmp_path / "lost.h5", header, 8))
+    for ask in (list, lambda trace: "b.x" in trace, lambda trace: trace["a.x"], lambda trace: trace.check()):
+        with pytest.raises(LoomfmuError, match=r"lost\.h5: it is damaged \("):
+            ask(trace)
+
+
+def test_damage_that_hdf5_loops_over_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path / "run.h5", [], np.zeros((3, 1)), np.zeros((3, 1), dtype="i4"))
+    damage.check(tmp_path / "run.h5")
+    assert TRACE.ours(tmp_path / "run.h5")
+    texts = (tmp_path / "run.h5").read_bytes().index(b"GCOL")  # where HDF5 keeps texts, without a checksum
+    zeroed(tmp_path / "run.h5", texts + 16, 4000)
+    assert TRACE.ours(tmp_path / "run.h5")  # a new run may replace it, and does not read it for that
+    monkeypatch.setattr(damage, "SECONDS", 2.0)
+    with pytest.raises(LoomfmuError, match=r"run\.h5: it is damaged \(HDF5 has not finished"):
+        damage.check(tmp_path / "run.h5")
+
+
+def test_a_process_that_crashes_over_a_file_tells_of_damage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(damage, "READER", "import os; os.abort()")
+    with pytest.raises(LoomfmuError, match=r"it is damaged \(HDF5 fails: exit status -6\)"):
+        damage.check(tmp_path / "run.h5")
 
 
 def test_a_damaged_block_is_named(result: loomfmu.Result, tmp_path: Path) -> None:

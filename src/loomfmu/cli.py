@@ -272,10 +272,13 @@ def _validate(options: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
+    from .traces.damage import check
+
     try:
+        check(Path(options.trace))
         return _summarise(options.trace)
-    except (KeyError, RuntimeError) as error:  # what h5py raises where it meets nonsense
-        raise LoomfmuError(f"{options.trace}: it is damaged ({error.args[0]})") from None
+    except (KeyError, TypeError, ValueError) as error:  # whole for HDF5, but not what we write
+        raise LoomfmuError(f"{options.trace}: it is damaged ({error})") from None
 
 
 def _summarise(path: str) -> int:
@@ -285,7 +288,8 @@ def _summarise(path: str) -> int:
     with Trace(path) as trace:
         attributes = trace.attributes
         ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
-        print(f"{attributes['title']} ({attributes['software']}, {trace.status}{ended})")
+        status = trace.status if trace.status != "running" else "running, or killed"
+        print(f"{attributes['title']} ({attributes['software']}, {status}{ended})")
         if "command" in attributes:
             print(f"run by: {attributes['command']}")
         for key, value in json.loads(attributes.get("set", "{}")).items():

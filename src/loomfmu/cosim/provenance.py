@@ -2,7 +2,6 @@
 
 import json
 import shlex
-from importlib.metadata import version
 from typing import Any
 
 from .fmus import Fmu
@@ -25,7 +24,6 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         "set": json.dumps(scene.overrides, default=_plain),
         "flavour": flavour,
         **_command(scene, flavour),
-        "software": f"loomfmu {version('loomfmu')}",
         **(
             {"steps_per_revolution": str(scene.steps_per_revolution)}
             if scene.step is None

@@ -2,19 +2,10 @@
 
 from pathlib import Path
 
-from ..errors import LoomfmuError
 from ..files import Kind
-from .reader import Trace
+from .reader import is_trace
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
-
-
-def _is_trace(path: Path) -> bool:
-    try:
-        Trace(path)
-    except LoomfmuError:
-        return False
-    return True
 
 
 def _is_partial(path: Path) -> bool:
@@ -23,5 +14,5 @@ def _is_partial(path: Path) -> bool:
         return file.read(len(SIGNATURE)) in (SIGNATURE, bytes(len(SIGNATURE)))
 
 
-TRACE = Kind("a trace of loomfmu", _is_trace)
+TRACE = Kind("a trace of loomfmu", is_trace)
 PARTIAL = Kind("what an interrupted run of loomfmu left", _is_partial)

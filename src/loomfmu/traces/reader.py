@@ -20,6 +20,9 @@ from .places import place_of
 from .signals import SHARED, Floats, Signals
 
 
+REQUIRED = ("title", "status", "software")  # attributes that every trace has
+
+
 class Trace(Signals):
     """A run recorded in a file: `trace["belt.margin"]` is the signal's values, in SI.
 
@@ -35,10 +38,8 @@ class Trace(Signals):
         self._state: tuple[int, ...] = ()
         self._cache: dict[str, NDArray[Any]] = {}
         with self._opened() as file:
-            if not {"time", "shaft_angle"} <= set(file) or not {"title", "status"} <= set(file.attrs):
-                raise LoomfmuError(
-                    f"{self.path}: it is no trace of a run: it lacks /time, /shaft_angle or a title"
-                )
+            if lacking := _lacking(file):
+                raise LoomfmuError(f"{self.path}: it is not a trace of loomfmu: it lacks {lacking}")
             if file.attrs["status"] != "running":  # else it grows
                 self._state = _state(self.path)
 
@@ -54,35 +55,26 @@ class Trace(Signals):
         try:
             if self._state and _state(self.path) != self._state:
                 raise LoomfmuError(f"{self.path}: it has changed since it was opened: another trace is there")
-            return self._hdf5()
+            return _hdf5(self.path)
         except FileNotFoundError:
             raise LoomfmuError(f"{self.path}: there is no such file") from None
         except (OSError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
             raise LoomfmuError(f"{self.path}: it cannot be read as a trace ({reason})") from None
 
-    def _hdf5(self) -> Any:
-        source(self.path)
-        try:
-            return h5py.File(self.path, "r")
-        except OSError:
-            marked, length = superblock(self.path)
-            if not marked or self.path.stat().st_size < length:
-                raise  # HDF5 would look for the rest of a file that was cut off again and again
-        return h5py.File(self.path, "r", swmr=True)
-
     @contextmanager
     def _opened(self) -> Iterator[Any]:
-        """The file, opened unless it is."""
+        """The file, opened unless it is. What h5py raises where it meets nonsense names the file."""
         with self._turn:
-            if self._file is not None:
-                yield self._file
-                return
-            self._file = self._open()
+            kept = self._file is not None
+            self._file = self._file or self._open()
             try:
                 yield self._file
+            except (KeyError, OSError, RuntimeError, ValueError) as error:
+                raise LoomfmuError(f"{self.path}: it is damaged ({error.args[0]})") from None
             finally:
-                self.close()
+                if not kept:
+                    self.close()
 
     def __enter__(self) -> Self:
         self._file = self._file or self._open()
@@ -113,15 +105,33 @@ class Trace(Signals):
             return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
-        with self._opened() as file:
-            path = "/" + str(signal).replace(".", "/")
-            return path in file and isinstance(file[path], h5py.Dataset)
+        return signal in self._signals
 
     def __iter__(self) -> Iterator[str]:
+        return iter(self._signals)
+
+    @cached_property
+    def _signals(self) -> dict[str, None]:
+        """The signals, in their order. A group that cannot be opened is not left out: KeyError says so."""
         with self._opened() as file:
-            groups = [(name, group) for name, group in file.items() if isinstance(group, h5py.Group)]
-            found = [f"{name}.{variable}" for name, group in groups for variable in group]
-        return (signal for signal in found if signal.split(".")[1] not in SHARED)
+            members = {name: file[name] for name in file}
+            groups = {name: each for name, each in members.items() if isinstance(each, h5py.Group)}
+            return {
+                f"{name}.{variable}": None
+                for name, group in groups.items()
+                for variable in group
+                if variable not in SHARED
+            }
+
+    def check(self) -> None:
+        """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
+
+        def read(_name: str, item: Any) -> None:
+            dict(item.attrs)
+
+        with self._opened() as file:
+            read("/", file)
+            file.visititems(read)
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
@@ -199,6 +209,33 @@ class Trace(Signals):
         if not isinstance(value, np.number | np.bool_):
             raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
         return float(value)
+
+
+def is_trace(path: Path) -> bool:
+    """Whether a file is a trace by the names in it: no value is read, which damage can make endless."""
+    try:
+        with _hdf5(path) as file:
+            return not _lacking(file)
+    except (KeyError, OSError, RuntimeError):
+        return False
+
+
+def _hdf5(path: Path) -> Any:
+    source(path)
+    try:
+        return h5py.File(path, "r")
+    except OSError:
+        marked, length = superblock(path)
+        if not marked or path.stat().st_size < length:
+            raise  # HDF5 would look for the rest of a file that was cut off again and again
+    return h5py.File(path, "r", swmr=True)
+
+
+def _lacking(file: Any) -> str:
+    """What every trace has and a file does not; empty for a trace."""
+    datasets = (f"the dataset /{name}" for name in SHARED if name not in file)
+    attributes = (f"the attribute {name!r}" for name in REQUIRED if name not in file.attrs)
+    return next(iter((*datasets, *attributes)), "")
 
 
 def _state(path: Path) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ name only once it is complete; until then every block written can be read, even 
 import contextlib
 import json
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from .disk import reserve, superblock, take
 from .places import replace
 from .signals import Channel, Floats, Integers
 
+SOFTWARE = f"loomfmu {version('loomfmu')}"
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
 PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
@@ -59,7 +61,7 @@ class TraceWriter:
         self._file = h5py.File(self.partial, "w", libver=("v110", "v110"), rdcc_nbytes=16 * ROWS)
         try:
             reserve(self._file.id.get_vfd_handle(), header)
-            self._file.attrs.update({"Conventions": "CF-1.11", **attributes, "status": "running"})
+            self._file.attrs.update({"Conventions": "CF-1.11", "software": SOFTWARE, **attributes, "status": "running"})
             self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
             self._time.make_scale("time")
             self._angle = self._dataset(
