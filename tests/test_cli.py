@@ -133,6 +133,9 @@ def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
     Path("other_name.toml").hardlink_to("scene.toml")
     os.mkfifo("pipe")
     Path("to_device").symlink_to("/dev/null")
+    Path("notes").touch()
+    Path("to_notes").symlink_to("notes")
+    Path("to_nothing").symlink_to("nothing")
     Path("directory").mkdir()
     before = {path: untouched(path) for path in Path().iterdir()}
     said = {
@@ -142,7 +145,9 @@ def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
         "mine.fmu": "it is an input of this command",
         "directory": "it is a directory",
         "pipe": "it is a device or a pipe, not a file",
-        "to_device": "it is a device or a pipe, not a file",
+        "to_device": "it is a symbolic link; name the file itself",
+        "to_notes": "it is a symbolic link; name the file itself",
+        "to_nothing": "it is a symbolic link; name the file itself",
         "/dev/full": "it is a device or a pipe, not a file",
     }
     for target, why in said.items():

@@ -60,7 +60,7 @@ def zip_with(name: str, member: str) -> Kind:
 def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:
     """Refuse a path that may not be written.
 
-    Nothing ever replaces an input of the command or what is no regular file; only `overwrite` replaces a
+    Nothing ever replaces an input of the command, a link or what is no regular file; only `overwrite` replaces a
     file that is not of the kind to be written. Raises LoomfmuError.
     """
     try:
@@ -68,6 +68,8 @@ def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite:
             raise LoomfmuError(f"{path}: cannot be written (it is an input of this command)")
         if not path.name or path.is_dir():
             raise LoomfmuError(f"{path}: cannot be written (it is a directory)")
+        if path.is_symlink():  # it would be replaced, not what it points to
+            raise LoomfmuError(f"{path}: cannot be written (it is a symbolic link; name the file itself)")
         folder = next((folder for folder in path.parents if folder.exists()), path)
         if folder != path and not folder.is_dir():
             raise LoomfmuError(f"{path}: cannot be written ({folder} is not a directory)")
