@@ -1,6 +1,7 @@
 """The command: what it prints, what it returns, and one line for every mistake."""
 
 import os
+import shlex
 import stat
 import subprocess
 import sys
@@ -55,6 +56,13 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     with Trace("results/scene.h5") as trace:
         assert trace.rows == 91
         assert [verdict["holds"] for verdict in trace.verdicts] == [status == 0]
+
+
+@pytest.mark.parametrize("name", ["a b.h5", "-x.h5", "plain.h5", "it's.h5"])
+def test_the_summary_that_a_run_names_can_be_pasted(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD + SHAFT), f"--output={name}"]) == 0
+    command = capsys.readouterr().out.rpartition("summary: ")[2]
+    assert main(shlex.split(command)[1:]) == 0
 
 
 def test_run_without_claims_holds(capsys: pytest.CaptureFixture[str]) -> None:
@@ -641,7 +649,8 @@ def test_what_is_not_a_file_is_not_read(capsys: pytest.CaptureFixture[str], comm
     Path("motor.toml").write_text('duration = 1\nstep = 0.1\n[motor]\nfmu = "pipe"\n')
     Path("over.toml").write_text('scene = "pipe"\n[grid]\nmachine = ["WL680-3600"]\n')
     assert main(command.split()) == 2
-    assert one_line(capsys) == f"{PIPED[command].format(here=Path.cwd())} (it is a device or a pipe, not a file)"
+    begins = PIPED[command].format(here=Path.cwd())
+    assert one_line(capsys) == f"{begins} (it is a device or a pipe, not a file)"
 
 
 def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:

@@ -187,7 +187,8 @@ def test_a_trace_says_how_to_repeat_it(
     first = loomfmu.run("a loom.toml", set=set_, output="first.h5")
     with h5py.File("first.h5") as file:
         said, belt = dict(file.attrs), dict(file["belt"].attrs)
-    assert json.loads(said["set"]) == set_
+    texts = {"shaft.speed": "500 rpm", "belt.guide_clearance": "0.00047", "shaft.ripple_order": "3"}
+    assert json.loads(said["set"]) == texts
     # a shaft that ripples is followed: the belt's own speed had no effect, its unwired inputs did
     assert belt["follow_shaft"] and "speed" not in belt and "start_angle" not in belt
     assert (belt["yarn_tension"], belt["guide_clearance"], belt["head"]) == (2.0, 0.00047, "G6300 left")
@@ -205,6 +206,7 @@ def test_a_trace_says_how_to_repeat_it(
         assert set(other) == set(first.trace)
         for signal_ in other:
             np.testing.assert_array_equal(other[signal_], first.trace[signal_])
+        assert other.attributes["set"] == said["set"]
     # a scene that was read with values of its own tells them too; others take their place
     read = scenes.load("a loom.toml", set_)
     third = loomfmu.run(read, output="4.h5")
@@ -217,6 +219,36 @@ def test_a_trace_says_how_to_repeat_it(
     assert other.trace.parameter("belt.guide_clearance") == 0.0003
     with pytest.raises(LoomfmuError, match=r"no parameter 'belt\.head' is recorded"):
         third.trace.parameter("belt.head")
+
+
+def test_a_trace_keeps_the_files_that_its_scene_names(tmp_path: Path, fmu_cache: None) -> None:
+    sims = Path(__file__).parents[1] / "sims"
+    wif = tmp_path / "twill.wif"
+    wif.write_bytes((sims / "weaves" / "twill_2_2.wif").read_bytes())
+    (tmp_path / "loom.toml").write_text(SHARED_SPEED.replace("10/01", "twill.wif"))
+    read = scenes.load(tmp_path / "loom.toml")
+    text = wif.read_text()
+    wif.write_text("edited since")
+    first = loomfmu.run(read, output=tmp_path / "1.h5").trace
+    files = json.loads(first.attributes["files"])
+    assert files == {"twill.wif": text}
+    # from the trace alone
+    (tmp_path / "again").mkdir()
+    (tmp_path / "again" / "loom.toml").write_text(first.attributes["scene"])
+    for name, each in files.items():
+        (tmp_path / "again" / name).write_text(each)
+    again = loomfmu.run(tmp_path / "again" / "loom.toml", output=tmp_path / "2.h5").trace
+    assert set(again) == set(first)
+    for signal_ in first:
+        np.testing.assert_array_equal(again[signal_], first[signal_])
+
+
+def test_a_trace_names_the_content_of_its_package(tmp_path: Path, fmu_cache: None) -> None:
+    (tmp_path / "loom.toml").write_text(SHARED_SPEED)
+    package = tmp_path / "loom.ssp"
+    assert cli.main(["export", str(tmp_path / "loom.toml"), "--ssp", str(package), "--flavour", "live"]) == 0
+    trace = loomfmu.run(package, output=tmp_path / "1.h5").trace
+    assert trace.attributes["package_sha256"] == hashlib.sha256(package.read_bytes()).hexdigest()
 
 
 IDLE = {  # what is said of the loom, and values that have no effect then
@@ -523,6 +555,9 @@ def test_after_a_kill_every_whole_block_can_be_read(tmp_path: Path) -> None:
         assert kept.status == "running"
         assert kept.verdicts == []
         check_kept(tmp_path, kept)
+    damage.check(tmp_path / "out" / "long.h5.partial")
+    with h5py.File(tmp_path / "out" / "long.h5.partial", swmr=True) as plain:  # as the README has it
+        assert len(plain["belt/margin"]) >= seen
 
 
 def test_after_ctrl_c_every_sample_can_be_read(tmp_path: Path) -> None:
@@ -687,12 +722,12 @@ def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
         Trace(tmp_path / "text.h5")
     with h5py.File(tmp_path / "other.h5", "w") as other:
         other["time"] = [0.0, 1.0]
-    with pytest.raises(LoomfmuError, match="it is not a trace of loomfmu: it lacks the dataset /shaft_angle$"):
+    with pytest.raises(LoomfmuError, match=r"it is not a trace of loomfmu: it lacks the dataset /shaft_"):
         Trace(tmp_path / "other.h5")
     with h5py.File(tmp_path / "other.h5", "a") as other:  # another tool's, much like ours
         other["shaft_angle"] = [0.0, 1.0]
         other.attrs.update({"title": "theirs", "status": "complete"})
-    with pytest.raises(LoomfmuError, match="it lacks the attribute 'software'$"):
+    with pytest.raises(LoomfmuError, match=r"it lacks the attribute 'software'$"):
         Trace(tmp_path / "other.h5")
     assert not TRACE.ours(tmp_path / "other.h5")  # it is not replaced
 

@@ -7,6 +7,7 @@ import argparse
 import json
 import math
 import os
+import shlex
 import shutil
 import sys
 from collections.abc import Sequence
@@ -202,7 +203,9 @@ def _run(options: argparse.Namespace) -> int:
     if scene.description:
         print(f"{scene.description}\n")
     command = sys.argv[0] if Path(sys.argv[0]).name == "loomfmu" else "loomfmu"
-    print(f"trace: {result.path}    summary: {command} show {result.path}")
+    path = str(result.path)
+    summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
+    print(f"trace: {path}    summary: {shlex.join(summary)}")
     return 0 if result.holds else 1
 
 

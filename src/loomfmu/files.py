@@ -10,12 +10,11 @@ from pathlib import Path
 
 from .errors import LoomfmuError
 
-
 NOT_A_FILE = "it is a device or a pipe, not a file"
 
 
 def source(path: Path) -> Path:
-    """A file that is about to be read. Raises OSError, also for a pipe or a device: reading might never end."""
+    """A file that is about to be read. Raises OSError, also for a pipe or a device: it might never end."""
     mode = path.stat().st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # a directory is refused by whoever opens it
         raise OSError(errno.EINVAL, NOT_A_FILE, str(path))
@@ -60,7 +59,7 @@ def zip_with(name: str, member: str) -> Kind:
 def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:
     """Refuse a path that may not be written.
 
-    Nothing ever replaces an input of the command, a link or what is no regular file; only `overwrite` replaces a
+    Nothing ever replaces an input of the command, a link or what is not a file; only `overwrite` replaces a
     file that is not of the kind to be written. Raises LoomfmuError.
     """
     try:

@@ -41,14 +41,19 @@ def parse(given: object, directory: Path) -> Weave:
     >>> parse("10/01", Path()).pegs
     ('10', '01')
     """
-    if isinstance(given, str) and given.lower().endswith(".wif"):
-        return read_wif(directory / given)
+    if is_wif(given):
+        return read_wif(directory / str(given))
     pegs = given.split("/") if isinstance(given, str) else given
     if not isinstance(pegs, list) or not pegs:
         raise LoomfmuError(f'weave = {given!r} is neither pegs such as "10/01" nor the name of a WIF file')
     for number, frame in enumerate(pegs, start=1):
         check_pegs(frame, f"weave, frame {number}")
     return _within_the_dobby(Weave(tuple(pegs)), "weave")
+
+
+def is_wif(given: object) -> bool:
+    """Whether a weave as a scene writes it is the name of a WIF file."""
+    return isinstance(given, str) and given.lower().endswith(".wif")
 
 
 def check_pegs(pegs: object, where: str) -> str:
@@ -69,15 +74,26 @@ def _within_the_dobby(weave: Weave, where: str) -> Weave:
 
 
 def read_wif(path: Path) -> Weave:
-    """Read a WIF file: lift plan if it has one, else tie-up and treadling.
+    """Read a WIF file. Raises LoomfmuError naming the file, the section and the key."""
+    return of_wif(wif_text(path), path)
+
+
+def wif_text(path: Path) -> str:
+    """The text of a WIF file. Raises LoomfmuError where it cannot be read."""
+    try:
+        return source(path).read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise LoomfmuError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def of_wif(text: str, path: Path) -> Weave:
+    """The weave of a WIF file's text: lift plan if it has one, else tie-up and treadling.
 
     Raises LoomfmuError naming the file, the section and the key.
     """
     parser = configparser.ConfigParser(interpolation=None, strict=False)
     try:
-        parser.read_string(source(path).read_text(encoding="utf-8", errors="replace"))
-    except OSError as error:
-        raise LoomfmuError(f"{path}: cannot be read ({error.strerror})") from None
+        parser.read_string(text)
     except configparser.Error as error:
         raise LoomfmuError(f"{path}: not a WIF file ({str(error).splitlines()[0]})") from None
     sections = {name.upper(): dict(parser[name]) for name in parser.sections()}

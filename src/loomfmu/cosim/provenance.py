@@ -14,14 +14,17 @@ from .scene import Scene
 def attributes(plan: Plan, flavour: str) -> dict[str, str]:
     """What the root of a trace says of the run.
 
-    `set` are the values that differ from the scene, as they were given; `command` repeats the run.
+    `files` are the texts of the files that the scene's text names, `set` the values that differ from the
+    scene, as texts that `--set` takes; `command` repeats the run.
     """
     scene = plan.scene
     fmus = _fmus(plan.lean.scene)
     return {
         "title": scene.title,
         "scene": scene.text,
-        "set": json.dumps(scene.overrides, default=_plain),
+        **({"files": json.dumps(scene.texts)} if scene.texts else {}),
+        **({"package_sha256": scene.package_sha256} if scene.package else {}),
+        "set": json.dumps(_texts(scene.overrides)),
         "flavour": flavour,
         **_command(scene, flavour),
         **(
@@ -61,9 +64,17 @@ def _command(scene: Scene, flavour: str) -> dict[str, str]:
     if source is None:
         return {}
     words = ["loomfmu", "run", str(source)]
-    for key, value in scene.overrides.items():
-        words += ["--set", f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"]
+    for key, text in _texts(scene.overrides).items():
+        words += ["--set", f"{key}={text}"]
     return {"command": shlex.join([*words, *(["--native"] if flavour == "native" else [])])}
+
+
+def _texts(overrides: dict[str, Any]) -> dict[str, str]:
+    """Values that were set, in the one form that the command takes as well."""
+    return {
+        key: value if isinstance(value, str) else json.dumps(value, default=_plain)
+        for key, value in overrides.items()
+    }
 
 
 def _plain(value: Any) -> Any:

@@ -29,8 +29,9 @@ class Scene:
     A scene may run by seconds: then `step` is its step, and `revolutions` and `steps_per_revolution` count
     seconds instead of revolutions. `coupling` is how loops are closed, `grid` where the steps are, with
     `coarse_steps_per_revolution` outside of the windows that the claims look into. `file` or the system
-    package `package` is what it was read from, `overrides` are the values that differ from it, `notes` what
-    the user is to be warned of.
+    package `package` is what it was read from, `package_sha256` is the package's, `texts` are those of the
+    other files that its text names, `overrides` the values that differ from it, `notes` what the user is to
+    be warned of.
     """
 
     title: str
@@ -53,6 +54,8 @@ class Scene:
     package: Path | None = None
     notes: tuple[str, ...] = ()
     overrides: dict[str, Any] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
+    package_sha256: str = ""
 
     @property
     def speed(self) -> float:
@@ -97,6 +100,7 @@ def parse(
     `directory` is where the files that the scene names are looked for.
     """
     tables = toml(text)
+    texts = standard_loom.resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
     for key, value in (overrides or {}).items():
         override(tables, given, key, value, Path(directory))
@@ -104,9 +108,8 @@ def parse(
     wires = wires_of(instances, tables.get("wires", {}))
     for each in wires:
         instances[each.sink[0]].follow(each)
-    scene = replace(
-        assemble(tables, instances, wires, name, text, Path(directory)), overrides=dict(overrides or {})
-    )
+    scene = assemble(tables, instances, wires, name, text, Path(directory))
+    scene = replace(scene, overrides=dict(overrides or {}), texts=texts)
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     for owner, table in given.items():

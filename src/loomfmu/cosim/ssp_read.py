@@ -71,7 +71,8 @@ class _Package:
     def __init__(self, path: Path):
         self.path = path
         content = readable(path).read_bytes()
-        self.directory = cache_directory() / "packages" / hashlib.sha256(content).hexdigest()
+        self.sha256 = hashlib.sha256(content).hexdigest()
+        self.directory = cache_directory() / "packages" / self.sha256
         with zipfile.ZipFile(path) as archive:
             self.files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
         self.notes: list[str] = []
@@ -113,7 +114,10 @@ class _Package:
         changed = _override(tables, instances, overrides)
         written = self.files[SSD_FILE].decode(errors="replace") if annotation is None else annotation.text
         made = assemble(tables, instances, wires, self.path.stem, written or "", self.path.parent)
-        made = replace(made, package=self.path, notes=(*self.notes, *made.notes), overrides=dict(overrides))
+        made = replace(
+            made, package=self.path, package_sha256=self.sha256, notes=(*self.notes, *made.notes),
+            overrides=dict(overrides),
+        )  # fmt: skip
         for name, variable in changed:
             check_free(made, name, variable)
         return made

@@ -69,6 +69,18 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     return instances
 
 
+def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:
+    """Put the pegs of a WIF file in the place of its name; the texts of such files, as they were read."""
+    table = tables.get("loom")
+    if not isinstance(table, dict) or not weaves.is_wif(table.get("weave")):
+        return {}
+    given = table["weave"]
+    path = directory / given
+    text = weaves.wif_text(path)
+    tables["loom"] = table | {"weave": list(weaves.of_wif(text, path).pegs)}
+    return {given: text}
+
+
 def _wanted(table: dict[str, Any], key: str) -> bool:
     wanted = table.get(key, False)
     if not isinstance(wanted, bool):

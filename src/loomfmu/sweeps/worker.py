@@ -70,8 +70,7 @@ def job_of(plan: Plan) -> Job:
 def identity(scene: Scene, flavour: str) -> str:
     """A digest of all that the results of a scene depend on: texts, files, FMUs, versions."""
     parts = [version("loomfmu"), flavour, scene.text, repr(machines.MACHINES), repr(machines.HEADS)]
-    if scene.package is not None:
-        parts.append(hashlib.sha256(scene.package.read_bytes()).hexdigest())
+    parts += [scene.package_sha256] if scene.package else []
     for name, each in scene.instances.items():  # weaves and other files have become values
         fmu = of_component(each.fmu.name, flavour) if each.fmu.built else each.fmu
         parts += [name, fmu.sha256, repr(sorted(each.values.items()))]

@@ -19,7 +19,6 @@ from .disk import superblock
 from .places import place_of
 from .signals import SHARED, Floats, Signals
 
-
 REQUIRED = ("title", "status", "software")  # attributes that every trace has
 
 

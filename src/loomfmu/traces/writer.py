@@ -61,7 +61,8 @@ class TraceWriter:
         self._file = h5py.File(self.partial, "w", libver=("v110", "v110"), rdcc_nbytes=16 * ROWS)
         try:
             reserve(self._file.id.get_vfd_handle(), header)
-            self._file.attrs.update({"Conventions": "CF-1.11", "software": SOFTWARE, **attributes, "status": "running"})
+            first = {"Conventions": "CF-1.11", "software": SOFTWARE}
+            self._file.attrs.update({**first, **attributes, "status": "running"})
             self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
             self._time.make_scale("time")
             self._angle = self._dataset(
