@@ -76,7 +76,7 @@ def test_the_root_says_what_was_run(file: h5py.File, result: loomfmu.Result) -> 
     assert said["scene"] == SCENE
     assert said["status"] == "complete"
     assert said["software"] == f"loomfmu {metadata.version('loomfmu')}"
-    assert said["steps_per_revolution"] == "1440"
+    assert (said["revolutions"], said["steps_per_revolution"]) == ("1.5", "1440")
     assert (said["set"], said["flavour"]) == ("{}", "live")
     assert said["command"] == f"loomfmu run {result.scene.file}"
     assert json.loads(said["claims"]) == [verdict.as_dict() for verdict in result.claims]
@@ -93,6 +93,7 @@ def test_the_layout_is_flat_and_along_one_time(file: h5py.File, result: loomfmu.
     assert file["time"].is_scale
     assert file["time"].attrs["UNIT"] == file["time"].attrs["units"] == "s"
     assert file["shaft_angle"].attrs["UNIT"] == "rad"
+    assert file["shaft_angle"].attrs["DISPLAY_UNIT"] == "deg"
     assert np.all(np.diff(file["time"][:]) > 0)
     assert file["shaft_angle"].dims[0][0] == file["time"]
     for name in result.scene.instances:

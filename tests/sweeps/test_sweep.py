@@ -154,6 +154,10 @@ def test_a_combination_that_cannot_run_has_its_reason_and_stops_nothing(tmp_path
         assert row["belt.lowest_speed_limit"] is row["claim_1.holds"] is row["claim_1.worst"] is None
         assert row["weft.coupler_length"] == 0.5
     assert (found.holding, found.failing, found.errors) == (1, 1, 2)
+    # in pandas a row without a verdict leaves Booleans what they are
+    frame = pandas.read_parquet(found.path)
+    assert frame["holds"].dtype == frame["claim_1.holds"].dtype == "boolean"
+    assert (len(frame[frame["holds"]]), frame["holds"].isna().sum()) == (1, 2)
     # no trace of what has none
     assert [path.name for path in found.traces] == ["row_000000.h5", "row_000001.h5"]
 

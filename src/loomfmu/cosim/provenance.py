@@ -28,9 +28,9 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         "flavour": flavour,
         **_command(scene, flavour),
         **(
-            {"steps_per_revolution": str(scene.steps_per_revolution)}
+            {"revolutions": f"{scene.revolutions!r}", "steps_per_revolution": str(scene.steps_per_revolution)}
             if scene.step is None
-            else {"step": f"{scene.step!r} s"}
+            else {"duration": f"{scene.revolutions!r} s", "step": f"{scene.step!r} s"}
         ),
         "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),

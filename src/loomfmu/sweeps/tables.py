@@ -67,8 +67,17 @@ def schema_of(plan: Plan, labels: tuple[Label, ...]) -> Any:
         "flavour": plan.flavour,
         "software": f"loomfmu {version('loomfmu')}",
         "claims": json.dumps([asdict(label) for label in labels]),
+        "pandas": json.dumps(_for_pandas(fields)),
     }
     return pa.schema(fields, metadata=about)
+
+
+def _for_pandas(fields: list[Any]) -> dict[str, Any]:
+    """What pandas reads Booleans by: a row that could not be run has none, which only its own type holds."""
+    booleans = [field.name for field in fields if field.type == pa.bool_()]
+    about = {"pandas_type": "bool", "numpy_type": "boolean", "metadata": None}
+    columns = [{"name": name, "field_name": name, **about} for name in booleans]
+    return {"index_columns": [], "column_indexes": [], "columns": columns}
 
 
 def labels_of(table: Any) -> tuple[Label, ...]:

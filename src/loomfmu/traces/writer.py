@@ -69,6 +69,7 @@ class TraceWriter:
                 "/shaft_angle", "f8", "rad", "shaft angle", "Angle of the main shaft, not wrapped"
             )
             self._angle.dims[0].attach_scale(self._time)
+            self._angle.attrs["DISPLAY_UNIT"] = "deg"
             datasets = [self._channel(channel) for channel in channels]
             self._reals, self._real_columns = self._chosen(datasets, real=True)
             self._integers, self._integer_columns = self._chosen(datasets, real=False)
