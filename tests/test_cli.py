@@ -383,7 +383,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "pattern elsewhere": (
         HEAD + LOOM + '[belt]\npattern = "10"\n',
-        "belt.pattern: only a HealdFrame has a pattern",
+        "belt.pattern: a BeltMonitor has no pattern",
     ),
     # values
     "unknown variable": (

@@ -13,7 +13,7 @@ from direct_loom import traced
 from live_fmus import fmu_cache
 from scipy.optimize import brentq
 
-from loomfmu import LoomfmuError, Trace, Verdict, judge
+from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
 from loomfmu.components import DobbyDrive
 from loomfmu.cosim import curves
 from loomfmu.cosim import scene as scenes
@@ -841,3 +841,68 @@ def test_a_frame_that_crosses_the_closed_shed_between_samples_leaves_no_opening(
     assert coarse.worst == fine.worst == 0.0
     assert math.isclose(coarse.angle, fine.angle, abs_tol=1e-3)  # the quintic's, 15 deg apart
     assert not coarse.holds
+
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+FAR_APART = "the samples are too far apart to be sure: take more steps"
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 4, 6, 8, 12, 16, 19])
+@pytest.mark.parametrize("rest", ["", 'grid = "windows"\ncoarse_steps_per_revolution = {steps}\n'])
+def test_no_claim_holds_on_samples_that_may_miss_the_belts_window_of_risk(steps: int, rest: str) -> None:
+    """At 700 rev/min the belt buckles; its window of risk lies between any 6 samples in a revolution."""
+    text = rest.format(steps=steps) + DEMO.read_text(encoding="utf-8")
+    found = evaluate(
+        scenes.parse(text), set={"shaft.speed": "700 rpm", "steps_per_revolution": 24 if rest else steps}
+    )
+    if rest:  # a coarse grid may still land close enough
+        assert found.claims[0].worst < 0.0 or FAR_APART in found.claims[0].note
+    else:
+        assert all(FAR_APART in claim.note for claim in found.claims)
+    assert not any(found.claims[:2])
+
+
+@pytest.mark.parametrize(
+    ("machine", "rpm"), [("WL680-3600", 300), ("WL680-3600", 750), ("WL450-3600", 450), ("WL450-4000", 400)]
+)
+def test_the_lowest_margin_is_known_where_the_samples_are_near_enough_to_judge_it(
+    machine: str, rpm: int
+) -> None:
+    coarse, fine = (
+        evaluate(DEMO, set={"machine": machine, "shaft.speed": f"{rpm} rpm", "steps_per_revolution": steps})
+        for steps in (20, 2880)
+    )
+    assert FAR_APART not in coarse.claims[0].note
+    # a quintic over 18 deg where the margin falls steeply; 1.5e-3 was the most of all machines
+    assert math.isclose(coarse.claims[0].worst, fine.claims[0].worst, abs_tol=2e-3)
+
+
+def test_a_run_that_never_reaches_the_belts_risk_says_so() -> None:
+    short = evaluate(DEMO, set={"revolutions": 0.25}).claims[0]
+    assert (short.worst, short.note) == (1.0, "the belt is never at risk in this run")
+    assert evaluate(DEMO).claims[0].note == ""
+
+
+def test_a_negative_speed_is_no_bound(loom: Callable[..., Trace]) -> None:
+    said = r'bound shaft.speed = -800 rev/min is negative, .*, such as bound = "800 rev/min"'
+    with pytest.raises(LoomfmuError, match=said):
+        evaluate(DEMO, set={"shaft.speed": "-800 rpm"})
+    backwards = loom(shaft__speed="-800 rpm")
+    with pytest.raises(LoomfmuError, match=said):
+        judge(backwards, kind="above", signal="belt.lowest_speed_limit", bound="shaft.speed")
+    assert not judge(backwards, kind="above", signal="belt.lowest_speed_limit", bound="800 rpm")
+
+
+@pytest.mark.parametrize("start", [0, 45])
+@pytest.mark.parametrize("way", [1, -1])
+def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
+    loom: Callable[..., Trace], start: int, way: int
+) -> None:
+    trace = loom(360, shaft__speed=f"{600 * way} rpm", shaft__start_angle=f"{start * way} deg")
+    places = [
+        curves.on_the_shaft(curves.Motion(trace, "shaft.angle"), revolutions * 0.1)
+        for revolutions in (0.0, 0.3, 1.3, 2.6)
+    ]
+    assert [revolution for _angle, revolution in places] == [1, 1, 2, 3]
+    expected = [(way * (start + turned)) % 360 for turned in (0, 108, 108, 216)]
+    assert [math.degrees(angle) for angle, _revolution in places] == pytest.approx(expected, abs=1e-9)

@@ -24,7 +24,9 @@ DEGREE = math.pi / 180.0
 
 def judged(grid: str = "windows", **changed: object) -> Evaluation:
     values = {key.replace("__", "."): value for key, value in changed.items()}
-    return loomfmu.evaluate(DEMO, set={"grid": grid, **values})
+    # a shaft that turns backwards has no speed that could be a bound
+    text = DEMO.read_text(encoding="utf-8").replace('bound = "shaft.speed"', 'bound = "600 rev/min"')
+    return loomfmu.evaluate(scenes.parse(text), set={"grid": grid, **values})
 
 
 def lowest(output: str) -> float:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ..errors import LoomfmuError, suggestion
-from .claims import check, check_values, names_parameter, signals_of
+from .claims import check, check_speed, check_values, names_parameter, signals_of
 from .fmus import Port
 from .scene import Scene
 
@@ -53,6 +53,7 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
+    check_speed(name, float(scene.instances[instance].effective()[variable]), wanted)
 
 
 def judged_by(scene: Scene) -> list[str]:

@@ -107,6 +107,15 @@ def names_parameter(argument: str, given: Any) -> bool:
     return argument == "bound" and isinstance(given, str) and bool(PARAMETER.fullmatch(given))
 
 
+def check_speed(name: str, value: float, unit: str) -> None:
+    """Refuse a negative speed as a bound: limits of speed are those of its amount."""
+    if unit == "rad/s" and value < 0.0:
+        raise LoomfmuError(
+            f"claim: bound {name} = {units.show(value, 'rev/min')} is negative, and limits of speed are not;"
+            f' write the speed itself, such as bound = "{units.show(-value, "rev/min")}"'
+        )
+
+
 def signals_of(claim: dict[str, Any], instances: Iterable[str]) -> list[str]:
     """The signals that a claim needs to have been recorded, in a scene with these instances."""
     kind = claim.get("kind")
@@ -131,6 +140,7 @@ def parameters_of(claim: dict[str, Any]) -> list[str]:
     return [str(bound).partition(".")[0]] if names_parameter("bound", bound) else []
 
 
+NO_RISK = "the belt is never at risk in this run"
 PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")
 
 # arguments that are quantities, and their units; a bound's is that of its signal
@@ -183,7 +193,8 @@ def lowest_margin(trace: Signals, bound: float | str, belt: str = "belt") -> Ver
     limit = units.parse(bound, "1")
     signal, margin = f"{belt}.lowest_margin", trace[f"{belt}.margin"]
     worst, time = float(trace[signal][-1]), curves.reached(trace, signal, margin)
-    return verdict(trace, "lowest margin", signal, worst >= limit, limit, worst, ONE, time)
+    note = NO_RISK if worst >= 1.0 else ""
+    return verdict(trace, "lowest margin", signal, worst >= limit, limit, worst, ONE, time, note)
 
 
 def peak_load(trace: Signals, damper: str, at_most: float | str) -> Verdict:
@@ -230,6 +241,7 @@ def _bounded(
 ) -> Verdict:
     if names_parameter("bound", bound):
         limit = trace.parameter(str(bound))
+        check_speed(str(bound), limit, trace.unit(signal))
     else:
         limit = units.parse(bound, trace.unit(signal))
     claim = f"stays {'above' if sign > 0 else 'below'}"

@@ -109,12 +109,15 @@ def verdict(
     trace: Signals, claim: str, signal: str, holds: bool, bound: float, worst: float,
     unit: tuple[str, str], time: float, *notes: str,
 ) -> Verdict:  # fmt: skip
-    """A verdict with the place on the shaft that belongs to its time; `unit` as in `ONE`."""
+    """A verdict with the place on the shaft that belongs to its time; `unit` as in `ONE`.
+
+    It does not hold on samples that are too far apart to tell how a loom moves.
+    """
     shaft = curves.shaft(trace)
     angle, revolution = math.nan, None
     if shaft is not None and math.isfinite(time):
-        turned = shaft.at(time)
-        revolution = math.floor(turned / curves.TURN) + 1
-        angle = turned - curves.TURN * (revolution - 1)
+        angle, revolution = curves.on_the_shaft(shaft, time)
+    if shaft is not None and curves.too_coarse(shaft):
+        holds, notes = False, (*notes, curves.COARSE_NOTE)
     note = "; ".join(dict.fromkeys(note for note in notes if note))
     return Verdict(claim, signal, bool(holds), bound, worst, *unit, time, angle, revolution, note)
