@@ -1,5 +1,6 @@
 """The directory of a sweep: whole batches, no other sweep's, one writer."""
 
+import errno
 import json
 import os
 import subprocess
@@ -152,16 +153,38 @@ def test_another_sweep_is_refused_until_it_is_thrown_away(plan: Plan, tmp_path: 
     assert sorted(os.listdir(place)) == ["batches", "notes.txt", "sweep.json"]
 
 
-def test_results_without_identity_are_not_taken_for_ours(plan: Plan, tmp_path: Path) -> None:
+@pytest.mark.parametrize("restart", [False, True])
+@pytest.mark.parametrize(
+    "name",
+    ["table.parquet", "map.png", "sweep.json", "batches/rows_000000_000009.parquet", "traces/row_1.h5"],
+)
+def test_what_no_sweep_wrote_is_left_alone(plan: Plan, tmp_path: Path, name: str, restart: bool) -> None:
     place = tmp_path / "results"
-    place.mkdir()
-    (place / "table.parquet").write_bytes(b"somebody else's")
-    with (
-        pytest.raises(LoomfmuError, match="it holds results of no known sweep"),
-        opened(place, plan, "one", restart=False),
-    ):
+    (place / name).parent.mkdir(parents=True)
+    (place / name).write_bytes(b"mine")
+    said = rf"results: it holds files that no sweep of loomfmu wrote \({Path(name).name}\); --output names"
+    with pytest.raises(LoomfmuError, match=said), opened(place, plan, "one", restart=restart):
         pytest.fail("it was opened")
-    assert (place / "table.parquet").read_bytes() == b"somebody else's"
+    assert [path for path in place.rglob("*") if path.is_file()] == [place / name]
+    assert (place / name).read_bytes() == b"mine"
+
+
+def test_a_full_disk_is_told_with_the_files_name_and_leaves_no_lock(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "results"
+
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patched:
+        patched.setattr("loomfmu.sweeps.store.os.write", full)
+        with (
+            pytest.raises(LoomfmuError, match=r"lock: cannot be written \(No space left on device\)"),
+            opened(place, plan, "one", restart=False),
+        ):
+            pytest.fail("it was opened")
+    assert os.listdir(place) == []
 
 
 HOLDER = """

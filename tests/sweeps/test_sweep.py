@@ -339,7 +339,7 @@ def test_a_sweep_writes_over_nothing_that_it_reads_or_that_is_not_its_own(tmp_pa
         loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True)
     assert os.listdir(tmp_path / "out") == ["lock"]
     (tmp_path / "out" / "lock").rename(tmp_path / "out" / "map.png")
-    with pytest.raises(LoomfmuError, match="it holds results of no known sweep"):
+    with pytest.raises(LoomfmuError, match="it holds files that no sweep of loomfmu wrote"):
         loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert os.listdir(tmp_path / "out") == ["map.png"]
 

@@ -20,8 +20,8 @@ SAME = 1e-11  # of the largest value: extremes that close are equal, and the fir
 COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples tell of one oscillation
 DOUBT = 0.1  # of the difference between second rates over an interval, see `Motion.doubt`
 ROUNDING = 1e-12  # of the largest value: what rounding may add
-# Between samples farther apart than that a window of risk may be lost whole. The lowest margin of the published
-# looms is then known to 2e-3; with 16 samples in a revolution to 5e-3, with 8 to 0.05, and with 6 not at all.
+# Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
+# margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
 FARTHEST = TURN / 20.0
 COARSE_NOTE = "the samples are too far apart to be sure: take more steps"
 

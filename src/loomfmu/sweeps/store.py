@@ -107,12 +107,15 @@ class Store:
 
     def clear(self) -> None:
         """Delete what a sweep wrote here, and nothing else."""
-        own = [self.table_path, self.map_path]
-        patterns = (("batches", "rows_*.parquet"), ("traces", "row_*.h5"), ("traces", "row_*.h5.partial"))
-        own += [path for folder, pattern in patterns for path in (self.directory / folder).glob(pattern)]
         # its identity last: what a kill leaves over is still known
-        for path in [*own, *self.partial(), self.directory / IDENTITY]:
+        for path in [*self.results(), *self.partial(), self.directory / IDENTITY]:
             path.unlink(missing_ok=True)
+
+    def results(self) -> list[Path]:
+        """What is there under the names of a sweep's results."""
+        patterns = (("batches", "rows_*.parquet"), ("traces", "row_*.h5"), ("traces", "row_*.h5.partial"))
+        found = [path for folder, pattern in patterns for path in (self.directory / folder).glob(pattern)]
+        return [path for path in (self.table_path, self.map_path, *found) if path.exists()]
 
     def partial(self) -> list[Path]:
         """What a sweep that was killed was about to write."""
@@ -134,34 +137,40 @@ def opened(
         check_target(target, ANY, inputs)
     directory.mkdir(parents=True, exist_ok=True)
     with _locked(directory):
-        if restart:
-            store.clear()
-        _check_identity(store, fingerprint)
+        _check_identity(store, fingerprint, restart)
         for path in store.partial():
             path.unlink(missing_ok=True)
         yield store
 
 
-def _check_identity(store: Store, fingerprint: str) -> None:
-    """Refuse to mix two sweeps."""
+def _check_identity(store: Store, fingerprint: str, restart: bool) -> None:
+    """Refuse to mix two sweeps, and to touch what no sweep wrote; only a sweep's own is thrown away."""
     path = store.directory / IDENTITY
-    if path.exists():
-        try:
-            known = json.loads(path.read_text(encoding="utf-8"))["fingerprint"]
-        except (ValueError, KeyError, TypeError):
-            known = None
-        if known != fingerprint:
-            raise LoomfmuError(
-                f"{store.directory}: it holds another sweep, or its file, its scene, an FMU or loomfmu has"
-                " changed since; --restart throws that away, --output names another place"
-            )
-    elif store.done() or store.table_path.exists() or store.map_path.exists():
+    known = _known(path)
+    if known is None and (path.exists() or store.results()):
+        foreign = path if path.exists() else store.results()[0]
         raise LoomfmuError(
-            f"{store.directory}: it holds results of no known sweep; --output names another place"
+            f"{store.directory}: it holds files that no sweep of loomfmu wrote ({foreign.name});"
+            " --output names another place"
         )
-    else:
+    if restart:
+        store.clear()
+    elif known not in (None, fingerprint):
+        raise LoomfmuError(
+            f"{store.directory}: it holds another sweep, or its file, its scene, an FMU or loomfmu has"
+            " changed since; --restart throws that away, --output names another place"
+        )
+    if restart or known is None:
         content = {"title": store.plan.title, "rows": store.plan.rows, "fingerprint": fingerprint}
         _replace(path, (json.dumps(content, indent=1) + "\n").encode())
+
+
+def _known(path: Path) -> str | None:
+    """The fingerprint of the sweep that a directory holds; none without one."""
+    try:
+        return str(json.loads(path.read_text(encoding="utf-8"))["fingerprint"])
+    except (FileNotFoundError, ValueError, KeyError, TypeError):
+        return None
 
 
 def _write(table: Any, path: Path) -> None:
@@ -188,11 +197,13 @@ def _locked(directory: Path) -> Iterator[None]:
     """Keep other sweeps out of a directory. The system frees the lock with the process that has it."""
     path = directory / LOCK
     with _held(path) as file:
-        file.seek(0)
-        file.truncate()
-        file.write(str(os.getpid()))
-        file.flush()
         try:
+            try:
+                file.truncate(0)
+                # not by way of a buffer, which would be written once more when the file is closed
+                os.write(file.fileno(), str(os.getpid()).encode())
+            except OSError as error:
+                raise cannot_write(path, error) from None
             yield
         finally:
             with contextlib.suppress(PermissionError):  # Windows deletes no file that is open
