@@ -47,7 +47,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     printed = capsys.readouterr()
     assert printed.err == ""
     lines = printed.out.splitlines()
-    assert lines[0] == "Small: 1 revolutions at 400 rev/min, 90 steps"
+    assert lines[0] == "Small: 1 revolution at 400 rev/min, 90 steps"
     place = lines.index(f"{word}  lowest margin (belt.lowest_margin)")
     assert lines[place + 1].startswith("  0.6558")
     assert f", bound {bound}, at 0.0" in lines[place + 1] and lines[place + 1].endswith(" deg, rev. 1")
@@ -258,7 +258,7 @@ def test_show_summarises_and_tells_again_whether_all_claims_held(
     assert main(["show", "results/scene.h5"]) == status
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Small (loomfmu ") and lines[0].endswith(", complete)")
-    assert lines[1:3] == ["run by: loomfmu run scene.toml", "91 samples over 0.15 s, 1 revolutions"]
+    assert lines[1:3] == ["run by: loomfmu run scene.toml", "91 samples over 0.15 s, 1 revolution"]
     row = next(line.split() for line in lines if line.startswith("shaft.angle"))
     assert row == ["shaft.angle", "0", "360", "360", "deg"]
     row = next(line.split() for line in lines if line.startswith("weft.stroke"))
@@ -340,7 +340,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "no whole step": (
         HEAD.replace("revolutions = 1", "revolutions = 1e-6"),
-        "revolutions = 1e-06 at 90 steps each is not one step",
+        "revolutions = 1e-06 at 90 steps each is less than one step",
     ),
     "NaN revolutions": (
         HEAD.replace("revolutions = 1", "revolutions = nan"),
@@ -352,7 +352,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "record no list": (
         "record = 'belt.margin'\n" + HEAD + LOOM,
-        'record = \'belt.margin\' is no list such as ["belt.*", "weft.travel"]',
+        'record = \'belt.margin\' is not a list such as ["belt.*", "weft.travel"]',
     ),
     "record unknown": (
         "record = ['belt.margn']\n" + HEAD + LOOM,
@@ -375,7 +375,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "pattern": (
         HEAD + LOOM + '[heald_1]\npattern = "12"\n',
-        "heald_1.pattern = '12' is no string of pegs such as \"1010\"",
+        "heald_1.pattern = '12' is not a string of pegs such as \"1010\"",
     ),
     "pattern too long": (
         HEAD + LOOM + f'[heald_1]\npattern = "{"10" * 65}"\n',
@@ -404,7 +404,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "unit of another dimension": (
         HEAD + '[shaft]\nspeed = "600 mm"\n',
-        "shaft.speed: '600 mm' is in mm, which is no unit of rad/s",
+        "shaft.speed: '600 mm' is in mm, which does not fit rad/s",
     ),
     "out of range": (
         HEAD + LOOM + '[belt]\nguide_clearance = "90 mm"\n',
@@ -459,6 +459,22 @@ CASES: dict[str, tuple[str, str]] = {
         HEAD + LOOM + '[wires]\n"belt.travl" = false\n',
         "wires: 'belt.travl' is not wired; did you mean 'belt.travel'?",
     ),
+    "wire to true": (
+        HEAD + LOOM + '[wires]\n"belt.travel" = true\n',
+        'wires: "belt.travel" = true is neither an output nor false, which cuts the wire',
+    ),
+    "a date": (
+        HEAD + LOOM + "[belt]\nguide_clearance = 2026-01-02\n",
+        'belt.guide_clearance: 2026-01-02 is not a quantity such as "685 rpm"',
+    ),
+    "decimal comma": (
+        HEAD + LOOM + '[belt]\nguide_clearance = "0,5mm"\n',
+        "belt.guide_clearance: '0,5mm' has a decimal comma: write \"0.5mm\"",
+    ),
+    "the scene's key in a table": (
+        HEAD + LOOM + "[shaft]\nrecord = []\n",
+        "shaft.record is unknown: record belongs to the scene, write it above the first [table]",
+    ),
     "wires no table": (
         "wires = 5\n" + HEAD,
         'wires is no table of "instance.input" = "instance.output"',
@@ -491,7 +507,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "claim unit": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = "1 mm"\n',
-        "claim 'above': bound: '1 mm' is in mm, which is no unit of 1",
+        "claim 'above': bound: '1 mm' is in mm, which does not fit a number without a unit",
     ),
     "claim NaN": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = nan\n',
@@ -503,7 +519,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "claim window unit": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "weft.travel"\nbound = 1\nwindow = ["1 mm", 2]\n',
-        "claim 'above': window: '1 mm' is in mm, which is no unit of rad",
+        "claim 'above': window: '1 mm' is in mm, which does not fit rad",
     ),
     "claim tolerance": (
         HEAD + LOOM + '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = 1\ntolerance = 0.9\n',

@@ -159,7 +159,10 @@ def _overrides(options: argparse.Namespace) -> dict[str, Any]:
         key, equals, value = text.partition("=")
         if not equals:
             raise LoomfmuError(f"--set {text}: not of the form INSTANCE.VARIABLE=VALUE")
-        overrides[key.strip()] = value.strip()
+        key = key.strip()
+        if key in overrides:
+            raise LoomfmuError(f"--set {key} is given twice: {overrides[key]} and {value.strip()}")
+        overrides[key] = value.strip()
     return overrides
 
 
@@ -191,10 +194,8 @@ def _run(options: argparse.Namespace) -> int:
     if result.ended:
         print(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
-        print(
-            f"{scene.title}: {scene.revolutions:g} revolutions at {units.show(scene.speed, 'rev/min')},"
-            f" {result.steps} steps"
-        )
+        turned, speed = _revolutions(f"{scene.revolutions:g}"), units.show(scene.speed, "rev/min")
+        print(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
     else:
         print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")
     if options.explain:
@@ -258,9 +259,8 @@ def _init(options: argparse.Namespace) -> int:
 
     written = catalogue.start(options.directory, everything=options.all)
     print(*written, sep="\n")
-    print(
-        f"\nnext: loomfmu run {written[0] if not options.all else options.directory / catalogue.STARTERS[0]}"
-    )
+    print('\na sweep with its picture takes two extras: pip install "loomfmu[sweep,plot]"')
+    print(f"next: loomfmu run {written[0] if not options.all else options.directory / catalogue.STARTERS[0]}")
     return 0
 
 
@@ -299,7 +299,7 @@ def _summarise(path: str) -> int:
             print(f"differs from the scene: {key} = {value}")
         turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
         end = trace.time[-1] if trace.rows else 0.0
-        print(f"{trace.rows} samples over {end:.6g} s, {turned:.4g} revolutions")
+        print(f"{trace.rows} samples over {end:.6g} s, {_revolutions(f'{turned:.4g}')}")
         width = max((len(signal) for signal in trace), default=0)
         print(f"\n{'signal':{width}}  {'lowest':>12}  {'highest':>12}  {'last':>12}  unit")
         for signal in trace:
@@ -313,6 +313,10 @@ def _summarise(path: str) -> int:
         verdicts = [Verdict.of(stored) for stored in trace.verdicts]
         _print_verdicts(verdicts)
         return 0 if trace.status == "complete" and all(verdicts) else 1
+
+
+def _revolutions(count: str) -> str:
+    return f"{count} revolution" + "s" * (count != "1")
 
 
 def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:

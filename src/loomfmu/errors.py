@@ -4,6 +4,7 @@ import difflib
 import os
 import re
 from collections.abc import Iterable, Mapping
+from datetime import date, time
 from pathlib import Path
 
 MOST_SHOWN = 16  # names that a message lists
@@ -20,8 +21,8 @@ def shown(value: object) -> str:
     >>> shown({"a": 1})
     "{'a': 1}"
     """
-    text = " ".join(repr(value).split())
-    return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}.."
+    text = " ".join((str(value) if isinstance(value, date | time) else repr(value)).split())
+    return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}..."
 
 
 def path_of(given: object, what: str) -> Path:
@@ -50,5 +51,5 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     )
     if near:
         return f"; did you mean {near[0]!r}?"
-    shown = ", ".join(known[:MOST_SHOWN]) + (", .." if len(known) > MOST_SHOWN else "")
+    shown = ", ".join(known[:MOST_SHOWN]) + (", ..." if len(known) > MOST_SHOWN else "")
     return f"; known: {shown}" if known else ""

@@ -104,6 +104,17 @@ def write_file(
     return path
 
 
+def text_of(path: Path) -> str:
+    """The text of a file that somebody wrote, perhaps with a mark of its encoding. Raises LoomfmuError."""
+    try:
+        return source(path).read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise LoomfmuError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except UnicodeDecodeError:
+        hint = f"; loomfmu show {path} tells of a trace" if path.suffix in (".h5", ".hdf5") else ""
+        raise LoomfmuError(f"{path}: is not text in UTF-8{hint}") from None
+
+
 def cannot_write(path: Path, error: OSError) -> LoomfmuError:
     """The message about a file that cannot be written; what the system says need not name it."""
     return LoomfmuError(f"{path}: cannot be written ({error.strerror or error})")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-from .errors import LoomfmuError, suggestion
+from .errors import LoomfmuError, shown, suggestion
 
 
 class UnitError(LoomfmuError):
@@ -93,6 +93,7 @@ QUANTITIES = {
 ALIASES = {"": "1", "-": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+_COMMA = re.compile(r"\s*[-+]?\d*,\d")
 
 
 def canonical(name: str) -> str:
@@ -132,9 +133,11 @@ def parse(quantity: str | float, target: str) -> float:
     0.8
     """
     if isinstance(quantity, bool) or not isinstance(quantity, str | Real):
-        raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
+        raise UnitError(f'{shown(quantity)} is not a quantity such as "685 rpm"')
     if not isinstance(quantity, str):
         return float(quantity)
+    if _COMMA.match(quantity):
+        raise UnitError(f'{quantity!r} has a decimal comma: write "{quantity.strip().replace(",", ".", 1)}"')
     match = _QUANTITY.fullmatch(quantity)
     if match is None:
         raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
@@ -143,8 +146,13 @@ def parse(quantity: str | float, target: str) -> float:
         return float(number)  # SI, as for a bare number
     given, wanted = unit(name), unit(target)
     if given.dimension != wanted.dimension:
-        raise UnitError(f"{quantity!r} is in {name or '1'}, which is no unit of {target}")
+        raise UnitError(f"{quantity!r} is in {name or '1'}, which does not fit {fitted(target)}")
     return float(number) * given.factor / wanted.factor
+
+
+def fitted(target: str) -> str:
+    """What a quantity would have to fit, as a message says it."""
+    return "a number without a unit" if target == "1" else target
 
 
 class Si(float):

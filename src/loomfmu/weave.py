@@ -59,7 +59,7 @@ def is_wif(given: object) -> bool:
 def check_pegs(pegs: object, where: str) -> str:
     """Pegs of one frame, checked: 1 raised, 0 lowered."""
     if not isinstance(pegs, str) or not re.fullmatch("[01]+", pegs):
-        raise LoomfmuError(f'{where} = {pegs!r} is no string of pegs such as "1010"')
+        raise LoomfmuError(f'{where} = {pegs!r} is not a string of pegs such as "1010"')
     if len(pegs) > MOST_PICKS:
         raise LoomfmuError(f"{where} has {len(pegs)} picks; the dobby holds {MOST_PICKS}")
     return pegs

@@ -681,7 +681,7 @@ at_most = "1 N"
         ),
         (
             {"kind": "above", "signal": "weft.travel", "bound": "1 N"},
-            "claim 'above': bound: '1 N' is in N, which is no unit of m",
+            "claim 'above': bound: '1 N' is in N, which does not fit m",
         ),
         (
             {"kind": "above", "signal": "weft.travel", "bound": math.inf},
@@ -713,7 +713,7 @@ at_most = "1 N"
         ),
         (
             {"kind": "peak_load", "damper": "damper_1", "at_most": "1 mm"},
-            "claim 'peak_load': at_most: '1 mm' is in mm, which is no unit of N",
+            "claim 'peak_load': at_most: '1 mm' is in mm, which does not fit N",
         ),
         (
             {"kind": "dwell", "heald": "heald_9", "at_least": 1},

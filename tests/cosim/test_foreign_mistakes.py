@@ -91,7 +91,7 @@ def test_a_damaged_zip_is_told(place: Path, tmp_path: Path) -> None:
 TEXTS = {
     MOTOR + "label = 'x'\n": "motor.label is unknown; known: J, tau_stall, w_free, load_tau, verbose, mode,",
     MOTOR + '"flange.w" = 1\n': "motor.flange.w is an output of Motor and cannot be set",
-    MOTOR + 'J = "2 m"\n': "motor.J: '2 m' is in m, which is no unit of kg.m2",
+    MOTOR + 'J = "2 m"\n': "motor.J: '2 m' is in m, which does not fit kg.m2",
     MOTOR + "J = -11\n": "motor.J = -11 kg.m2 is outside [-10, inf] kg.m2",
     MOTOR + 'component = "MainShaft"\n': "motor has both a component and an fmu; it is one of them",
     LENGTH + "[motor]\nfmu = 5\n": "motor.fmu = 5 is not a name in quotes",
@@ -101,9 +101,9 @@ TEXTS = {
     'duration = "1 s"\n': "duration: a scene runs either by duration and step, or by revolutions and",
     LENGTH
     + "revolutions = 2\n": "revolutions and duration and step: a scene runs either by duration and step",
-    LENGTH.replace("1 ms", "1 mm"): "step: '1 mm' is in mm, which is no unit of s",
+    LENGTH.replace("1 ms", "1 mm"): "step: '1 mm' is in mm, which does not fit s",
     LENGTH.replace("1 ms", "0 s"): "step = 0 is outside [1e-12, 1e+09]",
-    LENGTH.replace("1 ms", "1 s"): "duration = 0.2 s in steps of 1 s is not one step",
+    LENGTH.replace("1 ms", "1 s"): "duration = 0.2 s in steps of 1 s is less than one step",
 }
 
 

@@ -265,7 +265,7 @@ MISTAKES = {
         "connection": '<ssd:Connection startElement="left head" startConnector="travl"'
         ' endElement="left head" endConnector="shaft_acceleration"/>'
     },
-    "drive_motor.w_free = 1 kg, which is no unit of rad/s": {
+    "drive_motor.w_free = 1 kg, which does not fit rad/s": {
         "more": '<ssv:Parameter name="w_free"><ssv:Real value="1" unit="kg"/></ssv:Parameter>'
     },
     "drive_motor.J = 'one' is not a number": {

@@ -428,7 +428,7 @@ def test_a_file_is_named_in_what_is_said_of_it(tmp_path: Path) -> None:
         scenes.load(path)
     assert str(raised.value) == f"{path}: belt.margin is an output of BeltMonitor and cannot be set"
     path.write_bytes(b"title = '\xff'\n")
-    with pytest.raises(LoomfmuError, match=r"cannot be read .*utf-8"):
+    with pytest.raises(LoomfmuError, match=r"wrong\.toml: is not text in UTF-8"):
         scenes.load(path)
 
 
@@ -446,3 +446,34 @@ def test_a_mechanism_that_follows_no_shaft_beside_one_is_named() -> None:
     note = "weft turns at a speed of its own: none of its shaft inputs is wired to the shaft"
     assert note in scene.notes
     assert scenes.parse('[loom]\nmachine = "WL680-3600"\n').notes == ()
+
+
+@pytest.mark.parametrize(("first", "warned"), [(2.9, False), (3, True), (20, True)])
+def test_a_table_that_begins_after_the_run_is_warned_of(first: float, warned: bool) -> None:
+    text = f"""revolutions = 3
+[loom]
+machine = "WL680-3600"
+[inputs]
+"belt.guide_clearance" = [[{first}, "0.3 mm"], [30, "1 mm"]]
+"""
+    said = (
+        f"inputs.belt.guide_clearance begins at {first:g}, and the run ends at 3: its first value holds all"
+    )
+    assert any(note.startswith(said) for note in scenes.parse(text).notes) == warned
+
+
+def test_a_mark_of_the_encoding_is_read_over_and_what_is_no_text_is_told(tmp_path: Path) -> None:
+    text = DEMO_TEXT
+    marked = tmp_path / "marked.toml"
+    marked.write_bytes(text.encode("utf-8-sig"))
+    assert scenes.load(marked).text == text
+    for name, content, said in (
+        ("wide.toml", text.encode("utf-16"), "is not text in UTF-8"),
+        ("run.h5", b"\x89HDF\r\n\x1a\n", "is not text in UTF-8; loomfmu show .*run.h5 tells of a trace"),
+    ):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(LoomfmuError, match=f"{name}: {said}$"):
+            scenes.load(tmp_path / name)
+
+
+DEMO_TEXT = 'title = "Fäden"\n[loom]\nmachine = "WL680-3600"\n'

@@ -472,7 +472,7 @@ def test_missing_packages_are_named_with_what_installs_them(
         monkeypatch.setattr(
             "loomfmu.sweeps.run.find_spec", lambda name, missing=package: None if name == missing else name
         )
-        with pytest.raises(LoomfmuError, match=rf"this needs {package}: pip install 'loomfmu\[{extra}\]"):
+        with pytest.raises(LoomfmuError, match=rf'this needs {package}: pip install "loomfmu\[{extra}\]'):
             loomfmu.sweep(path, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
     assert not (tmp_path / "out").exists()
 
@@ -486,3 +486,22 @@ def test_importing_loomfmu_and_its_command_stays_light() -> None:
     light, name, after = in_a_process(script).split(maxsplit=2)
     assert (light, name) == ("[]", "sweep")
     assert "pyarrow" not in after and "distributed" not in after and "matplotlib" not in after
+
+
+def test_all_packages_that_a_sweep_lacks_are_named_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = '[map]\nx = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
+    path = written(tmp_path, GRID + NO_TRACES + drawn)
+    monkeypatch.setattr("loomfmu.sweeps.run.find_spec", lambda _name: None)
+    with pytest.raises(
+        LoomfmuError, match=r'needs pyarrow and matplotlib: pip install "loomfmu\[sweep,plot\]"$'
+    ):
+        loomfmu.sweep(path)
+
+
+def test_a_sweep_may_begin_with_a_mark_of_its_encoding(tmp_path: Path) -> None:
+    path = written(tmp_path, GRID + NO_TRACES)
+    plain = plans.load(path)
+    path.write_bytes(path.read_text(encoding="utf-8").encode("utf-8-sig"))
+    assert plans.load(path).text == plain.text

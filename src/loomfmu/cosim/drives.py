@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 from .fmus import Port, Value
 
 Floats = NDArray[np.float64]
@@ -56,15 +56,19 @@ def drive(name: str, port: Port, table: Any) -> Drive:
     if port.causality != "input":
         raise LoomfmuError(f"{where}: {port.name} is not an input")
     if not isinstance(table, list) or not table:
-        raise LoomfmuError(f'{where} = {table!r} is no list such as [[0, "0.3 mm"], [10, "1 mm"]]')
+        raise LoomfmuError(f'{where} = {table!r} is not a list such as [[0, "0.3 mm"], [10, "1 mm"]]')
     revolutions: list[float] = []
     values: list[Value] = []
     doubts: list[str] = []
     for row in table:
         if not isinstance(row, list) or len(row) != 2 or isinstance(row[0], bool):
-            raise LoomfmuError(f"{where}: {row!r} is no pair [revolution, value]")
-        if not isinstance(row[0], int | float) or (revolutions and not row[0] > revolutions[-1]):
-            raise LoomfmuError(f"{where}: revolution {row[0]!r} is not a number above the one before")
+            raise LoomfmuError(f"{where}: {row!r} is not a pair [revolution, value]")
+        if not isinstance(row[0], int | float):
+            raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not a number")
+        if revolutions and not row[0] > revolutions[-1]:
+            raise LoomfmuError(
+                f"{where}: the revolutions must increase: {row[0]:g} follows {revolutions[-1]:g}"
+            )
         revolutions.append(float(row[0]))
         values.append(port.value(row[1], where))
         doubts.append(port.doubt(row[1], where))

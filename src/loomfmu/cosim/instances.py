@@ -74,6 +74,8 @@ class Instance:
             settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
             extra = PARAMETER_SETS if self.fmu.built else FILES
             hint = suggestion(key, [*settable, *extra], settable)
+            if key in KEYS:
+                hint = f": {key} belongs to the scene, write it above the first [table]"
             raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
         port = self.fmu.ports[name]
         if not _can_be_set(port):

@@ -28,6 +28,7 @@ from .verdict import Verdict
 from .windows import window_grid
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
+SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: another one would say that it is something else
 LARGE_TRACE = 300_000_000  # bytes from which its size is told before the run
 
 
@@ -253,6 +254,8 @@ def _check_target(plan: Plan, path: Path, overwrite: bool, told: bool) -> None:
     """Refuse, before the run, a trace that may not be written there or does not fit; tell of a large one."""
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
+    if path.suffix.lower() not in SUFFIXES:
+        raise LoomfmuError(f"{path}: a trace is HDF5 and takes the name {path.with_suffix('.h5').name}")
     check_target(partial_of(path), PARTIAL, inputs, overwrite)
     kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))

@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import units
 from ..errors import LoomfmuError, suggestion
-from ..files import source
+from ..files import text_of
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
@@ -79,10 +79,7 @@ class Scene:
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """Read a scene from a TOML file. Raises LoomfmuError naming the file and what is wrong."""
     path = Path(path)
-    try:
-        text = source(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    text = text_of(path)
     try:
         return replace(parse(text, path.stem, overrides, path.parent), file=path)
     except LoomfmuError as error:
@@ -177,14 +174,22 @@ def assemble(
         coarse_steps_per_revolution=int(
             _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
-        notes=tuple(_notes(instances, wires, drives)),
+        notes=tuple(_notes(instances, wires, drives, turns)),
     )
     _check_time(scene)
     return scene
 
 
-def _notes(instances: dict[str, Instance], wires: list[Wire], drives: list[Drive]) -> Iterable[str]:
-    """What a user is to be warned of."""
+def _notes(
+    instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
+) -> Iterable[str]:
+    """What a user is to be warned of; `end` is where the run ends, as the tables of drives count it."""
+    for each in drives:
+        if each.revolutions[0] >= end:
+            yield (
+                f"inputs.{each.instance}.{each.variable} begins at {each.revolutions[0]:g}, and the run ends"
+                f" at {end:g}: its first value holds all the time"
+            )
     yield from mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
@@ -235,7 +240,7 @@ def _check_time(scene: Scene) -> None:
     if scene.step is not None:
         if scene.steps < 1:
             raise LoomfmuError(
-                f"duration = {scene.revolutions:g} s in steps of {scene.step:g} s is not one step"
+                f"duration = {scene.revolutions:g} s in steps of {scene.step:g} s is less than one step"
             )
         _check_whole(scene, "duration", " s", f"{scene.step:g} s")
         return
@@ -247,7 +252,8 @@ def _check_time(scene: Scene) -> None:
         raise LoomfmuError("shaft.speed = 0 rev/min: the shaft's speed sets the step, it may not be 0")
     if scene.steps < 1:
         raise LoomfmuError(
-            f"revolutions = {scene.revolutions:g} at {scene.steps_per_revolution} steps each is not one step"
+            f"revolutions = {scene.revolutions:g} at {scene.steps_per_revolution} steps each"
+            " is less than one step"
         )
     _check_whole(scene, "revolutions", "", f"1/{scene.steps_per_revolution:g} revolution")
 
@@ -287,7 +293,7 @@ def _number(given: Any, where: str, low: float, high: float, whole: bool = False
 def _record(instances: dict[str, Instance], patterns: Any) -> list[str]:
     """The outputs that match one of the patterns, in the order of the scene."""
     if not isinstance(patterns, list):
-        raise LoomfmuError(f'record = {patterns!r} is no list such as ["belt.*", "weft.travel"]')
+        raise LoomfmuError(f'record = {patterns!r} is not a list such as ["belt.*", "weft.travel"]')
     outputs = list(_outputs(instances.values()))
     wanted: set[str] = set()
     for pattern in patterns:

@@ -107,4 +107,4 @@ def _value(port: Port, given: Given, where: str) -> float | bool | str:
     here, there = given.definition or known, port.definition
     if here and there and here.exponents == there.exponents and here.offset == there.offset == 0.0:
         return value * here.factor / there.factor
-    raise LoomfmuError(f"{where} = {given.text} {given.unit}, which is no unit of {port.unit}")
+    raise LoomfmuError(f"{where} = {given.text} {given.unit}, which does not fit {units.fitted(port.unit)}")

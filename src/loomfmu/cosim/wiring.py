@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 from . import standard_loom
 from .drives import Drive, drive, split
 from .graph import Wire
@@ -39,6 +39,10 @@ def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
     """A wire whose ends are known, of the right kind and of the same unit."""
+    if not isinstance(source, str):
+        raise LoomfmuError(
+            f'wires: "{sink}" = {shown(source).lower()} is neither an output nor false, which cuts the wire'
+        )
     where = f"wire {source} -> {sink}"
     ends = []
     for end, causality in ((sink, "input"), (source, "output")):

@@ -15,7 +15,7 @@ from ..cosim.asked import check_claims, output_port
 from ..cosim.fmus import FLAVOURS, Port
 from ..cosim.scene import Scene
 from ..errors import LoomfmuError, suggestion
-from ..files import source
+from ..files import text_of
 from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
 from .request import Map, requested
 from .varied import Varied, varied
@@ -94,10 +94,7 @@ class Plan:
 def load(path: str | Path) -> Plan:
     """Read a sweep file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
     path = Path(path)
-    try:
-        text = source(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    text = text_of(path)
     try:
         return _parse(text, path)
     except LoomfmuError as error:
@@ -180,7 +177,7 @@ def _check_by_scene(path: Path, fixed: dict[str, Any], axes: list[Axis]) -> None
 def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:
     """The signals whose final values the table has."""
     if not isinstance(given, list) or not all(isinstance(signal, str) for signal in given):
-        raise LoomfmuError(f'values = {given!r} is no list such as ["belt.lowest_speed_limit"]')
+        raise LoomfmuError(f'values = {given!r} is not a list such as ["belt.lowest_speed_limit"]')
     taken = [axis.key for axis in axes]
     for signal in given:
         output_port(scene, signal, "values")

@@ -108,13 +108,9 @@ def sweep(
         raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
     path = path_of(path, "sweep")
     plan = plans.load(path)
-    for package in (
-        "pyarrow",
-        *(["matplotlib"] if plan.map else []),
-        *(["distributed"] if scheduler else []),
-    ):
-        if find_spec(package) is None:
-            raise LoomfmuError(f"{path}: this needs {package}: pip install 'loomfmu[{NEEDED[package]}]'")
+    _check_packages(
+        path, {"pyarrow": True, "matplotlib": plan.map is not None, "distributed": bool(scheduler)}
+    )
     from .store import opened
 
     job = job_of(plan)
@@ -135,6 +131,14 @@ def sweep(
             f"interrupted; what is finished is kept in {directory}, the same command goes on from there"
         ) from None
     return Sweep(plan, table, store.table_path, ran, picture, traces)
+
+
+def _check_packages(path: Path, used: dict[str, bool]) -> None:
+    """Refuse a sweep that uses packages which are not installed, and name all of them."""
+    missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
+    if missing:
+        extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
+        raise LoomfmuError(f'{path}: this needs {" and ".join(missing)}: pip install "loomfmu[{extras}]"')
 
 
 def _fingerprint(plan: Plan, job: Job) -> str:
