@@ -735,3 +735,12 @@ def test_a_zip_that_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
             fmus.load(path)
         assert str(raised.value).startswith(f"{path}: ")
         assert said in str(raised.value) and "\n" not in str(raised.value)
+
+
+def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(HEAD)
+    assert main(["run", path, "--set", "shaft.speed=400rpm", "--set", "shaft.speed=500rpm"]) == 2
+    assert one_line(capsys) == "--set shaft.speed is given twice: 400rpm and 500rpm"
+    assert main(["run", path, "--output", "x.csv"]) == 2
+    assert one_line(capsys) == "x.csv: a trace is HDF5 and takes the name x.h5"
+    assert not Path("x.csv").exists()
