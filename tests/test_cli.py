@@ -738,7 +738,7 @@ def test_a_zip_that_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    path = scene(HEAD)
+    path = scene(HEAD + LOOM)
     assert main(["run", path, "--set", "shaft.speed=400rpm", "--set", "shaft.speed=500rpm"]) == 2
     assert one_line(capsys) == "--set shaft.speed is given twice: 400rpm and 500rpm"
     assert main(["run", path, "--output", "x.csv"]) == 2

@@ -184,10 +184,10 @@ def _notes(
     instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
 ) -> Iterable[str]:
     """What a user is to be warned of; `end` is where the run ends, as the tables of drives count it."""
-    for each in drives:
-        if each.revolutions[0] >= end:
+    for drive in drives:
+        if drive.revolutions[0] >= end:
             yield (
-                f"inputs.{each.instance}.{each.variable} begins at {each.revolutions[0]:g}, and the run ends"
+                f"inputs.{drive.instance}.{drive.variable} begins at {drive.revolutions[0]:g}, and the run ends"
                 f" at {end:g}: its first value holds all the time"
             )
     yield from mixed(instances)
