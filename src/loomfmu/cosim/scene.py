@@ -186,10 +186,8 @@ def _notes(
     """What a user is to be warned of; `end` is where the run ends, as the tables of drives count it."""
     for drive in drives:
         if drive.revolutions[0] >= end:
-            yield (
-                f"inputs.{drive.instance}.{drive.variable} begins at {drive.revolutions[0]:g}, and the run ends"
-                f" at {end:g}: its first value holds all the time"
-            )
+            name, start = f"inputs.{drive.instance}.{drive.variable}", drive.revolutions[0]
+            yield f"{name} begins at {start:g}, and the run ends at {end:g}: its first value holds all the time"
     yield from mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
