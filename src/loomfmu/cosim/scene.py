@@ -187,7 +187,7 @@ def _notes(
     for drive in drives:
         if drive.revolutions[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.revolutions[0]
-            yield f"{name} begins at {start:g}, and the run ends at {end:g}: its first value holds all the time"
+            yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds all the time"
     yield from mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
