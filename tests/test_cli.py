@@ -22,6 +22,7 @@ __all__ = ["fmu_cache"]
 HEAD = 'title = "Small"\nrevolutions = 1\nsteps_per_revolution = 90\n'
 SHAFT = "[shaft]\n"
 LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01"\n'
+HUGE = "1" + 400 * "0"  # more than any float holds
 CLAIM = '[[claims]]\nkind = "lowest_margin"\nbound = {bound}\n'
 
 
@@ -520,6 +521,35 @@ CASES: dict[str, tuple[str, str]] = {
     "claim window unit": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "weft.travel"\nbound = 1\nwindow = ["1 mm", 2]\n',
         "claim 'above': window: '1 mm' is in mm, which does not fit rad",
+    ),
+    "claim with a parameter as a bound that is none of a signal": (
+        HEAD + LOOM + '[[claims]]\nkind = "lowest_margin"\nbound = "shaft.speed"\n',
+        "claim 'lowest_margin': bound: 'shaft.speed' is not a quantity such as \"685 rpm\"",
+    ),
+    "huge speed": (HEAD + f"[shaft]\nspeed = {HUGE}\n", f"shaft.speed: {HUGE[:60]}.. is too large"),
+    "huge duration": (
+        HEAD.replace("revolutions = 1", f"revolutions = {HUGE}") + LOOM,
+        f"revolutions = {HUGE[:60]}.. is outside [1e-09, 1e+09]",
+    ),
+    "huge bound": (
+        HEAD + LOOM + f'[[claims]]\nkind = "lowest_margin"\nbound = {HUGE}\n',
+        f"claim 'lowest_margin': bound: {HUGE[:60]}.. is too large",
+    ),
+    "huge pattern length": (
+        HEAD + LOOM + f"[heald]\npattern_length = {HUGE}\n",
+        f"heald_1.pattern_length = {HUGE[:60]}.. is outside [1, 128]",
+    ),
+    "claim angles beyond a revolution": (
+        HEAD + LOOM + '[[claims]]\nkind = "dwell_contains"\nheald = "heald_1"\nangles = [91]\n',
+        "claim 'dwell_contains': angles: 91 is 5213.916 deg, outside [-360, 360] deg",
+    ),
+    "claim height": (
+        HEAD + LOOM + '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "-5 mm"\n',
+        "claim 'rapier_in_open_shed': head_height = '-5 mm' is negative",
+    ),
+    "claim count": (
+        HEAD + LOOM + '[damper_1]\n[[claims]]\nkind = "stop_contacts"\ndamper = "damper_1"\nat_most = -1\n',
+        "claim 'stop_contacts': at_most = -1 is negative",
     ),
     "claim tolerance": (
         HEAD + LOOM + '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = 1\ntolerance = 0.9\n',

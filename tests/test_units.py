@@ -55,6 +55,7 @@ def test_quantities(quantity, target, value):
         ([1.0], "m", "[1.0] is not a quantity"),
         ("0,5 mm", "m", "'0,5 mm' has a decimal comma: write \"0.5 mm\""),
         ("-,5", "m", 'write "-.5"'),
+        (10**400, "m", ".. is too large"),
         ("5 rmp", "rad/s", "did you mean 'rpm'?"),
         ("5 parsec", "m", "unknown unit 'parsec'"),
         ("5 kg", "m", "'5 kg' is in kg, which does not fit m"),

@@ -135,7 +135,10 @@ def parse(quantity: str | float, target: str) -> float:
     if isinstance(quantity, bool) or not isinstance(quantity, str | Real):
         raise UnitError(f'{shown(quantity)} is not a quantity such as "685 rpm"')
     if not isinstance(quantity, str):
-        return float(quantity)
+        try:
+            return float(quantity)
+        except OverflowError:
+            raise UnitError(f"{shown(quantity)} is too large") from None
     if _COMMA.match(quantity):
         raise UnitError(f'{quantity!r} has a decimal comma: write "{quantity.strip().replace(",", ".", 1)}"')
     match = _QUANTITY.fullmatch(quantity)

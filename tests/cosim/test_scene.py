@@ -1,7 +1,9 @@
 """What a scene says, and what becomes of it."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from direct_loom import small, traced
@@ -9,6 +11,7 @@ from live_fmus import fmu_cache
 
 from loomfmu import LoomfmuError, units
 from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.asked import checked_claims
 from loomfmu.cosim.graph import Wire
 from loomfmu.cosim.run import run
 from loomfmu.machines import parameters
@@ -339,6 +342,40 @@ def test_a_number_that_was_meant_in_another_unit_is_doubted(
 )  # fmt: skip
 def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
     assert scenes.parse(LOOM, overrides=given).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("claim", "note"),
+    [
+        ({"kind": "below", "signal": "belt.deflection", "bound": 2},
+         "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
+         ' write "2 mm" if that is meant'),
+        ({"kind": "dwell", "heald": "heald_1", "at_least": 85},
+         "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
+         ' write "85 deg" if that is meant'),
+        ({"kind": "rapier_in_open_shed", "head_height": 18},
+         "claim 'rapier_in_open_shed': head_height = 18 is read as 18 m = 18000 mm;"
+         ' write "18 mm" if that is meant'),
+    ],
+)  # fmt: skip
+def test_claims_with_numbers_meant_in_another_unit_are_doubted(claim: dict[str, Any], note: str) -> None:
+    scene = replace(scenes.parse(LOOM), claims=[claim])
+    assert checked_claims(scene).notes == (note,)
+    assert checked_claims(checked_claims(scene)).notes == (note,)  # told once
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        {"kind": "below", "signal": "belt.deflection", "bound": 0.002},
+        {"kind": "below", "signal": "belt.deflection", "bound": "2 m"},
+        {"kind": "dwell", "heald": "heald_1", "at_least": 1.5},
+        {"kind": "above", "signal": "belt.margin", "bound": 0, "window": [0, 6.283185307179586]},
+        {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
+    ],
+)
+def test_ordinary_claims_are_not_doubted(claim: dict[str, Any]) -> None:
+    assert checked_claims(replace(scenes.parse(LOOM), claims=[claim])).notes == ()
 
 
 def test_what_is_set_anew_is_doubted_anew() -> None:

@@ -165,6 +165,7 @@ IN_GRID = [
     ('"shaft.speed" = ["5 mm"]', "shaft.speed: '5 mm' is in mm, which does not fit rad/s"),
     ('"shaft.speed" = ["500 rmp"]', "unknown unit 'rmp'; did you mean 'rpm'?"),
     ('"belt.guide_clearance" = ["0.2 mm", "60 mm"]', "= 60 mm is outside [0, 50] mm"),
+    ('"shaft.speed" = {from = 50, to = 1' + 400 * "0" + ", count = 2}", ".. is too large"),
     ('"shaft.speed" = []', "is neither a list of values nor"),
     ('"shaft.speed" = ["500 rpm", "500 r/min"]', "grid.shaft.speed: 500 rev/min is there twice"),
     ('"shaft.speed" = [50.0]\nshaft.speed = [60.0]', "grid.shaft.speed is there twice"),

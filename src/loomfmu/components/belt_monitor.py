@@ -91,7 +91,7 @@ class BeltMonitor(ShaftDriven):
     )  # fmt: skip
     free_length: float = output(
         "m", "Length of the belt outside guide and head; negative inside", display="mm",
-        depends=("travel", "velocity", "acceleration"),
+        nominal=1.0, depends=("travel", "velocity", "acceleration"),
     )  # fmt: skip
     inertia_force: float = output(
         "N", "Inertia force of the head on the belt", nominal=100.0, depends=("acceleration",)
@@ -115,7 +115,9 @@ class BeltMonitor(ShaftDriven):
         "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0,
         lowest_of="speed_limit",
     )  # fmt: skip
-    deflection: float = output("m", "Largest deflection of the buckled belt, exact elastica", display="mm")
+    deflection: float = output(
+        "m", "Largest deflection of the buckled belt, exact elastica", display="mm", nominal=5e-3
+    )
     at_risk: bool = output(
         "1", "The belt is outside its guide and under compression", start=False, variability="discrete"
     )

@@ -54,11 +54,11 @@ class DobbyDrive(RotorLaws):
     lift_acceleration: float = output("1/s2", "Second rate of lift_fraction", nominal=1000.0)
     dwell_angle: float = output(
         "rad", "Shaft angle during which a changing frame stays within dwell_tolerance of its end",
-        display="deg", variability="discrete", depends=(),
+        display="deg", variability="discrete", nominal=1.5, depends=(),
     )  # fmt: skip
     clear_shed_angle: float = output(
         "rad", "Shaft angle during which a changing frame stays within clear_fraction of its end",
-        display="deg", variability="discrete", depends=(),
+        display="deg", variability="discrete", nominal=1.5, depends=(),
     )  # fmt: skip
     highest_speed: float = output(
         "1", "Largest rotor speed over the shaft's; of spline_cam, largest slope of lift_fraction",

@@ -98,23 +98,36 @@ class ReedBeatUp(ShaftDriven):
     velocity: float = output("m/s", "Velocity of the reed", rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
     transmission_angle: float = output(
-        "rad", "Transmission angle of the crank-rocker, 90 deg at best", display="deg"
+        "rad",
+        "Transmission angle of the crank-rocker, 90 deg at best",
+        display="deg",
+        nominal=1.5,
     )
     smallest_transmission_angle: float = output(
         "rad", "Smallest transmission angle of the revolution", display="deg", variability="discrete",
-        depends=(),
+        nominal=1.5, depends=(),
     )  # fmt: skip
     pressure_angle: float = output(
         "rad", "Pressure angle of the reed's rod: its slope against the reed's line", display="deg"
     )
     front_limit: float = output(
-        "m", "Reed coordinate at the beat-up", display="mm", variability="discrete", depends=()
+        "m", "Reed coordinate at the beat-up", display="mm", variability="discrete", nominal=0.1, depends=()
     )
     back_limit: float = output(
-        "m", "Reed coordinate at the back dead centre", display="mm", variability="discrete", depends=()
+        "m",
+        "Reed coordinate at the back dead centre",
+        display="mm",
+        variability="discrete",
+        nominal=0.1,
+        depends=(),
     )
     stroke: float = output(
-        "m", "Way of the reed between its limits", display="mm", variability="discrete", depends=()
+        "m",
+        "Way of the reed between its limits",
+        display="mm",
+        variability="discrete",
+        nominal=0.1,
+        depends=(),
     )
     shaft_torque: float = output("N.m", "Torque that the moving masses ask of the shaft", nominal=10.0)
     beat_up_crank: float = state("rad", "Crank angle at the beat-up")

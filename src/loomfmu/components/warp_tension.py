@@ -70,10 +70,14 @@ class WarpTension(Component):
         "m/s2", 0.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
     )
     extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
-    tension: float = output("N", "Tension of a thread", display="cN")
-    highest_tension: float = output("N", "Highest tension so far, on the continuous curve", display="cN")
-    lowest_tension: float = output("N", "Lowest tension so far, on the continuous curve", display="cN")
-    mean_tension: float = output("N", "Mean of the tension over the time so far", display="cN")
+    tension: float = output("N", "Tension of a thread", display="cN", nominal=0.5)
+    highest_tension: float = output(
+        "N", "Highest tension so far, on the continuous curve", display="cN", nominal=0.5
+    )
+    lowest_tension: float = output(
+        "N", "Lowest tension so far, on the continuous curve", display="cN", nominal=0.5
+    )
+    mean_tension: float = output("N", "Mean of the tension over the time so far", display="cN", nominal=0.5)
     frame_load: float = output("N", "Load of the warp on the heald carrier, upwards", nominal=100.0)
     slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
     elapsed: float = state("s", "Time that the extremes and the mean are taken over")

@@ -1,14 +1,24 @@
 """What is asked of a scene: the signals that it records and that its claims need, checked before the run."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
+from .. import units
 from ..errors import LoomfmuError, suggestion
-from .claims import check, check_speed, check_values, names_parameter, signals_of
+from .claims import UNITS, check, check_speed, check_values, names_parameter, signals_of
 from .fmus import Port
 from .scene import Scene
 
 ANGLES = frozenset(("window", "angles", "at_least"))  # arguments of claims that need a shaft
 SHAFT_ANGLE = "shaft.angle"
+# arguments of claims that people write in another unit than SI: that unit, and a usual value in SI
+USUAL = {
+    "window": ("deg", 1.5),
+    "at_least": ("deg", 1.5),
+    "clearance": ("mm", 0.03),
+    "head_height": ("mm", 0.03),
+}
 
 
 def output_port(scene: Scene, signal: str, where: str) -> Port:
@@ -25,8 +35,12 @@ def output_port(scene: Scene, signal: str, where: str) -> Port:
     return ports[variable]
 
 
-def check_claims(scene: Scene) -> None:
-    """Refuse a claim that cannot be judged before the run, not after it."""
+def checked_claims(scene: Scene) -> Scene:
+    """The scene, with a note where a claim's number was probably meant in another unit.
+
+    Refuses a claim that cannot be judged before the run, not after it.
+    """
+    doubts: list[str] = []
     for claim in scene.claims:
         kind = claim.get("kind")
         arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
@@ -39,6 +53,21 @@ def check_claims(scene: Scene) -> None:
         check_values(str(kind), arguments, lambda signal: output_port(scene, signal, "claim").unit)
         if names_parameter("bound", arguments.get("bound")):
             _check_parameter(scene, arguments["bound"], arguments["signal"])
+        doubts += filter(None, _doubts(scene, f"claim {kind!r}", arguments))
+    return replace(scene, notes=tuple(dict.fromkeys((*scene.notes, *doubts))))
+
+
+def _doubts(scene: Scene, where: str, arguments: dict[str, Any]) -> Iterator[str]:
+    """What is odd about the numbers of a claim that have no unit, or empty texts."""
+    bound = arguments.get("bound")
+    if "signal" in arguments and not names_parameter("bound", bound):
+        signal = arguments["signal"]
+        yield output_port(scene, signal, where).doubt(bound, f"{where} of {signal}: bound")
+    for name in USUAL.keys() & arguments.keys():
+        given, (display, usual) = arguments[name], USUAL[name]
+        for quantity in given if isinstance(given, list | tuple) else [given]:
+            said = quantity is not None and units.doubt(quantity, UNITS[name], display, usual)
+            yield f"{where}: {name} = {quantity} {said}" if said else ""
 
 
 def _check_parameter(scene: Scene, name: str, signal: str) -> None:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from .. import units
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 from ..traces import Signals
 from . import curves
 from .heald_claims import TOLERANCE as TOLERANCE
@@ -61,7 +61,7 @@ def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], 
     for name, given in arguments.items():
         where = f"claim {kind!r}: {name}"
         several = name in ("window", "angles")
-        if given is None or name not in UNITS or names_parameter(name, given):
+        if given is None or name not in UNITS or ("signal" in arguments and names_parameter(name, given)):
             continue
         if name == "window" and not (isinstance(given, list | tuple) and len(given) == 2):
             raise LoomfmuError(f"{where} = {given!r} is not [from, to] in shaft angle")
@@ -76,9 +76,15 @@ def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], 
             except units.UnitError as error:
                 raise LoomfmuError(f"{where}: {error}") from None
             if not math.isfinite(value):
-                raise LoomfmuError(f"{where} = {quantity!r} is not finite")
+                raise LoomfmuError(f"{where} = {shown(quantity)} is not finite")
             if name == "tolerance" and not 0.0 < value < 0.5:
                 raise LoomfmuError(f"{where} = {value:g} is outside (0, 0.5), shares of the stroke")
+            if name in NEVER_NEGATIVE and value < 0.0:
+                raise LoomfmuError(f"{where} = {quantity!r} is negative")
+            if name == "angles" and abs(value) > curves.TURN * (1.0 + 1e-12):
+                raise LoomfmuError(
+                    f"{where}: {quantity!r} is {units.show(value, 'deg')}, outside [-360, 360] deg"
+                )
         if name == "window":
             _window(given, where)
 
@@ -154,6 +160,8 @@ UNITS = {
     "clearance": "m",
     "head_height": "m",
 }
+
+NEVER_NEGATIVE = frozenset(("at_most", "at_least", "clearance", "head_height"))
 
 # claim -> the argument that names an instance, or its usual name, and the outputs it is judged by
 NEEDS: dict[str, tuple[str, tuple[str, ...]]] = {

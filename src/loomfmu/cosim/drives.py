@@ -67,9 +67,12 @@ def drive(name: str, port: Port, table: Any) -> Drive:
             raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not a number")
         if revolutions and not row[0] > revolutions[-1]:
             raise LoomfmuError(
-                f"{where}: the revolutions must increase: {row[0]:g} follows {revolutions[-1]:g}"
+                f"{where}: the revolutions must increase: {shown(row[0])} follows {revolutions[-1]:g}"
             )
-        revolutions.append(float(row[0]))
+        try:
+            revolutions.append(float(row[0]))
+        except OverflowError:
+            raise LoomfmuError(f"{where}: revolution {shown(row[0])} is too large") from None
         values.append(port.value(row[1], where))
         doubts.append(port.doubt(row[1], where))
     instance = name.partition(".")[0]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import units
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?\d+\s*")
@@ -159,10 +159,11 @@ class Port:
             factor = units.unit(self.display).factor
             unit = self.unit if self.display == "1" else self.display
             label = "" if unit == "1" else f" {unit}"
-            shown, lowest, highest = (
-                str(each) if isinstance(each, int) else f"{each / factor:.7g}" for each in (value, low, high)
+            found, lowest, highest = (
+                shown(each) if isinstance(each, int) else f"{each / factor:.7g}"
+                for each in (value, low, high)
             )
-            raise LoomfmuError(f"{where} = {shown}{label} is outside [{lowest}, {highest}]{label}")
+            raise LoomfmuError(f"{where} = {found}{label} is outside [{lowest}, {highest}]{label}")
         if self.kind == "Integer":
             if value != int(value):
                 raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")

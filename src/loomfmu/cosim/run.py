@@ -13,7 +13,7 @@ from ..traces import PARTIAL, TRACE, Recording, Trace, TraceWriter, partial_of
 from ..traces.disk import check_room, largest, size_text
 from . import scene as scenes
 from . import ssp_read
-from .asked import check_claims, judged_by, output_port, recorded, shaft_angle, with_rates
+from .asked import checked_claims, judged_by, output_port, recorded, shaft_angle, with_rates
 from .claims import judge
 from .fmus import FLAVOURS, of_component
 from .grid import Grid, uniform
@@ -178,10 +178,9 @@ def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavou
         for name, instance in scene.instances.items():
             if not instance.fmu.built:  # one that is built waits until it is needed
                 instance.fmu.check_platform(name)
-        check_claims(scene)
+        return checked_claims(scene)
     except LoomfmuError as error:
         raise LoomfmuError(f"{place}{error}") from None
-    return scene
 
 
 def _grid(scene: Scene, signals: Sequence[str]) -> Grid:

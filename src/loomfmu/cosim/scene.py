@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 from ..files import text_of
 from . import standard_loom
 from .drives import Drive
@@ -136,7 +136,7 @@ def toml(text: str) -> dict[str, Any]:
     """The tables of a scene's text."""
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # also for an integer that has more digits than Python reads
         raise LoomfmuError(f"not valid TOML: {error}") from None
 
 
@@ -280,7 +280,9 @@ def _number(given: Any, where: str, low: float, high: float, whole: bool = False
     try:
         value = float(given if not isinstance(given, bool) else "")
     except (TypeError, ValueError):
-        raise LoomfmuError(f"{where} = {given!r} is not a number") from None
+        raise LoomfmuError(f"{where} = {shown(given)} is not a number") from None
+    except OverflowError:
+        raise LoomfmuError(f"{where} = {shown(given)} is outside [{low:g}, {high:g}]") from None
     if not low <= value <= high:
         raise LoomfmuError(f"{where} = {value:g} is outside [{low:g}, {high:g}]")
     if whole and value != int(value):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..cosim import scene as scenes
 from ..cosim import ssp_read
-from ..cosim.asked import check_claims, output_port
+from ..cosim.asked import checked_claims, output_port
 from ..cosim.fmus import FLAVOURS, Port
 from ..cosim.scene import Scene
 from ..errors import LoomfmuError, suggestion
@@ -119,8 +119,7 @@ def _parse(text: str, path: Path) -> Plan:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(str(flavour), FLAVOURS)}")
     scene_path = (path.parent / tables["scene"]).resolve()
     fixed = flattened(tables.get("set", {}), "set")
-    scene = read_scene(scene_path, fixed)
-    check_claims(scene)
+    scene = checked_claims(read_scene(scene_path, fixed))
     grid, sample = _axes(scene, fixed, tables)
     _check_by_scene(scene_path, fixed, [*grid, *sample])
     values = _values(scene, tables.get("values", []), [*grid, *sample])
