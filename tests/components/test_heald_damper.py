@@ -399,6 +399,23 @@ def test_stops_are_hit_hard_at_600_and_not_at_200():
     print(slow.acceleration_ratio, fast.acceleration_ratio, fast.peak_load)
 
 
+@pytest.mark.parametrize(("velocity", "rounding"), [(1.51, -4.5e-15), (0.0, 3e-14)])
+def test_roundings_of_a_frame_that_has_not_moved_make_no_ratio(velocity, rounding):
+    # between two dwells, or in one of a shaft that speeds up: the warp already moves the carrier
+    damper = HealdDamper(inputs_at_step_end=True)
+    damper.lift, damper.velocity, damper.acceleration, damper.warp_force = 0.049, velocity, rounding, 10.0
+    assert damper.initialize(0.0) == 0
+    assert damper.peak_carrier == pytest.approx(10.0 / 15.0)
+    assert damper.acceleration_ratio == 0.0
+    # by half a millisecond more the frame accelerates by 0.5 m/s2
+    h = 5e-4
+    damper.lift, damper.velocity, damper.acceleration = (
+        0.049 + velocity * h + 0.5 * h**3 / 6 / h, velocity + 0.25 * h, 0.5,
+    )  # fmt: skip
+    assert damper.step(0.0, h) == 0
+    assert damper.acceleration_ratio == damper.peak_carrier / damper.peak_frame > 1.0
+
+
 def test_a_rigid_suspension_follows_its_frame():
     damper = HealdDamper(spring_stiffness=1e9, damping_ratio=1.0, inputs_at_step_end=True)
     _trace, damper = simulated(damper, FAST, 1, 720)

@@ -14,6 +14,9 @@ from .terminals import FRAME
 SHORTEST = 1e-15
 # Pieces of motion in one step: some 10 us each in Python
 MOST_PIECES = 100000
+# Largest acceleration [m/s2] of a frame at rest, which moves half a micrometre in a second. The rounding of a
+# motion's samples stays below it up to 1e8 m/s2: against less than that no ratio can be told.
+RESTING = 1e-6
 MOST_TURNS = 6  # of a load in one piece: four, and two by rounding where it starts at one
 MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
@@ -99,7 +102,9 @@ class HealdDamper(Component):
         "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0
     )
     acceleration_ratio: float = output(
-        "1", "Largest acceleration of the carrier over the largest of the frame, so far", nominal=10.0
+        "1",
+        "Largest acceleration of the carrier over the largest of the frame, so far; 0 while the frame rests",
+        nominal=10.0,
     )
     damping: float = state("N.s/m", "Damping of the suspension")
     stop_damping: float = state("N.s/m", "Damping of a stop")
@@ -337,5 +342,5 @@ class HealdDamper(Component):
         self.note_load(self.transmitted_force, load)
         self.carrier_acceleration = (load - self.transmitted_force) / self.carrier_mass
         self.acceleration_ratio = 0.0
-        if self.peak_frame > 1e-100:  # the quotient is finite
+        if self.peak_frame > RESTING:
             self.acceleration_ratio = self.peak_carrier / self.peak_frame
