@@ -22,7 +22,7 @@ from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.design import loom
 from loomfmu.sweeps import plan as plans
-from loomfmu.sweeps.ranking import traced_rows, worst_rows
+from loomfmu.sweeps.ranking import beyond, traced_rows, worst_rows
 from loomfmu.sweeps.worker import identity
 
 __all__ = ["fmu_cache"]
@@ -289,6 +289,20 @@ def test_the_worst_rows_are_the_furthest_beyond_a_bound() -> None:
     assert traced_rows(table, 2, 10) == [0, 1, 2, 4, 5, 6]
     assert traced_rows(table, 0, 1) == [0]
     assert traced_rows(table, 0, 0) == []
+
+
+def test_a_claim_that_fails_everywhere_alike_hides_no_row() -> None:
+    # claim 1 fails by as much in all rows but for roundings, claim 2 (bound 0.1) by far in row 2
+    table = made_up([30.0, 30.0 * (1 + 1e-12), 30.0 * (1 - 1e-12), 30.0], [False] * 4)
+    second = {"holds": [True, False, False, True], "worst": [0.3, 0.0, -6.07, 0.2], "bound": [0.1] * 4}
+    label = {"claim": "margin", "signal": "b.c", "unit": "1", "display_unit": "1"}
+    labels = [*json.loads(table.schema.metadata[b"claims"]), label]
+    for word, values in second.items():
+        table = table.append_column(f"claim_2.{word}", pa.array(values))
+    table = table.replace_schema_metadata({"claims": json.dumps(labels)})
+    assert worst_rows(table, 4) == [2, 1, 3, 0]
+    # and it is named with the claim that it is furthest beyond, measured by that claim's bound
+    assert beyond(table).claim.tolist() == [0, 0, 1, 0]
 
 
 def test_if_all_hold_the_worst_are_the_nearest_to_their_bound() -> None:

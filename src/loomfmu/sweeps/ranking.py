@@ -8,13 +8,16 @@ from numpy.typing import NDArray
 
 from .tables import claim_columns, labels_of
 
+DIGITS = 6  # by which rows are told apart
+
 
 @dataclass(frozen=True)
 class Beyond:
     """How far each row is beyond the bounds of the claims, and of which claim (counted from 0) the furthest.
 
-    Above 0 the claim fails. 1 is the furthest that any row is away from the bound of that claim, on either
-    side; a claim that fails without a value counts as infinitely far, a row that has no result is NaN.
+    Above 0 the claim fails. 1 is as far as the bound is from 0, the largest one where it differs from row to
+    row; for a bound of 0 it is the furthest that any row is away from it, on either side. A claim that fails
+    without a value counts as infinitely far, a row that has no result is NaN.
     """
 
     distance: NDArray[np.float64]
@@ -26,9 +29,19 @@ def beyond(table: Any) -> Beyond:
     claims = len(labels_of(table))
     if not claims:
         return Beyond(np.full(table.num_rows, np.nan), np.zeros(table.num_rows, np.int64))
-    all_of_them = np.array([distance(table, number) for number in range(claims)])
+    all_of_them = _distances(table)
     furthest = np.argmax(np.where(np.isnan(all_of_them), -np.inf, all_of_them), axis=0)
     return Beyond(np.take_along_axis(all_of_them, furthest[np.newaxis], 0)[0], furthest)
+
+
+def _distances(table: Any) -> NDArray[np.float64]:
+    """How far each row is beyond the bound of each claim: claims down, rows along."""
+    return np.array([_rounded(distance(table, number)) for number in range(len(labels_of(table)))])
+
+
+def _rounded(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values without the digits that rounding and the length of the steps decide."""
+    return np.array([float(f"{value:.{DIGITS}g}") for value in values.tolist()])
 
 
 def distance(table: Any, number: int) -> NDArray[np.float64]:
@@ -37,17 +50,27 @@ def distance(table: Any, number: int) -> NDArray[np.float64]:
     fails = holds == np.False_  # rows without result are None
     judged = fails | (holds == np.True_)
     away = np.abs(worst - bound)
-    largest = np.max(away, initial=0.0, where=np.isfinite(away))
-    scaled = away / largest if largest > 0.0 else np.where(np.isnan(away), np.nan, 0.0)
+    scale = _largest(np.abs(bound)) or _largest(away)
+    scaled = away / scale if scale > 0.0 else np.where(np.isnan(away), np.nan, 0.0)
     signed = np.where(fails, scaled, -scaled)
     return np.where(judged & np.isnan(signed), np.where(fails, np.inf, -np.inf), signed)
 
 
+def _largest(values: NDArray[np.float64]) -> float:
+    return float(np.max(values, initial=0.0, where=np.isfinite(values)))
+
+
 def worst_rows(table: Any, count: int) -> list[int]:
-    """The rows furthest beyond their bounds, or if none is beyond, the nearest to them."""
-    distances = beyond(table).distance
-    judged = np.flatnonzero(~np.isnan(distances))
-    return [int(row) for row in judged[np.argsort(-distances[judged], kind="stable")][:count]]
+    """The rows furthest beyond their bounds, or if none is beyond, the nearest to them.
+
+    Rows that are alike in the claim that they are furthest beyond go by their next one, and so on.
+    """
+    judged = np.flatnonzero(~np.isnan(beyond(table).distance))
+    if not len(judged):
+        return []
+    found = _distances(table)[:, judged]
+    by_claim = -np.sort(-np.where(np.isnan(found), -np.inf, found), axis=0)
+    return [int(row) for row in judged[np.lexsort(-by_claim[::-1])][:count]]
 
 
 def traced_rows(table: Any, failures: int, sample: int) -> list[int]:
