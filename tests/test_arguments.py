@@ -1,7 +1,7 @@
 """The public functions: what they are given of the wrong type is refused in one line."""
 
 from collections.abc import Callable
-from importlib import resources
+from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import pytest
 from live_fmus import fmu_cache
 
 import loomfmu
-from loomfmu import LoomfmuError, evaluate, run, sweep
+from loomfmu import LoomfmuError, evaluate, judge, run, sweep
 
 __all__ = ["fmu_cache"]
 
@@ -49,6 +49,47 @@ def test_what_is_of_the_wrong_type_is_refused_in_one_line(call: Callable[[], Any
         call()
     assert str(raised.value).startswith(said)
     assert "\n" not in str(raised.value) and len(str(raised.value)) < 250
+
+
+def test_a_result_is_shown_in_a_few_lines() -> None:
+    found = evaluate(DEMO, set=SHORT | {"shaft.speed": "700 rpm"})
+    first, *failing = repr(found).splitlines()
+    assert first == f"<Evaluation wl680_3600: {len(failing)} of {len(found.claims)} claims fail:"
+    assert len(failing) == 2 and all(line.startswith("  FAILS: the ") for line in failing)
+    assert repr(evaluate(DEMO, set=SHORT)) == "<Evaluation wl680_3600: all claims hold>"
+    assert repr(found.scene).startswith("<Scene wl680_3600: ")
+    assert repr(found.trace).startswith("<Recording wl680_3600: ")
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda found: judge(found, kind="lowest_margin", bound=0), "trace = <Evaluation wl680_3600: all"),
+        (
+            lambda found: judge("v.h5", kind="lowest_margin", bound=0),
+            "trace = 'v.h5' is not a trace, such as",
+        ),
+        (
+            lambda found: judge(found.trace, kind="above", signal=None, bound=0),
+            "claim 'above': signal = None is not a name in quotes",
+        ),
+        (lambda found: found.trace[3], "wl680_3600: no signal 3 is recorded"),
+        (lambda found: found.trace[["a"]], "wl680_3600: no signal ['a'] is recorded"),
+        (lambda _found: run(Path(DEMO).read_text()), "scene = 'title = "),
+    ],
+)
+def test_what_cannot_be_judged_or_read_is_refused_in_one_line(call: Callable[[Any], Any], said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        call(evaluate(DEMO, set=SHORT))
+    assert str(raised.value).startswith(said) or str(raised.value).startswith(
+        said.replace("'title", '"title')
+    )
+    assert "\n" not in str(raised.value)
+
+
+def test_the_package_lists_its_public_names() -> None:
+    assert set(loomfmu.__all__) <= set(dir(loomfmu))
+    assert loomfmu.__version__ == metadata.version("loomfmu")
 
 
 def test_a_result_is_true_where_all_claims_hold(tmp_path: Path) -> None:

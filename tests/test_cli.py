@@ -56,7 +56,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
     with Trace("results/scene.h5") as trace:
         assert trace.rows == 91
-        assert [verdict["holds"] for verdict in trace.verdicts] == [status == 0]
+        assert [verdict.holds for verdict in trace.verdicts] == [status == 0]
 
 
 @pytest.mark.parametrize("name", ["a b.h5", "-x.h5", "plain.h5", "it's.h5"])

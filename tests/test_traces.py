@@ -288,7 +288,7 @@ def test_choices_are_flags_with_their_own_numbers(tmp_path: Path) -> None:
 def test_our_own_reader(result: loomfmu.Result, file: h5py.File) -> None:
     with Trace(result.path) as trace:
         assert (trace.rows, trace.status) == (2161, "complete")
-        assert trace.verdicts == [verdict.as_dict() for verdict in result.claims]
+        assert trace.verdicts == list(result.claims)
         assert trace.attributes["title"] == "Two frames"
         np.testing.assert_array_equal(trace.time, file["time"][:])
         np.testing.assert_array_equal(trace["belt.margin"], file["belt/margin"][:])
@@ -386,13 +386,27 @@ def test_five_thousand_variables_along_one_time(tmp_path: Path) -> None:
         assert file["loom/signal_4999"].dims[0][0] == file["time"]
 
 
+VERDICT = loomfmu.Verdict("c" * 1000, "a.x", False, 1.0, 2.0, "m", "mm", 0.5, 0.1, 1)
+
+
+def test_stored_verdicts_are_false_where_their_claim_fails(tmp_path: Path) -> None:
+    writer = TraceWriter(tmp_path / "few.h5", {"title": "t"}, [], {})
+    writer.append(np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1), dtype="i4"))
+    writer.seal("complete")
+    writer.complete([VERDICT.as_dict()])
+    trace = Trace(tmp_path / "few.h5")
+    assert not all(trace.verdicts)
+    assert trace.verdicts == [VERDICT]
+    assert repr(trace) == f"<Trace {tmp_path / 'few.h5'}>"
+
+
 def test_a_long_scene_and_many_verdicts_fit(tmp_path: Path) -> None:
     # attributes of more than 64 kB need dense storage
-    text, verdicts = "# a long scene\n" * 20_000, [{"claim": "c" * 1000, "holds": True}] * 300
+    text, verdicts = "# a long scene\n" * 20_000, [VERDICT] * 300
     writer = TraceWriter(tmp_path / "long.h5", {"title": "t", "scene": text}, [], {})
     writer.append(np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1), dtype="i4"))
     writer.seal("complete")
-    writer.complete(verdicts)
+    writer.complete([verdict.as_dict() for verdict in verdicts])
     with Trace(tmp_path / "long.h5") as trace:
         assert trace.attributes["scene"] == text
         assert trace.verdicts == verdicts

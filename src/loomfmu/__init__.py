@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .cosim.claims import judge
     from .cosim.run import Evaluation, Result, evaluate, run
-    from .cosim.verdict import Verdict
     from .errors import LoomfmuError
     from .sweeps.run import Sweep, sweep
-    from .traces import Trace
+    from .traces import Trace, Verdict
 
 _HOMES = {
     "Evaluation": "cosim.run",
@@ -16,7 +15,7 @@ _HOMES = {
     "Result": "cosim.run",
     "Sweep": "sweeps.run",
     "Trace": "traces",
-    "Verdict": "cosim.verdict",
+    "Verdict": "traces",
     "evaluate": "cosim.run",
     "judge": "cosim.claims",
     "run": "cosim.run",
@@ -39,8 +38,19 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load the public names when they are first used: importing loomfmu alone costs next to nothing."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("loomfmu")
+    if name == "design":
+        raise AttributeError("loomfmu.design is not loaded yet: from loomfmu.design import loom, cam")
     if name not in _HOMES:
         raise AttributeError(f"module 'loomfmu' has no attribute {name!r}")
     from importlib import import_module
 
     return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    """The public names, loaded or not."""
+    return sorted({*globals(), *__all__, "__version__"})

@@ -18,7 +18,7 @@ from . import printed, units
 from .errors import LoomfmuError, suggestion
 
 if TYPE_CHECKING:
-    from .cosim.verdict import Verdict
+    from .traces import Verdict
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -285,7 +285,6 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _summarise(path: str) -> int:
-    from .cosim.verdict import Verdict
     from .traces import Trace
 
     with Trace(path) as trace:
@@ -310,7 +309,7 @@ def _summarise(path: str) -> int:
                 shown = "  ".join(f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
                 print(f"{signal:{width}}  {shown}  {trace.unit(signal) if display == '1' else display}")
         print()
-        verdicts = [Verdict.of(stored) for stored in trace.verdicts]
+        verdicts = trace.verdicts
         _print_verdicts(verdicts)
         return 0 if trace.status == "complete" and all(verdicts) else 1
 

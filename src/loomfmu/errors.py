@@ -27,7 +27,7 @@ def shown(value: object) -> str:
 
 def path_of(given: object, what: str) -> Path:
     """A path that a caller gave. Raises LoomfmuError for what is none."""
-    if not isinstance(given, str | os.PathLike):
+    if not isinstance(given, str | os.PathLike) or "\n" in str(given):
         raise LoomfmuError(f"{what} = {shown(given)} is not a path")
     return Path(given)
 

@@ -660,14 +660,14 @@ at_most = "1 N"
     assert [bool(verdict) for verdict in result.claims] == [True, False, False]
     assert not result.holds
     with Trace(tmp_path / "claims.h5") as trace:
-        assert trace.verdicts == [verdict.as_dict() for verdict in result.claims]
-        assert trace.verdicts[0]["claim"] == "fast enough: stays above in [20 deg, 160 deg]"
+        assert trace.verdicts == list(result.claims)
+        assert trace.verdicts[0].claim == "fast enough: stays above in [20 deg, 160 deg]"
         assert {"weft.velocity", "weft.acceleration", "heald_2.lift", "heald_2.acceleration"} <= set(trace)
         assert "damper_1.peak_load" in trace
         assert "weft.travel" not in trace and "heald_1.lift" not in trace
         # judging the file anew gives the same
         again = judge(trace, kind="dwell", heald="heald_2", at_least="90 deg")
-        assert again.as_dict() == trace.verdicts[1]
+        assert again == trace.verdicts[1]
 
 
 @pytest.mark.parametrize(

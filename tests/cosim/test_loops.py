@@ -77,7 +77,7 @@ def test_a_lagged_loop_that_swings_up_is_told_with_its_remedy(inertia: float, fl
     assert said.startswith(
         "loop: weft.shaft_torque -> shaft.torque_1: with the value of the step before it swings up, "
     )
-    assert said.endswith('; say coupling = "iterated"')
+    assert said.endswith('; set coupling = "iterated"')
     assert "\n" not in said
 
 

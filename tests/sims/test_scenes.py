@@ -29,7 +29,7 @@ def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
     with Trace(tmp_path / "results" / f"{Path(scene).stem}.h5") as trace:
         assert trace.status == "complete"
         assert trace.verdicts, "a scene claims something"
-        assert all(verdict["holds"] for verdict in trace.verdicts)
+        assert all(trace.verdicts)
 
 
 def test_the_readme_shows_what_the_demonstration_prints(tmp_path: Path) -> None:
@@ -59,14 +59,14 @@ def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> 
     assert "the loom runs below its safe speed" in failed[1]
     assert os.listdir(tmp_path / "results") == ["wl680_3600.h5"]
     with Trace(tmp_path / "results" / "wl680_3600.h5") as trace:
-        failed_ones = [verdict for verdict in trace.verdicts if not verdict["holds"]]
-        signals = [verdict["signal"] for verdict in failed_ones]
+        failed_ones = [verdict for verdict in trace.verdicts if not verdict]
+        signals = [verdict.signal for verdict in failed_ones]
         assert signals == ["belt.lowest_margin", "belt.lowest_speed_limit"]
         # the margin follows the square of the speed over the limit of 681.8 rev/min, 1 - (700 / 681.8)^2;
         # both are extremes of curves between samples, equal to some 1e-6
         limit = trace["belt.lowest_speed_limit"][-1]
         speed = trace["shaft.velocity"][-1]
-        assert abs(failed_ones[0]["worst"] - (1 - (speed / limit) ** 2)) < 1e-5
+        assert abs(failed_ones[0].worst - (1 - (speed / limit) ** 2)) < 1e-5
         assert bool(trace["belt.buckled"][-1])
 
 

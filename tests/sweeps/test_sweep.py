@@ -249,7 +249,7 @@ def test_the_worst_failures_and_a_sample_of_the_others_have_full_traces(tmp_path
         row = int(path.stem.removeprefix("row_"))
         with Trace(path) as trace:
             assert trace.rows == 91 and "weft.stroke" in trace and "belt.deflection" in trace
-            worst = [verdict["worst"] for verdict in trace.verdicts]
+            worst = [verdict.worst for verdict in trace.verdicts]
             # the whole scene against what the claims need: as exact as `evaluate` is, a few roundings
             assert worst == pytest.approx(
                 [found.table[f"claim_{number}.worst"][row].as_py() for number in (1, 2)], rel=1e-12

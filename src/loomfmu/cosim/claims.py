@@ -36,6 +36,8 @@ def judge(trace: Signals, *, kind: str, name: str = "", **arguments: Any) -> Ver
     Raises:
         LoomfmuError: an unknown kind, argument, signal or unit, or one that is missing
     """
+    if not isinstance(trace, Signals):
+        raise LoomfmuError(f"trace = {shown(trace)} is not a trace, such as result.trace")
     check(kind, arguments)
     check_values(kind, arguments, trace.unit)
     judged = KINDS[kind](trace, **arguments)
@@ -54,6 +56,9 @@ def check(kind: Any, arguments: dict[str, Any]) -> None:
     for parameter in known:
         if parameter.default is parameter.empty and parameter.name not in arguments:
             raise LoomfmuError(f"claim {kind!r} needs {parameter.name!r}")
+    for name in NAMES.intersection(arguments):
+        if not isinstance(arguments[name], str):
+            raise LoomfmuError(f"claim {kind!r}: {name} = {shown(arguments[name])} is not a name in quotes")
 
 
 def check_values(kind: str, arguments: dict[str, Any], unit_of: Callable[[str], str]) -> None:
@@ -161,6 +166,7 @@ UNITS = {
     "head_height": "m",
 }
 
+NAMES = frozenset(("signal", "belt", "heald", "damper", "lock", "weft", "reed"))  # of signals, of instances
 NEVER_NEGATIVE = frozenset(("at_most", "at_least", "clearance", "head_height"))
 
 # claim -> the argument that names an instance, or its usual name, and the outputs it is judged by

@@ -154,4 +154,4 @@ def _told(
             unread = [variable for variable in outputs if (name, variable) not in fetched]
             if unread:
                 share = f"{len(unread)} of {len(outputs)} outputs"
-                yield f"{name}: {share}, which nobody reads: {', '.join(unread)}"
+                yield f"{name}: {share} that nobody reads: {', '.join(unread)}"

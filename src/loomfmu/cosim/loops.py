@@ -165,6 +165,6 @@ class Swing:
                 factor = (last / first) ** (1.0 / (end - start))
                 raise LoomfmuError(
                     f"loop: {self._wires}: with the value of the step before it swings up, {factor:.3g}"
-                    f' times a step from {self._times[start]:.6g} s on; say coupling = "iterated"'
+                    f' times a step from {self._times[start]:.6g} s on; set coupling = "iterated"'
                 )
             start = end + 1

@@ -32,7 +32,7 @@ SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: another one would say tha
 LARGE_TRACE = 300_000_000  # bytes from which its size is told before the run
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class _Judged:
     """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
 
@@ -56,8 +56,16 @@ class _Judged:
     def __bool__(self) -> bool:
         return self.holds
 
+    def __repr__(self) -> str:
+        failing = [verdict for verdict in self.claims if not verdict]
+        said = f"{len(failing)} of {len(self.claims)} claims fail" if failing else "all claims hold"
+        if not self.claims:
+            said = "no claims"
+        listed = "".join(f"\n  {verdict}" for verdict in failing)
+        return f"<{type(self).__name__} {self.scene.name}: {said}{':' * bool(failing)}{listed}>"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Result(_Judged):
     """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
 
@@ -68,7 +76,7 @@ class Result(_Judged):
     trace: Trace = field(repr=False, compare=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Evaluation(_Judged):
     """A finished run whose trace is in memory: `trace["belt.margin"]` are the signal's values in SI."""
 

@@ -22,7 +22,7 @@ LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 
 
-@dataclass
+@dataclass(repr=False)
 class Scene:
     """A scene, checked against the FMUs it uses: every name is known, every value in SI and in bounds.
 
@@ -56,6 +56,9 @@ class Scene:
     overrides: dict[str, Any] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     package_sha256: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {len(self.instances)} instances, {len(self.claims)} claims>"
 
     @property
     def speed(self) -> float:

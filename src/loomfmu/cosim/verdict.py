@@ -1,108 +1,15 @@
-"""What became of a claim."""
+"""What becomes of a claim: its verdict, with the place on the shaft."""
 
 import math
-from dataclasses import dataclass, fields
-from typing import Any, Self
 
-from .. import units
-from ..traces import Signals
+from ..traces import Signals, Verdict
 from . import curves
+
+__all__ = ["ANGLE", "FORCE", "LENGTH", "ONE", "PERCENT", "SPEED", "Verdict", "verdict"]
 
 # units of what is judged: that of the numbers, and the one that people read them in
 ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
 LENGTH, FORCE, SPEED = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min")
-
-
-@dataclass(frozen=True, repr=False)
-class Verdict:
-    """What became of a claim; true where it holds.
-
-    `bound` and `worst` are in `unit`, which is SI unless an FMU of another maker has a unit of its own.
-    People read them in `display_unit`; "1" means in `unit` itself. `time` is in s, `angle` in rad within the
-    revolution, which is counted from 1; without a shaft they are NaN and None.
-    """
-
-    claim: str
-    signal: str
-    holds: bool
-    bound: float
-    worst: float
-    unit: str
-    display_unit: str
-    time: float
-    angle: float
-    revolution: int | None
-    note: str = ""
-
-    def __bool__(self) -> bool:
-        return self.holds
-
-    def __repr__(self) -> str:
-        return f"<Verdict {self}>"
-
-    def __str__(self) -> str:
-        place = f" at {self.place}" if self.place else ""
-        note = f" ({self.note})" if self.note else ""
-        return (
-            f"{self.word}: {self.claim}: {self.signal}, {self.shown(self.worst)}{place},"
-            f" bound {self.shown(self.bound)}{note}"
-        )
-
-    @property
-    def word(self) -> str:
-        """How it went, in a word."""
-        return "holds" if self.holds else "FAILS"
-
-    @property
-    def place(self) -> str:
-        """Where it was, as people read it; nothing if there is no place."""
-        if not math.isfinite(self.time):
-            return ""
-        if self.revolution is None:
-            return f"{self.time:.6g} s"
-        return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
-
-    def displayed(self, value: float) -> float:
-        """One of the verdict's values, in the unit that people read it in."""
-        if self.display_unit in ("1", self.unit):
-            return value
-        return value * units.unit(self.unit).factor / units.unit(self.display_unit).factor
-
-    def shown(self, value: float) -> str:
-        """One of the verdict's values as people read it."""
-        if not math.isfinite(value):
-            return "no value"
-        return f"{self.displayed(value):.7g}" + ("" if self.label == "1" else f" {self.label}")
-
-    @property
-    def label(self) -> str:
-        """The unit that people read beside the values."""
-        return self.unit if self.display_unit == "1" else self.display_unit
-
-    def as_dict(self) -> dict[str, Any]:
-        """The verdict for JSON, null for what is not finite; `display` has the values that people read."""
-        known = {field.name: getattr(self, field.name) for field in fields(self)}
-        del known["display_unit"]
-        display = {name: self.displayed(known[name]) for name in ("bound", "worst")}
-        return _finite(known) | {"display": _finite(display) | {"unit": self.label}}
-
-    @classmethod
-    def of(cls, stored: dict[str, Any]) -> Self:
-        """The verdict that `as_dict` made this of."""
-        known = {field.name: stored[field.name] for field in fields(cls) if field.name in stored}
-        for name in ("bound", "worst", "time", "angle"):
-            known[name] = math.nan if known[name] is None else known[name]
-        if "display" in stored:
-            return cls(**known, display_unit=stored["display"]["unit"])
-        # as version 0.1.0 stored them: SI values beside the unit that people read them in
-        return cls(**(known | {"unit": units.si(known["unit"])}), display_unit=known["unit"])
-
-
-def _finite(values: dict[str, Any]) -> dict[str, Any]:
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in values.items()
-    }
 
 
 def verdict(

@@ -57,7 +57,7 @@ def schema_of(plan: Plan, labels: tuple[Label, ...]) -> Any:
     fields += [
         pa.field("holds", pa.bool_(), metadata={"description": "Whether all claims hold"}),
         pa.field("first_failing_claim", pa.string(), metadata={"description": "The first claim that fails"}),
-        pa.field("warnings", pa.string(), metadata={"description": "What FMUs and master warned of"}),
+        pa.field("warnings", pa.string(), metadata={"description": "Warnings of the FMUs and the master"}),
         pa.field("error", pa.string(), metadata={"description": "Why the combination could not be run"}),
     ]
     about = {

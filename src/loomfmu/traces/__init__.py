@@ -4,6 +4,7 @@ from .chunks import ROWS
 from .kinds import PARTIAL, TRACE
 from .reader import Trace
 from .signals import Channel, Recording, Signals
+from .verdict import Verdict
 from .writer import TraceWriter, partial_of
 
 __all__ = [
@@ -15,5 +16,6 @@ __all__ = [
     "Signals",
     "Trace",
     "TraceWriter",
+    "Verdict",
     "partial_of",
 ]

@@ -18,6 +18,7 @@ from ..files import source
 from .disk import superblock
 from .places import place_of
 from .signals import SHARED, Floats, Signals
+from .verdict import Verdict
 
 REQUIRED = ("title", "status", "software")  # attributes that every trace has
 
@@ -44,6 +45,9 @@ class Trace(Signals):
 
     def __reduce__(self) -> tuple[type["Trace"], tuple[Path]]:
         return Trace, (self.path,)
+
+    def __repr__(self) -> str:
+        return f"<Trace {self.path}>"
 
     @property
     def path(self) -> Path:
@@ -91,6 +95,8 @@ class Trace(Signals):
             self._file = None
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
+        if not isinstance(signal, str):
+            raise self._unknown(signal)
         if signal not in self._cache:
             self._cache[signal] = self._read(signal)
         return self._cache[signal]
@@ -178,9 +184,9 @@ class Trace(Signals):
         return str(self.attributes.get("ended_by", ""))
 
     @property
-    def verdicts(self) -> list[dict[str, Any]]:
-        """The verdicts stored with the run."""
-        return list(json.loads(self.attributes.get("claims", "[]")))
+    def verdicts(self) -> list[Verdict]:
+        """The verdicts stored with the run; the attribute `claims` has them as JSON."""
+        return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -73,8 +73,10 @@ class Signals(ABC):
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
 
-    def _unknown(self, signal: str) -> LoomfmuError:
-        return LoomfmuError(f"{self.name}: no signal {signal!r} is recorded{suggestion(signal, self)}")
+    def _unknown(self, signal: object) -> LoomfmuError:
+        return LoomfmuError(
+            f"{self.name}: no signal {shown(signal)} is recorded{suggestion(str(signal), self)}"
+        )
 
 
 class Recording(Signals):
@@ -87,6 +89,9 @@ class Recording(Signals):
         self._channels = {f"{channel.instance}.{channel.variable}": channel for channel in channels}
         self._parameters = parameters
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
+
+    def __repr__(self) -> str:
+        return f"<Recording {self.name}: {len(self._channels)} signals>"
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Keep a block: values along the rows, signals along the columns."""
@@ -120,7 +125,7 @@ class Recording(Signals):
         return iter(self._channels)
 
     def _channel(self, signal: str) -> Channel:
-        if signal not in self._channels:
+        if not isinstance(signal, str) or signal not in self._channels:
             raise self._unknown(signal)
         return self._channels[signal]
 
