@@ -203,7 +203,9 @@ def _run(options: argparse.Namespace) -> int:
     _print_verdicts(result.claims)
     if scene.description:
         print(f"{scene.description}\n")
-    command = sys.argv[0] if Path(sys.argv[0]).name == "loomfmu" else "loomfmu"
+    command = "loomfmu"
+    if Path(sys.argv[0]).name == command and shutil.which(command) != shutil.which(sys.argv[0]):
+        command = sys.argv[0]  # it is not on the PATH, or another one is
     path = str(result.path)
     summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
     print(f"trace: {path}    summary: {shlex.join(summary)}")

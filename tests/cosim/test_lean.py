@@ -1,6 +1,8 @@
 """What a run leaves out: found backwards from what is asked, and told."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from loomfmu.cosim import fmus, pool
 from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.asked import judged_by, recorded
 from loomfmu.cosim.lean import Lean, lean
+from loomfmu.cosim.run import explained
 from loomfmu.cosim.scene import Scene
 
 __all__ = ["fmu_cache"]
@@ -157,3 +160,15 @@ def test_nothing_asked_is_nothing_run() -> None:
     # the closed form of a constant speed: 400 rev/min
     np.testing.assert_allclose(evaluated.trace["shaft.angle"], np.arange(17) * np.pi / 4, rtol=1e-15)
     assert evaluated.trace["shaft.velocity"][-1] == evaluated.trace.parameter("shaft.speed")
+
+
+@pytest.mark.parametrize(
+    ("taken", "said"), [(50, "2 times fewer"), (100, "all of them"), (108, "8 % more"), (0, "none left")]
+)
+def test_what_a_grid_saves_or_costs_is_told(taken: int, said: str) -> None:
+    whole = SimpleNamespace(instances={"a": 1}, steps=100)
+    plan: Any = SimpleNamespace(
+        scene=whole, lean=SimpleNamespace(scene=whole, skipped=()),
+        grid=SimpleNamespace(steps=taken, scouted=0, notes=()),
+    )  # fmt: skip
+    assert explained(plan)[-1].endswith(f", {said}")

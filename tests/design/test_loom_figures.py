@@ -51,6 +51,35 @@ def test_inverse_problems_return_what_gives_the_speed():
 def test_an_impossible_wish_is_answered_with_what_can_be_had():
     with pytest.raises(LoomfmuError, match=r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+"):
         loom.clearance_for(1000 * RPM, "WL680-3600")
+    with pytest.raises(
+        LoomfmuError,
+        match=r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm",
+    ):
+        loom.clearance_for("540 rpm", "WL680-3600")
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (
+            lambda: loom.clearance_for("600 rpm", "WL680-3600", length_factor=0.8),
+            "length_factor cannot be given",
+        ),
+        (
+            lambda: loom.mass_for("600 rpm", "WL680-3600", mass=0.1),
+            "mass cannot be given: the mass is sought",
+        ),
+        (lambda: loom.mass_for("600 rpm", "WL680-3600", mas=0.1), "mas is unknown; did you mean 'mass'?"),
+        (
+            lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),
+            "clearance and length_factor are both given",
+        ),
+    ],
+)
+def test_values_that_would_have_no_effect_are_refused(call, said):
+    with pytest.raises(LoomfmuError) as raised:
+        call()
+    assert str(raised.value).startswith(said)
 
 
 def test_a_tension_that_buckles_alone_is_refused():

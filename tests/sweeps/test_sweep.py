@@ -332,7 +332,11 @@ def test_the_first_claim_that_fails_has_a_column(tmp_path: Path) -> None:
     table = loomfmu.sweep(path, processes=1, output=tmp_path / "out").table
     for row in table.to_pylist():
         failing = [number for number in (1, 2, 3) if not row[f"claim_{number}.holds"]]
-        words = {1: "the belt does not buckle", 2: "the loom runs below its safe speed", 3: "stays above"}
+        words = {
+            1: "the belt does not buckle",
+            2: "the loom runs below its safe speed",
+            3: "belt.lowest_margin stays above",
+        }
         assert row["first_failing_claim"] == words[failing[0]]
     assert len(set(table["first_failing_claim"].to_pylist())) > 1
     held = loomfmu.sweep(written(tmp_path, GRID + NO_TRACES), processes=1, output=tmp_path / "two").table

@@ -220,12 +220,11 @@ def peak_load(trace: Signals, damper: str, at_most: float | str) -> Verdict:
 
 
 def stop_contacts(trace: Signals, damper: str, at_most: float | str) -> Verdict:
-    """A damper's carrier touches its stops no more often than that."""
+    """A damper's carrier touches its stops no more often than that; its place is that of the last contact."""
     limit = units.parse(at_most, "1")
     counted = trace[f"{damper}.stop_contacts"]
     worst = float(counted[-1])
-    over = np.flatnonzero(counted > limit)
-    time = float(trace.time[over[0]]) if len(over) else math.nan
+    time = float(trace.time[np.argmax(counted == counted[-1])]) if worst > 0.0 else math.nan
     return verdict(trace, "stop contacts", f"{damper}.stop_contacts", worst <= limit, limit, worst, ONE, time)
 
 

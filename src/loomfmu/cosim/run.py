@@ -201,7 +201,12 @@ def explained(plan: Plan) -> tuple[str, ...]:
     taken, usual = plan.grid.steps, plan.scene.steps
     lines = [*plan.lean.skipped, *plan.grid.notes]
     done, full = kept * taken + plan.grid.scouted, whole * usual
-    saved = "none left" if not done else "all of them" if done == full else f"{full / done:.3g} times fewer"
+    if not done:
+        saved = "none left"
+    elif done == full:
+        saved = "all of them"
+    else:
+        saved = f"{full / done:.3g} times fewer" if done < full else f"{100 * (done / full - 1):.2g} % more"
     return (
         *lines,
         f"{kept} of {whole} FMUs, {taken} steps where equal ones would be {usual}:"

@@ -10,13 +10,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..components.weft_insertion import WeftInsertion
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, suggestion
 from ..machines import named, parameters
 from ..physics import belt
 from .quantities import Quantity, read, show
 
 BENDING_STIFFNESS = 0.25  # N m2, the carbon belt of Zhu and Zhou
 RPM = 2.0 * math.pi / 60.0
+NEW_BELT = 0.3e-3  # m, its clearance in the guide
+QUANTITIES = ("head", "length_factor", "clearance", "tension", "mass", "stiffness")  # besides the machine
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ def safe_speed(
     head: str = "G6300 left",
     *,
     length_factor: Quantity | None = None,
-    clearance: Quantity = 0.3e-3,
+    clearance: Quantity | None = None,
     tension: Quantity = 0.0,
     mass: Quantity | None = None,
     stiffness: Quantity = BENDING_STIFFNESS,
@@ -49,7 +51,7 @@ def safe_speed(
     Args:
         machine, head: names of published ones
         length_factor: column length factor [1]; from the clearance if not given
-        clearance: of the belt in its guide [m]
+        clearance: of the belt in its guide [m]; that of a new belt, 0.3 mm, if not given
         tension: of the weft [N]
         mass: of the head [kg]; that of the named head if not given
         stiffness: bending stiffness of the belt [N m2]
@@ -63,13 +65,18 @@ def safe_speed(
     """
     from scipy.optimize import minimize_scalar
 
-    clearance, tension = read("clearance", clearance), read("tension", tension)
+    if clearance is not None and length_factor is not None:
+        raise LoomfmuError(
+            "clearance and length_factor are both given: the factor follows from the clearance"
+        )
+    gap = read("clearance", NEW_BELT if clearance is None else clearance)
+    tension = read("tension", tension)
     stiffness = read("stiffness", stiffness)
 
     guide, travel = _travel(machine)
     named("head", head)
     weight = read("mass", parameters("BeltMonitor", head=head)["head_mass"] if mass is None else mass)
-    factor = belt.length_factor(clearance) if length_factor is None else read("length_factor", length_factor)
+    factor = belt.length_factor(gap) if length_factor is None else read("length_factor", length_factor)
     start, end = window(machine)
 
     def limit(angle: float) -> float:
@@ -126,8 +133,9 @@ def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, 
 def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Largest guide clearance with which the belt is safe at a speed [m].
 
-    Raises LoomfmuError, with the speeds that can be had, where no clearance is small or large enough.
+    Raises LoomfmuError where none is small enough, with the speeds that can be had, or where any will do.
     """
+    _refuse(others, "clearance", "length_factor")
     return _solve(
         "guide clearance", "clearance", speed,
         lambda value: safe_speed(machine, head, clearance=value, **others).speed, 0.0, 0.8e-3,
@@ -136,6 +144,7 @@ def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
 
 def mass_for(speed: Quantity, machine: str, **others: Any) -> float:
     """Largest mass of the rapier head with which the belt is safe at a speed [kg]; see `clearance_for`."""
+    _refuse(others, "mass")
     return _solve(
         "head mass", "mass", speed, lambda value: safe_speed(machine, mass=value, **others).speed, 1e-3, 10.0
     )
@@ -143,10 +152,20 @@ def mass_for(speed: Quantity, machine: str, **others: Any) -> float:
 
 def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Smallest bending stiffness with which the belt is safe at a speed [N m2]; see `clearance_for`."""
+    _refuse(others, "stiffness")
     return _solve(
         "bending stiffness", "stiffness", speed,
         lambda value: safe_speed(machine, head, stiffness=value, **others).speed, 1e-3, 100.0,
     )  # fmt: skip
+
+
+def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:
+    """Refuse a value for what is sought, for what stands instead of it, and for what `safe_speed` lacks."""
+    for name in given:
+        if name in (sought, instead):
+            raise LoomfmuError(f"{name} cannot be given: the {sought} is sought")
+        if name not in QUANTITIES:
+            raise LoomfmuError(f"{name} is unknown{suggestion(name, QUANTITIES)}")
 
 
 def _solve(
@@ -156,7 +175,12 @@ def _solve(
 
     speed = read("speed", wanted)
     ends = reached(low), reached(high)
-    if not min(ends) <= speed <= max(ends):
+    if speed < min(ends):
+        raise LoomfmuError(
+            f"the belt is safe at {show('speed', speed)} with any {what} from {show(name, low)} to"
+            f" {show(name, high)}"
+        )
+    if speed > max(ends):
         raise LoomfmuError(
             f"no {what} gives {show('speed', speed)}: from {show(name, low)} to {show(name, high)} the safe"
             f" speed goes from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"

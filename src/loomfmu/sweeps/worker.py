@@ -87,8 +87,14 @@ def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
         for each in settings:
             result, verdicts = _row(job, scene, each)
             results.append(result)
-            labels = labels or tuple(Label(v.claim, v.signal, v.unit, v.display_unit) for v in verdicts)
+            labels = labels or tuple(map(_label, scene.claims, verdicts))
         return Batch(results, labels, (time.perf_counter() - begun) / len(settings))
+
+
+def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
+    """What a claim is about; one without a name of its own goes by its signal."""
+    named = verdict.claim if claim.get("name") else f"{verdict.signal} {verdict.claim}"
+    return Label(named, verdict.signal, verdict.unit, verdict.display_unit)
 
 
 def run_trace(job: Job, settings: dict[str, Any], path: Path) -> None:
@@ -125,7 +131,7 @@ def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], t
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
         values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound)]
         if not verdict.holds and first is None:
-            first = str(claim.get("name") or verdict.claim)
+            first = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
 
 
