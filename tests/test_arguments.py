@@ -106,3 +106,9 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 def test_types_are_exported() -> None:
     assert resources.files(loomfmu).joinpath("py.typed").is_file()
+
+
+def test_of_extremes_that_only_the_steps_tell_apart_the_first_is_named() -> None:
+    # equal in all revolutions; 720 steps in one tell them apart by 6e-9
+    found = evaluate(DEMO, set={"shaft.speed": "650 rpm", "steps_per_revolution": 720, "revolutions": 4})
+    assert found.claims[0].revolution == 1

@@ -17,6 +17,7 @@ Integers = NDArray[np.int64]
 TURN = 2.0 * math.pi
 BLOCK = 1 << 16  # intervals that are looked at together
 SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
+ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
 COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples tell of one oscillation
 DOUBT = 0.1  # of the difference between second rates over an interval, see `Motion.doubt`
 ROUNDING = 1e-12  # of the largest value: what rounding may add
@@ -345,7 +346,7 @@ def reached(trace: Signals, latch: str, followed: Floats) -> float:
         followed: samples of what it follows, taken so that the extreme is the lowest
     """
     time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
-    step = int(np.argmax(kept <= SAME * np.max(np.abs(followed))))
+    step = int(np.argmax(kept <= ALIKE * np.max(np.abs(followed))))
     if step == 0:
         return float(time[0])
     lowest = step if followed[step] <= followed[step - 1] else step - 1
