@@ -526,18 +526,18 @@ CASES: dict[str, tuple[str, str]] = {
         HEAD + LOOM + '[[claims]]\nkind = "lowest_margin"\nbound = "shaft.speed"\n',
         "claim 'lowest_margin': bound: 'shaft.speed' is not a quantity such as \"685 rpm\"",
     ),
-    "huge speed": (HEAD + f"[shaft]\nspeed = {HUGE}\n", f"shaft.speed: {HUGE[:60]}.. is too large"),
+    "huge speed": (HEAD + f"[shaft]\nspeed = {HUGE}\n", f"shaft.speed: {HUGE[:60]}... is too large"),
     "huge duration": (
         HEAD.replace("revolutions = 1", f"revolutions = {HUGE}") + LOOM,
-        f"revolutions = {HUGE[:60]}.. is outside [1e-09, 1e+09]",
+        f"revolutions = {HUGE[:60]}... is outside [1e-09, 1e+09]",
     ),
     "huge bound": (
         HEAD + LOOM + f'[[claims]]\nkind = "lowest_margin"\nbound = {HUGE}\n',
-        f"claim 'lowest_margin': bound: {HUGE[:60]}.. is too large",
+        f"claim 'lowest_margin': bound: {HUGE[:60]}... is too large",
     ),
     "huge pattern length": (
         HEAD + LOOM + f"[heald]\npattern_length = {HUGE}\n",
-        f"heald_1.pattern_length = {HUGE[:60]}.. is outside [1, 128]",
+        f"heald_1.pattern_length = {HUGE[:60]}... is outside [1, 128]",
     ),
     "claim angles beyond a revolution": (
         HEAD + LOOM + '[[claims]]\nkind = "dwell_contains"\nheald = "heald_1"\nangles = [91]\n',

@@ -269,7 +269,7 @@ def test_a_bound_that_only_the_curve_between_samples_passes_is_held(tmp_path: Pa
         return 1.0 - np.where(t < 37.3, (37.3 - t) ** 2, 0.0)
 
     trace = drawn(
-        tmp_path, lambda t: t, x, lambda t: np.where(t < 37.3, 2.0 * (37.3 - t), 0.0), np.arange(61.0)
+        tmp_path, lambda t: 0.01 * t, x, lambda t: np.where(t < 37.3, 2.0 * (37.3 - t), 0.0), np.arange(61.0)
     )
     found = judge(trace, kind="below", signal="a.x", bound=1.0)
     assert found
@@ -290,7 +290,7 @@ def test_a_smooth_stop_is_not_passed_wherever_it_lies_between_samples(
         return np.maximum(20.0 + share - t, 0.0)
 
     trace = drawn(
-        tmp_path, lambda t: t, lambda t: -(left(t) ** power), lambda t: power * left(t) ** (power - 1),
+        tmp_path, lambda t: 0.01 * t, lambda t: -(left(t) ** power), lambda t: power * left(t) ** (power - 1),
         np.arange(41.0),
     )  # fmt: skip
     assert judge(trace, kind="below", signal="a.x", bound=0.0)

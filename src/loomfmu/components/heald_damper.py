@@ -14,9 +14,9 @@ from .terminals import FRAME
 SHORTEST = 1e-15
 # Pieces of motion in one step: some 10 us each in Python
 MOST_PIECES = 100000
-# Largest acceleration [m/s2] of a frame at rest, which moves half a micrometre in a second. The rounding of a
-# motion's samples stays below it up to 1e8 m/s2: against less than that no ratio can be told.
-RESTING = 1e-6
+# Largest acceleration [m/s2] of a frame at rest: some hundred roundings of the motion of a loom, and little
+# enough for one that turns once in a quarter of an hour. Against less than that no ratio can be told.
+RESTING = 1e-12
 MOST_TURNS = 6  # of a load in one piece: four, and two by rounding where it starts at one
 MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
