@@ -3,6 +3,7 @@
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from loomfmu.cli import main
 from loomfmu.components import WeftInsertion
 from loomfmu.cosim import fmus, pool
 from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.drives import drive
+from loomfmu.cosim.ports import Port
 from loomfmu.cosim.scene import Scene
 from loomfmu.machines import parameters
 
@@ -328,3 +331,11 @@ def test_our_own_fmus_can_be_given_as_files(tmp_path: Path) -> None:
     trace = ran(tmp_path, text, tmp_path).trace
     np.testing.assert_array_equal(trace["weft.travel"], trace["other.travel"])
     assert trace.rate("other.travel") == "other.velocity"
+
+
+def test_a_discrete_real_input_is_held_between_the_rows_of_its_table() -> None:
+    port = Port("u", "Real", 1, "input", "1", "1", None, None, 0.0, "An input", discrete=True)
+    rows, between = [[0, 1.0], [1, 2.0]], np.array([0.0, 0.5, 0.999, 1.0, 2.0])
+    np.testing.assert_array_equal(drive("a.u", port, rows).along(between), [1.0, 1.0, 1.0, 2.0, 2.0])
+    ramped = drive("a.u", replace(port, discrete=False), rows).along(between)
+    np.testing.assert_array_equal(ramped, between.clip(0.0, 1.0) + 1.0)

@@ -308,3 +308,9 @@ def test_reference_results_are_written_where_the_fmus_lie(
     assert len(lines) == 1 + 145
     last = [float(value) for value in lines[-1].split(",")]
     np.testing.assert_allclose(last[:2], [0.15, 2 * np.pi], rtol=1e-15)  # one revolution, 2.5 deg apart
+
+
+def test_the_documentation_says_what_the_fmu_calls_numbered_variables() -> None:
+    page = builder.described(COMPONENTS["HealdFrame"])["documentation/index.html"].decode()
+    assert "<code>pattern_1</code> is called <code>pattern[1]</code>" in page
+    assert "is called" not in builder.described(COMPONENTS["BeltWrap"])["documentation/index.html"].decode()

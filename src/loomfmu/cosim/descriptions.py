@@ -107,6 +107,7 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         rate=rates.get(variable.name),
         own=variable.name,
         base_type=variable.type,
+        discrete=variable.variability == "discrete",
         has_unit=given != "",
         definition=own_definition(unit) if unit in units.UNITS else definition,
         nominal=_limit(kind, said("nominal")),

@@ -16,7 +16,8 @@ Floats = NDArray[np.float64]
 class Drive:
     """An input with its values over revolutions, held before and after.
 
-    Between them reals lie on straight lines; an integer or a boolean is held until the next one.
+    Between them continuous reals lie on straight lines; an integer, a boolean, and a real that its FMU
+    declares as discrete, are held until the next one.
     """
 
     instance: str
@@ -24,6 +25,7 @@ class Drive:
     revolutions: tuple[float, ...]
     values: tuple[Value, ...]
     kind: str = "Real"
+    held: bool = False
     doubt: str = ""
 
     def along(self, revolutions: Floats) -> NDArray[Any]:
@@ -31,13 +33,14 @@ class Drive:
 
         >>> Drive("belt", "guide_clearance", (0.0, 2.0), (1.0, 3.0)).along(np.array([-1.0, 0.5, 9.0]))
         array([1. , 1.5, 3. ])
-        >>> Drive("motor", "mode", (0.0, 2.0), (1, 3), "Integer").along(np.array([-1.0, 1.9, 2.0]))
+        >>> Drive("motor", "mode", (0.0, 2.0), (1, 3), "Integer", True).along(np.array([-1.0, 1.9, 2.0]))
         array([1, 1, 3], dtype=int32)
         """
         places = np.array(self.revolutions)
-        if self.kind != "Real":
+        if self.held:
             last = np.searchsorted(places, revolutions, side="right") - 1
-            return np.array(self.values, dtype=np.int32)[np.maximum(last, 0)]
+            kind = np.float64 if self.kind == "Real" else np.int32
+            return np.array(self.values, dtype=kind)[np.maximum(last, 0)]
         values = np.array(self.values)
         if len(places) == 1:
             return np.full(len(revolutions), values[0])
@@ -77,7 +80,8 @@ def drive(name: str, port: Port, table: Any) -> Drive:
         doubts.append(port.doubt(row[1], where))
     instance = name.partition(".")[0]
     doubt = next(filter(None, doubts), "")
-    return Drive(instance, port.name, tuple(revolutions), tuple(values), port.kind, doubt)
+    held = port.discrete or port.kind != "Real"
+    return Drive(instance, port.name, tuple(revolutions), tuple(values), port.kind, held, doubt)
 
 
 def split(name: str, instances: dict[str, Any]) -> tuple[str, str]:

@@ -98,6 +98,7 @@ class Port:
     rate: str | None = None
     own: str = ""
     base_type: str = ""
+    discrete: bool = False  # it changes at events alone
     has_unit: bool = True
     definition: Definition | None = None
     nominal: float | None = None

@@ -95,7 +95,8 @@ def described(component: type[Component], note: str = "") -> dict[str, bytes]:
     readme = documentation.with_table(
         (folder(component) / "README.md").read_text(encoding="utf-8"), component
     )
-    page = documentation.page(component.__name__, readme + parameter_note(component) + note)
+    note = documentation.names_note(component) + parameter_note(component) + note
+    page = documentation.page(component.__name__, readme + note)
     drawing = (folder(component) / "drawing.svg").read_bytes()
     return {"documentation/index.html": page, "documentation/drawing.svg": drawing} | _told(component)
 

@@ -88,6 +88,15 @@ def with_table(readme: str, component: type[Component]) -> str:
     return re.sub(pattern, lambda _match: block, readme, flags=re.DOTALL)
 
 
+def names_note(component: type[Component]) -> str:
+    """What the FMU calls variables that its README numbers; nothing where there are none."""
+    numbered = [v for v in variables_of(component) if v.settable and v.structured != v.name]
+    if not numbered:
+        return ""
+    first = numbered[0]
+    return f"\n\nIn the FMU numbered variables are arrays: `{first.name}` is called `{first.structured}`.\n"
+
+
 def page(title: str, markdown: str) -> bytes:
     """Markdown as an HTML page."""
     from markdown_it import MarkdownIt  # not needed by who runs FMUs that are built
