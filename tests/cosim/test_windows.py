@@ -330,3 +330,9 @@ def test_points_are_kept_apart_from_the_last_one_that_stays() -> None:
     close = [0.5 + 0.8e-4 * place for place in range(4)]  # 1/7200 is 1.4e-4
     places = windows.Places(period=1.0, most=0.5, points=close)
     assert list(windows._merged(np.linspace(0.0, 1.0, 3), places)) == [0.0, close[0], close[2], 1.0]
+
+
+def test_more_steps_than_memory_holds_are_refused_before_any_is_taken() -> None:
+    scene = scenes.load(SIMS / "belt_alone.toml", {"revolutions": 1e8})
+    with pytest.raises(LoomfmuError, match=r"2400000000 steps are more than 10000000, .* fewer revolutions"):
+        windows.window_grid(scene, ["belt.lowest_margin"])

@@ -33,6 +33,7 @@ Floats = NDArray[np.float64]
 Look = Callable[..., None]
 
 SCOUTS = 2  # runs that look for the windows: the second one sees the lowest points
+MOST_STEPS = 10_000_000  # that are kept in memory, with what is watched at each
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
@@ -152,7 +153,13 @@ def _check(scene: Scene) -> None:
 def _equal(scene: Scene, longest: float) -> Floats:
     """Equal steps no longer than that."""
     end = uniform(scene).stop_time
-    return np.linspace(0.0, end, max(1, math.ceil(end / longest - 1e-9)) + 1)
+    steps = max(1, math.ceil(end / longest - 1e-9))
+    if steps > MOST_STEPS:
+        raise LoomfmuError(
+            f'grid = "windows": {steps} steps are more than {MOST_STEPS}, which it keeps in memory;'
+            ' take grid = "uniform" or fewer revolutions'
+        )
+    return np.linspace(0.0, end, steps + 1)
 
 
 def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
