@@ -104,27 +104,26 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
 
 def wires(instance: str, component: type[Component]) -> dict[str, str]:
     """Where the inputs of an instance are wired to in a standard loom, by its declarations."""
-    inputs = {v.name: v.source for v in variables_of(component) if v.causality == "input"}
-    found = {name: source for name, source in inputs.items() if source}
-    for terminal in component.terminals:
-        if terminal.variables[0] in inputs:
-            owner = SOURCES[terminal.name]
-            outputs = _terminal(COMPONENTS[COMPONENT_OF[stem(owner.replace("_#", "_1"))]], terminal.name)
-            pairs = zip(terminal.variables, outputs.variables, strict=True)
-            found |= {sink: f"{owner}.{output}" for sink, output in pairs}
+    found = {v.name: v.source for v in variables_of(component) if v.causality == "input" and v.source}
+    for terminal in _terminals(component, "input"):
+        owner = SOURCES[terminal.name]
+        feeding = COMPONENTS[COMPONENT_OF[owner.removesuffix("_#")]]
+        (outputs,) = (each for each in _terminals(feeding, "output") if each.name == terminal.name)
+        pairs = zip(terminal.variables, outputs.variables, strict=True)
+        found |= {sink: f"{owner}.{output}" for sink, output in pairs}
     number = instance.removeprefix(stem(instance))
     return {name: source.replace("_#", number) for name, source in found.items()}
 
 
-def _terminal(component: type[Component], name: str) -> Terminal:
-    return next(terminal for terminal in component.terminals if terminal.name == name)
+def _terminals(component: type[Component], causality: str) -> list[Terminal]:
+    """The terminals of a component whose variables are its inputs, or its outputs."""
+    names = {v.name for v in variables_of(component) if v.causality == causality}
+    return [terminal for terminal in component.terminals if terminal.variables[0] in names]
 
 
 def shaft_inputs(component: type[Component]) -> tuple[str, ...]:
     """The inputs by which a component follows a shaft; none where it follows none."""
-    inputs = {v.name for v in variables_of(component) if v.causality == "input"}
-    terminals = (t for t in component.terminals if t.name == SHAFT.name and t.variables[0] in inputs)
-    return next((terminal.variables for terminal in terminals), ())
+    return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
 
 
 def shafts() -> list[str]:
@@ -134,5 +133,4 @@ def shafts() -> list[str]:
 
 def turns_others(component: type[Component]) -> bool:
     """Whether the outputs of a component are a shaft that others follow."""
-    outputs = {v.name for v in variables_of(component) if v.causality == "output"}
-    return any(t.name == SHAFT.name and t.variables[0] in outputs for t in component.terminals)
+    return any(terminal.name == SHAFT.name for terminal in _terminals(component, "output"))
