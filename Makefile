@@ -42,9 +42,9 @@ validation: .venv/installed
 # a package that needs no compiler for its stepper, on any platform
 wheel: .venv/installed
 	$(INSTALL) --editable .[native]
-	$(BIN)/python -c "from loomfmu.cosim.steppers import build_all; build_all()"
+	$(BIN)/python -c "from loomfmu.cosim.master.steppers import build_all; build_all()"
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
-	rm -r src/loomfmu/cosim/native/*/
+	rm -r src/loomfmu/cosim/master/native/*/
 
 .venv/created:
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"

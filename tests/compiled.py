@@ -6,8 +6,8 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from loomfmu.fmi.native_builder import SHELL
-from loomfmu.fmi.translate import translate
+from loomfmu.fmi.native.builder import SHELL
+from loomfmu.fmi.native.translate import translate
 from loomfmu.variables import Component, variables_of
 
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]

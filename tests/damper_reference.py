@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from loomfmu.components import HealdDamper
 from loomfmu.physics.damper import stop_damping_ratio
 from loomfmu.physics.heald import lift_fraction
-from loomfmu.physics.rotor import SLOPED_SINE, rotor_law
+from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 
 STROKE = 0.098  # m, the frame's default
 REDUCTION = 0.5

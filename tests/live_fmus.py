@@ -20,7 +20,7 @@ from fmpy.fmi2 import (
 from sharing import fmu_cache as fmu_cache
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 from loomfmu.variables import Component, variables_of
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)

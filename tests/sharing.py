@@ -8,9 +8,9 @@ import pytest
 from filelock import FileLock
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.cache import cache_directory
-from loomfmu.fmi.native_builder import host_platform
+from loomfmu.fmi.native.builder import host_platform
 
 
 def shared_directory(request: pytest.FixtureRequest, factory: pytest.TempPathFactory) -> Path:

@@ -8,7 +8,7 @@ from live_fmus import NAMES
 from loomfmu import LoomfmuError, catalogue
 from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.machines import HEADS, MACHINES
 from loomfmu.variables import variables_of
 

@@ -14,7 +14,7 @@ from live_fmus import NAMES, fmu_cache
 
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.cache import cache_directory
 
 __all__ = ["fmu_cache"]

@@ -24,8 +24,8 @@ from live_fmus import fmu_cache, in_a_process
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace, cli, units
-from loomfmu.cosim import fmus
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.traces import ROWS, TRACE, Channel, TraceWriter, damage
 from loomfmu.variables import variables_of
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .cosim.claims import judge
+    from .cosim.claims.claims import judge
     from .cosim.run import Evaluation, Result, evaluate, run
     from .errors import LoomfmuError
     from .sweeps.run import Sweep, sweep
@@ -17,7 +17,7 @@ _HOMES = {
     "Trace": "traces",
     "Verdict": "traces",
     "evaluate": "cosim.run",
-    "judge": "cosim.claims",
+    "judge": "cosim.claims.claims",
     "run": "cosim.run",
     "sweep": "sweeps.run",
 }

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from .components import COMPONENTS
 from .errors import LoomfmuError, suggestion
-from .fmi.documentation import limits_text, start_text
+from .fmi.description.documentation import limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .variables import Component, Variable, variables_of
 

@@ -167,8 +167,9 @@ def _overrides(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from .cosim import scene, ssp
-    from .fmi import native_builder
+    from .cosim.scenes import scene
+    from .cosim.ssp import export as ssp
+    from .fmi.native import builder as native_builder
 
     chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
     platforms = native_builder.check_platforms(tuple(chosen))
@@ -194,10 +195,10 @@ def _run(options: argparse.Namespace) -> int:
     if result.ended:
         print(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
-        turned, speed = _revolutions(f"{scene.revolutions:g}"), units.show(scene.speed, "rev/min")
+        turned, speed = _revolutions(f"{scene.periods:g}"), units.show(scene.speed, "rev/min")
         print(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
     else:
-        print(f"{scene.title}: {scene.revolutions:g} s in {scene.steps} steps of {scene.step:g} s")
+        print(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
     if options.explain:
         print("left out:", *(f"  {line}" for line in result.skipped), sep="\n")
     _print_verdicts(result.claims)
@@ -229,7 +230,8 @@ def _sweep(options: argparse.Namespace) -> int:
 
 def _build(options: argparse.Namespace) -> int:
     from .components import COMPONENTS
-    from .fmi import builder, native_builder
+    from .fmi import builder
+    from .fmi.native import builder as native_builder
 
     for name in options.names:
         if name not in COMPONENTS:

@@ -15,10 +15,10 @@ import numpy as np
 from own import Source, with_fmus
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.graph import step_order
-from loomfmu.cosim.scene import Scene
-from loomfmu.fmi import native_builder
-from loomfmu.fmi.translate import translate
+from loomfmu.cosim.scenes.graph import step_order
+from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.native.translate import translate
 
 HERE = Path(__file__).parent
 KINDS = ("Real", "Integer", "Boolean")

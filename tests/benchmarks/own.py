@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from records import ROOT
 
 import loomfmu
-from loomfmu.cosim import fmus
 from loomfmu.cosim import run as runs
-from loomfmu.cosim import scene as scenes
-from loomfmu.cosim.master import Master
-from loomfmu.cosim.scene import Scene
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.master.master import Master
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.traces import ROWS
 
 DEMO = ROOT / "sims" / "wl680_3600.toml"
@@ -102,7 +102,7 @@ class Ours:
         """Seconds for all but the steps, and for a revolution of them with its recording."""
         scene = self.source.scene(steps, turns)
         start = perf_counter()
-        with StopWatch(runs, "play") as stepping:
+        with StopWatch(runs, "record") as stepping:
             self.run(scene)
         whole = perf_counter() - start
         return Timing(whole - stepping.seconds, stepping.seconds / turns)

@@ -15,9 +15,9 @@ import numpy as np
 from children import Timing
 from own import Signals, Source
 
-from loomfmu.cosim import ssp
-from loomfmu.cosim.scene import Scene
-from loomfmu.fmi.native_builder import host_platform
+from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.cosim.ssp import export as ssp
+from loomfmu.fmi.native.builder import host_platform
 
 NOT_RUN = {
     "pyfmi": ("PyFMI", "not installable here: no wheel for this Python"),

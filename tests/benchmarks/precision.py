@@ -14,7 +14,7 @@ from peers import Ecos, Fmpy, Libcosim, absent
 from records import Notes, Row, Table, say
 from texts import Figures, Find, error, items, parts, pivot, shown, table
 
-from loomfmu.cosim.claims import judge
+from loomfmu.cosim.claims.claims import judge
 from loomfmu.traces import Channel, Recording
 from loomfmu.validation import plot_style
 

@@ -124,11 +124,11 @@ def test_a_configuration_that_cannot_be_run_is_named(make: Callable[[Path], None
 
 def test_results_of_one_benchmark_replace_its_own_alone(tmp_path: Path) -> None:
     columns = ("benchmark", "what", "why")
-    for name, why in (("cost", "a"), ("lean", "b"), ("cost", "c")):
+    for name, why in (("cost", "a"), ("pruning", "b"), ("cost", "c")):
         notes = records.Notes(name)
         notes("something", why)
         notes("something", why)
         records.replaced(tmp_path, "notes", name, notes.rows(), columns)
     assert [(row["benchmark"], row["why"]) for row in records.read(tmp_path, "notes")] == [
-        ("lean", "b"), ("cost", "c"),
+        ("pruning", "b"), ("cost", "c"),
     ]  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.scene import Scene
+from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.physics.belt import NO_LIMIT, length_factor
 
 Floats = NDArray[np.float64]

@@ -6,9 +6,9 @@ from typing import Any
 
 import cost
 import guard
-import lean
 import limits
 import precision
+import pruning
 import scaling
 import start_up
 import sweep_runs
@@ -26,7 +26,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     cost.NAME: ("Cost of a macro step", cost),
     scaling.NAME: ("Scaling", scaling),
     limits.NAME: ("How near to the limits", limits),
-    lean.NAME: ("Running only what is asked for", lean),
+    pruning.NAME: ("Running only what is requested", pruning),
     sweep_runs.NAME: ("Sweeps", sweep_runs),
     start_up.NAME: ("Start-up", start_up),
     writing.NAME: ("Writing traces", writing),

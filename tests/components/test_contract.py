@@ -20,7 +20,7 @@ from driving import (
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import standard_loom
+from loomfmu.cosim.scenes import standard_loom
 from loomfmu.variables import EXTREMES, MOTION, NOTHING
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)

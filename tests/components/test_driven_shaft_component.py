@@ -12,8 +12,8 @@ from looms import RPM
 from scipy.integrate import solve_ivp
 
 from loomfmu.components import COMPONENTS, DrivenShaft, WeftInsertion
-from loomfmu.cosim import scene as scenes
-from loomfmu.cosim.standard_loom import wires
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.standard_loom import wires
 from loomfmu.machines import parameters
 from loomfmu.physics.driven_shaft import driven_motion
 from loomfmu.variables import variables_of

@@ -12,7 +12,7 @@ from looms import RPM
 from scipy.interpolate import BPoly
 
 from loomfmu.components import HealdDamper, HealdFrame
-from loomfmu.physics.rotor import UNIFORM
+from loomfmu.physics.rotor_laws.rotor import UNIFORM
 
 SLOW, FAST = 200 * RPM, 600 * RPM
 

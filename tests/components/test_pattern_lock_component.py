@@ -5,7 +5,7 @@ from math import degrees, pi, radians
 import numpy as np
 import pytest
 
-from loomfmu.components.dobby_drive import DobbyDrive
+from loomfmu.components.dobby.drive import DobbyDrive
 from loomfmu.components.pattern_lock import PatternLock
 from loomfmu.physics.pattern_lock import UNLIMITED_TIME
 

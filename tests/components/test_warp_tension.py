@@ -15,7 +15,7 @@ from scipy.optimize import fsolve
 from loomfmu.components.heald_damper import HealdDamper
 from loomfmu.components.heald_frame import HealdFrame
 from loomfmu.components.warp_tension import WarpTension
-from loomfmu.physics.rotor import SLOPED_SINE, UNIFORM
+from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
 from loomfmu.variables import variables_of
 
 RPM = pi / 30.0

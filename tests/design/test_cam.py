@@ -15,7 +15,7 @@ from loomfmu.design.cam_export import cutter_moves, gcode, write_csv, write_dxf
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import table
 from loomfmu.physics.heald import lift_fraction
-from loomfmu.physics.rotor import SLOPED_SINE, rotor_law
+from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 
 ROUND, OFF = 0.1, 0.015  # m: a round cam and how far off its axis it turns
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import HEADS, MACHINES, table

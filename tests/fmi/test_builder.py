@@ -16,8 +16,10 @@ import pytest
 from live_fmus import COMPONENTS, NAMES, fmu_cache, in_a_process
 
 from loomfmu import LoomfmuError, components
-from loomfmu.cosim import fmus
-from loomfmu.fmi import builder, documentation, live_slave, live_wrapper
+from loomfmu.cosim.importing import fmus
+from loomfmu.fmi import builder
+from loomfmu.fmi.description import documentation
+from loomfmu.fmi.live import live_slave, live_wrapper
 from loomfmu.fmi.references import SAMPLES, STEP_SIZE, reference, write_references
 from loomfmu.fmi.source import SourceError, flatten
 from loomfmu.variables import Component, output, parameter, variables_of

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from live_fmus import in_a_process
 
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 from loomfmu.fmi import builder
 from loomfmu.fmi.cache import cache_directory, compiler_environment
 

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 import pytest
 from sharing import native_fmus
 
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 
 
 @pytest.fixture(scope="session")

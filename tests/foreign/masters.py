@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from loomfmu.cosim import scene as scenes
-from loomfmu.cosim import ssp
 from loomfmu.cosim.run import run
-from loomfmu.cosim.scene import Scene
-from loomfmu.fmi.native_builder import host_platform
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.cosim.ssp import export as ssp
+from loomfmu.fmi.native.builder import host_platform
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
 Signals = dict[str, NDArray[np.float64]]

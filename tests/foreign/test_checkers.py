@@ -9,8 +9,8 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import ssp
-from loomfmu.cosim.fmus import Fmu
+from loomfmu.cosim.importing.fmus import Fmu
+from loomfmu.cosim.ssp import export as ssp
 
 
 @pytest.mark.parametrize("name", COMPONENTS)

@@ -8,9 +8,9 @@ import pytest
 from masters import oms_library
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import scene as scenes
 from loomfmu.cosim.run import run
-from loomfmu.fmi.native_builder import build_native, host_platform
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.fmi.native.builder import build_native, host_platform
 from loomfmu.variables import variables_of
 
 PARTS = {"shaft": "MainShaft", "dobby": "DobbyDrive", "heald_1": "HealdFrame"}

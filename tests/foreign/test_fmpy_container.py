@@ -10,7 +10,7 @@ from fmpy.container_fmu.config import Component, Configuration, Connection
 from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, ModelVariable
 
 from loomfmu.components import WeftInsertion
-from loomfmu.fmi.native_builder import build_native, host_platform
+from loomfmu.fmi.native.builder import build_native, host_platform
 
 SHAFT = ("angle", "velocity", "acceleration")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from masters import MASTERS, demo, ours
 
-from loomfmu.cosim.fmus import Fmu
+from loomfmu.cosim.importing.fmus import Fmu
 
 ALONE = {"speed": "600 rpm", "follow_shaft": "false"}
 # power of the step with which the delay of one step on each wire shows: inputs are carried over the step with

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from loomfmu.components import WeftInsertion
-from loomfmu.cosim.fmus import Fmu
+from loomfmu.cosim.importing.fmus import Fmu
 
 SPEED = 20.0 * np.pi  # 600 rev/min
 

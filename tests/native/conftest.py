@@ -9,7 +9,7 @@ import pytest
 from natives import Native
 from sharing import native_fmus
 
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ from typing import Any
 from fmpy import calloc, free, platform
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.fmus import Fmu
+from loomfmu.cosim.importing.fmus import Fmu
 from loomfmu.variables import NOTHING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)

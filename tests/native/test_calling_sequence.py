@@ -113,7 +113,7 @@ def test_every_function_in_every_state(native, state):
 def test_the_table_is_complete(built):
     import re
 
-    from loomfmu.fmi.native_builder import HEADERS
+    from loomfmu.fmi.native.builder import HEADERS
 
     header = (HEADERS / "fmi2Functions.h").read_text()
     everywhere = {"GetTypesPlatform", "GetVersion", "Instantiate", "FreeInstance"}

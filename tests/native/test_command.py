@@ -5,7 +5,7 @@ import zipfile
 import pytest
 
 from loomfmu import cli
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 
 
 def test_build_native(tools, fmu_cache, tmp_path, capsys, monkeypatch):
@@ -37,7 +37,7 @@ def test_what_cannot_be_built_is_said_in_one_line(capsys, arguments, complaint):
 
 
 def test_a_missing_compiler_is_named(tools, tmp_path, capsys, monkeypatch):
-    from loomfmu.fmi import native_builder
+    from loomfmu.fmi.native import builder as native_builder
 
     monkeypatch.setattr(native_builder, "find_spec", lambda _name: None)
     native_builder._compiler.cache_clear()

@@ -19,8 +19,8 @@ from natives import MEMORYLESS
 from natives3 import DISCARD, ERROR, OK, TIME, TYPES, Native3, Unpacked3
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi import native_builder
 from loomfmu.fmi.builder import guid
+from loomfmu.fmi.native import builder as native_builder
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

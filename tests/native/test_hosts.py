@@ -13,7 +13,7 @@ from fmpy import platform
 from natives import MEMORYLESS
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi.native_builder import HEADERS, sources
+from loomfmu.fmi.native.builder import HEADERS, sources
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

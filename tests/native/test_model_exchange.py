@@ -12,7 +12,7 @@ from driving import assign, drawn_inputs
 from natives import ERROR, MEMORYLESS, OK, Native
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi import native_builder
+from loomfmu.fmi.native import builder as native_builder
 from loomfmu.variables import variables_of
 
 solved = pytest.mark.parametrize("name", MEMORYLESS)

@@ -13,11 +13,11 @@ from fmpy.validation import validate_fmu
 from natives import MEMORYLESS, library
 
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import fmus
+from loomfmu.cosim.importing import fmus
 from loomfmu.errors import LoomfmuError
-from loomfmu.fmi import native_builder
 from loomfmu.fmi.builder import guid
-from loomfmu.fmi.fat_binary import ALIGNMENT, fat_binary
+from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

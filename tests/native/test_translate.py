@@ -12,10 +12,10 @@ import toys
 from compiled import WARNINGS, compiled, library
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi import translate as translating
-from loomfmu.fmi.native_builder import sources
-from loomfmu.fmi.native_tables import tables
-from loomfmu.fmi.translate import TranslationError, translate
+from loomfmu.fmi.native import translate as translating
+from loomfmu.fmi.native.builder import sources
+from loomfmu.fmi.native.tables import tables
+from loomfmu.fmi.native.translate import TranslationError, translate
 from loomfmu.variables import Problem, variables_of
 
 HELPERS = """

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi import builder, native_builder
+from loomfmu.fmi import builder
+from loomfmu.fmi.native import builder as native_builder
 from loomfmu.variables import variables_of
 
 WINE = shutil.which("wine64") or shutil.which("wine") or shutil.which("/usr/lib/wine/wine64")

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from reference import MP
 
-from loomfmu.physics.motion import joined
+from loomfmu.physics.numerics.motion import joined
 from loomfmu.physics.warp import (
     constant_rate_force,
     eye_pull,

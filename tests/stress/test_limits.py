@@ -14,7 +14,7 @@ from whole_loom import TURN
 
 from loomfmu.components import COMPONENTS, BeltMonitor, BeltWrap, DobbyDrive, PatternLock, WarpTension
 from loomfmu.physics.belt import NO_LIMIT, elastica_deflection, length_factor
-from loomfmu.physics.rotor import dwell_angle
+from loomfmu.physics.rotor_laws.rotor import dwell_angle
 from loomfmu.variables import Component, Variable
 
 MP = mpmath.mp.clone()

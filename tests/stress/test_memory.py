@@ -11,7 +11,7 @@ import os, sys, tempfile
 import psutil
 import loomfmu
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scenes import scene as scenes
 
 runs, warm_up = int(sys.argv[1]), int(sys.argv[2])
 stems = {"shaft", "weft", "belt", "dobby", "heald", "damper"}

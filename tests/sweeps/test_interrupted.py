@@ -14,7 +14,7 @@ from live_fmus import fmu_cache
 from sweep_files import NO_TRACES, started, written
 
 import loomfmu
-from loomfmu.cosim.master import Interrupted
+from loomfmu.cosim.master.master import Interrupted
 
 __all__ = ["fmu_cache"]
 

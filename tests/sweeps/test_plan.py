@@ -11,7 +11,7 @@ from scipy.stats import qmc
 from sweep_files import HEAD, SCENE, written
 
 from loomfmu import LoomfmuError
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.machines import parameters
 from loomfmu.sweeps import plan as plans
 
@@ -20,11 +20,11 @@ __all__ = ["fmu_cache"]
 RPM = math.pi / 30.0
 
 
-def plan(directory: Path, text: str, scene: str = SCENE) -> plans.Plan:
+def plan(directory: Path, text: str, scene: str = SCENE) -> plans.SweepPlan:
     return plans.load(written(directory, text, scene))
 
 
-def column(found: plans.Plan, key: str) -> list[object]:
+def column(found: plans.SweepPlan, key: str) -> list[object]:
     values: list[object] = found.columns(np.arange(found.rows))[key].tolist()
     return values
 

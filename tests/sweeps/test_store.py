@@ -18,7 +18,7 @@ from sweep_files import written
 
 from loomfmu import LoomfmuError
 from loomfmu.sweeps import plan as plans
-from loomfmu.sweeps.plan import Plan
+from loomfmu.sweeps.plan import SweepPlan
 from loomfmu.sweeps.store import Store, opened
 from loomfmu.sweeps.tables import table_of, whole_table
 from loomfmu.sweeps.worker import Batch, Label
@@ -33,7 +33,7 @@ ROWS = 24
 
 
 @pytest.fixture
-def plan(tmp_path: Path) -> Plan:
+def plan(tmp_path: Path) -> SweepPlan:
     return plans.load(
         written(tmp_path, f'[grid]\n"shaft.speed" = {{ from = 40.0, to = 63.0, count = {ROWS} }}\n')
     )
@@ -69,7 +69,9 @@ def parts(cuts: set[int]) -> list[range]:
 
 @given(cuts=st.sets(st.integers(1, ROWS - 1)), order=st.randoms(use_true_random=False))
 @settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_the_table_is_the_same_whatever_the_batches_were(plan: Plan, cuts: set[int], order: object) -> None:
+def test_the_table_is_the_same_whatever_the_batches_were(
+    plan: SweepPlan, cuts: set[int], order: object
+) -> None:
     whole = whole_table(plan, [table_of(plan, range(ROWS), batch(range(ROWS)))])
     pieces = [table_of(plan, rows, batch(rows)) for rows in parts(cuts)]
     order.shuffle(pieces)  # type: ignore[attr-defined]
@@ -83,7 +85,7 @@ def test_the_table_is_the_same_whatever_the_batches_were(plan: Plan, cuts: set[i
 
 @given(cuts=st.sets(st.integers(1, ROWS - 1)), kept=st.sets(st.integers(0, ROWS)))
 @settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_what_is_left_is_what_is_not_done(plan: Plan, cuts: set[int], kept: set[int]) -> None:
+def test_what_is_left_is_what_is_not_done(plan: SweepPlan, cuts: set[int], kept: set[int]) -> None:
     store = Store(plan.path.parent / "there", plan)
     store.batches.mkdir(parents=True, exist_ok=True)
     for path in store.batches.iterdir():
@@ -96,7 +98,7 @@ def test_what_is_left_is_what_is_not_done(plan: Plan, cuts: set[int], kept: set[
     assert sorted(rows_done + rows_left) == list(range(ROWS))
 
 
-def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: Plan, tmp_path: Path) -> None:
+def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: SweepPlan, tmp_path: Path) -> None:
     place = tmp_path / "results"
     with opened(place, plan, "one", restart=False) as store:
         store.write(range(0, 10), batch(range(0, 10)))
@@ -119,7 +121,7 @@ def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: Plan, 
     }  # fmt: skip
 
 
-def test_a_batch_that_cannot_be_read_is_named(plan: Plan, tmp_path: Path) -> None:
+def test_a_batch_that_cannot_be_read_is_named(plan: SweepPlan, tmp_path: Path) -> None:
     with opened(tmp_path / "results", plan, "one", restart=False) as store:
         store.write(range(0, 12), batch(range(0, 12)))
         store._path(range(12, 24)).write_bytes(b"nonsense")
@@ -127,7 +129,7 @@ def test_a_batch_that_cannot_be_read_is_named(plan: Plan, tmp_path: Path) -> Non
             store.finish()
 
 
-def test_rows_that_are_there_twice_are_refused(plan: Plan, tmp_path: Path) -> None:
+def test_rows_that_are_there_twice_are_refused(plan: SweepPlan, tmp_path: Path) -> None:
     with opened(tmp_path / "results", plan, "one", restart=False) as store:
         for rows in (range(0, 12), range(10, 24)):
             store.write(rows, batch(rows))
@@ -135,7 +137,7 @@ def test_rows_that_are_there_twice_are_refused(plan: Plan, tmp_path: Path) -> No
             store.finish()
 
 
-def test_another_sweep_is_refused_until_it_is_thrown_away(plan: Plan, tmp_path: Path) -> None:
+def test_another_sweep_is_refused_until_it_is_thrown_away(plan: SweepPlan, tmp_path: Path) -> None:
     place = tmp_path / "results"
     with opened(place, plan, "one", restart=False) as store:
         store.write(range(0, 24), batch(range(0, 24)))
@@ -158,7 +160,7 @@ def test_another_sweep_is_refused_until_it_is_thrown_away(plan: Plan, tmp_path: 
     "name",
     ["table.parquet", "map.png", "sweep.json", "batches/rows_000000_000009.parquet", "traces/row_1.h5"],
 )
-def test_what_no_sweep_wrote_is_left_alone(plan: Plan, tmp_path: Path, name: str, restart: bool) -> None:
+def test_what_no_sweep_wrote_is_left_alone(plan: SweepPlan, tmp_path: Path, name: str, restart: bool) -> None:
     place = tmp_path / "results"
     (place / name).parent.mkdir(parents=True)
     (place / name).write_bytes(b"mine")
@@ -170,7 +172,7 @@ def test_what_no_sweep_wrote_is_left_alone(plan: Plan, tmp_path: Path, name: str
 
 
 def test_a_full_disk_is_told_with_the_files_name_and_leaves_no_lock(
-    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    plan: SweepPlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     place = tmp_path / "results"
 
@@ -197,7 +199,9 @@ with _locked(Path(sys.argv[1])):
 """
 
 
-def test_a_second_sweep_is_kept_out_and_a_killed_one_is_not_in_the_way(plan: Plan, tmp_path: Path) -> None:
+def test_a_second_sweep_is_kept_out_and_a_killed_one_is_not_in_the_way(
+    plan: SweepPlan, tmp_path: Path
+) -> None:
     place = tmp_path / "results"
     place.mkdir()
     command = [sys.executable, "-c", HOLDER, str(place)]

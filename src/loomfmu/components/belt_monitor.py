@@ -4,15 +4,8 @@ from dataclasses import dataclass
 from math import fabs, pi
 from typing import ClassVar
 
-from ..physics.belt import (
-    NO_LIMIT,
-    critical_force,
-    elastica_deflection,
-    length_factor,
-    margin,
-    speed_limit,
-)
-from ..physics.motion import (
+from ..physics.belt import NO_LIMIT, critical_force, elastica_deflection, length_factor, margin, speed_limit
+from ..physics.numerics.motion import (
     above_noise,
     bent,
     bump_noise,

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..physics.damper import propagate, stop_damping_ratio
 from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
-from ..physics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
+from ..physics.numerics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
 from ..variables import Component, Problem, Terminal, input_, output, parameter, state
 from .terminals import FRAME
 

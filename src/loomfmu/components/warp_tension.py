@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..physics.motion import joined
+from ..physics.numerics.motion import joined
 from ..physics.shaft import carried
 from ..physics.warp import (
     eye_pull,

@@ -4,13 +4,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
-from ..physics.linkage import (
-    four_bar_margin,
-    spherical_margin,
-    spherical_rocker,
-    weft_motion,
-    wrapped,
-)
+from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
 from ..variables import NOTHING, Problem, Terminal, output, parameter, state
 from .shaft_driven import TOO_FAR, ShaftDriven

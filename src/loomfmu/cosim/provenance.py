@@ -4,11 +4,11 @@ import json
 import shlex
 from typing import Any
 
-from .fmus import Fmu
-from .instances import Instance
-from .lean import effective
-from .play import Plan
-from .scene import Scene
+from .importing.fmus import Fmu
+from .planning.plan import Plan
+from .planning.pruning import effective
+from .scenes.instances import Instance
+from .scenes.scene import Scene
 
 
 def attributes(plan: Plan, flavour: str) -> dict[str, str]:
@@ -18,7 +18,7 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
     scene, as texts that `--set` takes; `command` repeats the run.
     """
     scene = plan.scene
-    fmus = _fmus(plan.lean.scene)
+    fmus = _fmus(plan.pruned.scene)
     return {
         "title": scene.title,
         "scene": scene.text,
@@ -28,9 +28,9 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         "flavour": flavour,
         **_command(scene, flavour),
         **(
-            {"revolutions": f"{scene.revolutions!r}", "steps_per_revolution": str(scene.steps_per_revolution)}
+            {"revolutions": f"{scene.periods!r}", "steps_per_revolution": str(scene.steps_per_period)}
             if scene.step is None
-            else {"duration": f"{scene.revolutions!r} s", "step": f"{scene.step!r} s"}
+            else {"duration": f"{scene.periods!r} s", "step": f"{scene.step!r} s"}
         ),
         "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
@@ -44,7 +44,7 @@ def groups(plan: Plan) -> dict[str, dict[str, Any]]:
     instances = plan.scene.instances
     return {
         name: _said(instances[name], list(values)) | values
-        for name, values in effective(plan.scene, plan.lean).items()
+        for name, values in effective(plan.scene, plan.pruned).items()
     }
 
 

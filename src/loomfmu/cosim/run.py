@@ -11,21 +11,21 @@ from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..files import cannot_write, check_target
 from ..traces import PARTIAL, TRACE, Recording, Trace, TraceWriter, partial_of
 from ..traces.disk import check_room, largest, size_text
-from . import scene as scenes
-from . import ssp_read
-from .asked import checked_claims, judged_by, output_port, recorded, shaft_angle, with_rates
-from .claims import judge
-from .fmus import FLAVOURS, of_component
-from .grid import Grid, uniform
-from .inputs import files_of
-from .lean import lean
-from .master import Interrupted, Master
-from .play import Plan, channels, play, remembered
+from .claims.claims import judge
+from .claims.verdict import Verdict
+from .importing.fmus import FLAVOURS, of_component
+from .importing.slave import Ended
+from .master.grid import Grid, uniform
+from .master.master import Interrupted, Master
+from .planning.plan import Plan, channels, in_memory, record
+from .planning.pruning import prune
+from .planning.requested import checked_claims, judged_by, output_port, recorded, shaft_angle, with_rates
+from .planning.windows import window_grid
 from .provenance import attributes, groups
-from .scene import WINDOWS, Scene
-from .slave import Ended
-from .verdict import Verdict
-from .windows import window_grid
+from .scenes import scene as scenes
+from .scenes.scene import WINDOWS, Scene
+from .scenes.scene_files import files_of
+from .ssp import read as ssp_read
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
 SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: another one would say that it is something else
@@ -110,7 +110,7 @@ def run(
     scene = _checked(scene, set, flavour)
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     signals = recorded(scene)
-    plan = Plan(scene, lean(scene, signals), _grid(scene, signals))
+    plan = Plan(scene, prune(scene, signals), _grid(scene, signals))
     _check_target(plan, path, overwrite, progress)
     with plan.master() as master:
         master.initialize()
@@ -119,7 +119,7 @@ def run(
         writer = _writer(plan, master, path, flavour)
         try:
             with _bar(plan, progress) as advance:
-                play(master, writer, advance)
+                record(master, writer, advance)
             if master.interrupted.value:
                 raise Interrupted
         except Interrupted:
@@ -160,7 +160,7 @@ def evaluate(
     scene = _checked(scene, set, flavour)
     wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
     grid = _grid(scene, wanted)
-    found = remembered(scene, wanted, grid)
+    found = in_memory(scene, wanted, grid)
     verdicts = tuple(judge(found.recording, **claim) for claim in scene.claims)
     warnings = (*scene.notes, *found.warnings)
     return Evaluation(
@@ -197,9 +197,9 @@ def _grid(scene: Scene, signals: Sequence[str]) -> Grid:
 
 def explained(plan: Plan) -> tuple[str, ...]:
     """What a run leaves out and why, and what that saves."""
-    kept, whole = len(plan.lean.scene.instances), len(plan.scene.instances)
+    kept, whole = len(plan.pruned.scene.instances), len(plan.scene.instances)
     taken, usual = plan.grid.steps, plan.scene.steps
-    lines = [*plan.lean.skipped, *plan.grid.notes]
+    lines = [*plan.pruned.skipped, *plan.grid.notes]
     done, full = kept * taken + plan.grid.scouted, whole * usual
     if not done:
         saved = "none left"

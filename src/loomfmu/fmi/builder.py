@@ -14,11 +14,12 @@ from .. import units
 from ..components import COMPONENTS
 from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
-from . import documentation, live_slave, live_wrapper
-from .model_description import FIRST_REFERENCE, FMI_TYPES, model_description
-from .parameter_sets import parameter_files, parameter_note
+from .description import documentation
+from .description.model_description import FIRST_REFERENCE, FMI_TYPES, model_description
+from .description.parameter_sets import parameter_files, parameter_note
+from .description.terminals import terminal_files
+from .live import live_slave, live_wrapper
 from .source import flatten
-from .terminals import terminal_files
 
 FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .. import units
 from ..files import PICTURE, write_file
 from .axes import Axis
-from .plan import Plan
+from .plan import SweepPlan
 from .ranking import distance
 from .tables import labels_of
 
@@ -63,7 +63,7 @@ class _Scale:
         return np.exp(edges) if self.logarithmic else edges
 
 
-def draw(plan: Plan, table: Any, path: Path) -> Path | None:
+def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     """Draw what a plan asks for; nothing if no row has a value there."""
     assert plan.map is not None
     request = plan.map
@@ -106,7 +106,7 @@ def _labelled(words: str, display: str, unit: str) -> str:
     return words if shown == "1" else f"{words} [{shown}]"
 
 
-def _scale(plan: Plan, table: Any, key: str, chosen: NDArray[np.bool_]) -> _Scale:
+def _scale(plan: SweepPlan, table: Any, key: str, chosen: NDArray[np.bool_]) -> _Scale:
     axis: Axis = next(axis for axis in plan.axes if axis.key == key)
     column = [value for value, wanted in zip(table[key].to_pylist(), chosen, strict=True) if wanted]
     if axis.numeric:
@@ -122,7 +122,7 @@ def _scale(plan: Plan, table: Any, key: str, chosen: NDArray[np.bool_]) -> _Scal
 class _Picture:
     """A figure of some rows: their values, and how far each is beyond the bounds of the claims."""
 
-    def __init__(self, plan: Plan, values: Floats, label: str, distances: list[tuple[str, Floats]]):
+    def __init__(self, plan: SweepPlan, values: Floats, label: str, distances: list[tuple[str, Floats]]):
         self.values = values
         self.label = label
         self.distances = distances

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosim import scene as scenes
-from ..cosim import ssp_read
-from ..cosim.asked import checked_claims, output_port
-from ..cosim.fmus import FLAVOURS, Port
-from ..cosim.scene import Scene
+from ..cosim.importing.fmus import FLAVOURS, Port
+from ..cosim.planning.requested import checked_claims, output_port
+from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.scene import Scene
+from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of
 from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
@@ -32,7 +32,7 @@ class Traces:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SweepPlan:
     """What a sweep runs. Row numbers count the grid, its last axis fastest, then the points of the sample."""
 
     title: str
@@ -91,7 +91,7 @@ class Plan:
         return output_port(self.scene, signal, "values")
 
 
-def load(path: str | Path) -> Plan:
+def load(path: str | Path) -> SweepPlan:
     """Read a sweep file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
     path = Path(path)
     text = text_of(path)
@@ -107,7 +107,7 @@ def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
     return reader(path, fixed)
 
 
-def _parse(text: str, path: Path) -> Plan:
+def _parse(text: str, path: Path) -> SweepPlan:
     tables = scenes.toml(text)
     for key in tables:
         if key not in KEYS:
@@ -125,7 +125,7 @@ def _parse(text: str, path: Path) -> Plan:
     values = _values(scene, tables.get("values", []), [*grid, *sample])
     columns = [*values, *(f"claim_{number + 1}.worst" for number in range(len(scene.claims)))]
     request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
-    plan = Plan(
+    plan = SweepPlan(
         title=str(tables.get("title", path.stem)), name=path.stem, text=text, path=scene_path, scene=scene,
         flavour=flavour, fixed=fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
         traces=_traces(tables.get("traces", {})), map=request,

@@ -10,10 +10,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..cosim.inputs import files_of
+from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, path_of, shown
 from . import plan as plans
-from .plan import Plan
+from .plan import SweepPlan
 from .pools import Here, Pool, Processes, Task
 from .schedule import run_batches
 from .worker import Batch, Job, job_of, run_trace
@@ -33,7 +33,7 @@ class Sweep:
     before, `map` the picture if one was asked for, `traces` the full traces of single rows.
     """
 
-    plan: Plan
+    plan: SweepPlan
     table: Any
     path: Path
     ran: int
@@ -141,7 +141,7 @@ def _check_packages(path: Path, used: dict[str, bool]) -> None:
         raise LoomfmuError(f'{path}: this needs {" and ".join(missing)}: pip install "loomfmu[{extras}]"')
 
 
-def _fingerprint(plan: Plan, job: Job) -> str:
+def _fingerprint(plan: SweepPlan, job: Job) -> str:
     """What tells a sweep from others: its text, its points, and all that its results depend on."""
     digest = hashlib.sha256(f"{plan.text}\0{job.identity}".encode())
     for axis in plan.axes:  # a sample may be another with another scipy

@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterable
 
-from .plan import Plan
+from .plan import SweepPlan
 from .pools import Died, Pool, Task
 from .worker import Batch, Job, failed, run_rows
 
@@ -80,7 +80,7 @@ class Schedule:
 
 
 def run_batches(
-    plan: Plan, job: Job, left: Iterable[range], pool: Pool, store: Callable[[range, Batch], None]
+    plan: SweepPlan, job: Job, left: Iterable[range], pool: Pool, store: Callable[[range, Batch], None]
 ) -> None:
     """Run all rows that are left and store each batch as it is done.
 

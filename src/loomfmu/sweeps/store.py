@@ -22,7 +22,7 @@ import pyarrow.parquet as pq
 
 from ..errors import LoomfmuError
 from ..files import ANY, cannot_write, check_target
-from .plan import Plan
+from .plan import SweepPlan
 from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
@@ -35,7 +35,7 @@ FAR = 1 << 30  # where Windows locks a byte: a locked byte cannot be read
 class Store:
     """The batches of one sweep. Make it with `opened`."""
 
-    def __init__(self, directory: Path, plan: Plan):
+    def __init__(self, directory: Path, plan: SweepPlan):
         self.directory = directory
         self.plan = plan
         self.batches = directory / "batches"
@@ -125,7 +125,7 @@ class Store:
 
 @contextlib.contextmanager
 def opened(
-    directory: Path, plan: Plan, fingerprint: str, restart: bool, inputs: Iterable[Path] = ()
+    directory: Path, plan: SweepPlan, fingerprint: str, restart: bool, inputs: Iterable[Path] = ()
 ) -> Iterator[Store]:
     """The store of a sweep, ours alone, with what was finished before. None of `inputs` is written.
 

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from ..cosim.fmus import Port
+from ..cosim.importing.fmus import Port
 from .axes import Axis
-from .plan import Plan
+from .plan import SweepPlan
 from .worker import Batch, Label
 
 TYPES = {"Real": pa.float64(), "Integer": pa.int64(), "Boolean": pa.bool_(), "Text": pa.string()}
@@ -27,7 +27,7 @@ def claim_columns(number: int) -> tuple[str, str, str]:
     return f"claim_{number + 1}.holds", f"claim_{number + 1}.worst", f"claim_{number + 1}.bound"
 
 
-def table_of(plan: Plan, rows: range, batch: Batch) -> Any:
+def table_of(plan: SweepPlan, rows: range, batch: Batch) -> Any:
     """The part of the table that a batch is."""
     numbers = np.arange(rows.start, rows.stop)
     columns = [numbers, *plan.columns(numbers).values(), *_transposed(batch.results)]
@@ -45,7 +45,7 @@ def _transposed(results: list[list[Any]]) -> list[list[Any]]:
     return [list(column) for column in zip(*results, strict=True)]
 
 
-def schema_of(plan: Plan, labels: tuple[Label, ...]) -> Any:
+def schema_of(plan: SweepPlan, labels: tuple[Label, ...]) -> Any:
     """Columns with their units, and what the table says of itself; a claim's unit only if it has a label."""
     fields = [
         pa.field("row", pa.int64(), metadata={"description": "Number of the combination"}),
@@ -85,7 +85,7 @@ def labels_of(table: Any) -> tuple[Label, ...]:
     return tuple(Label(**each) for each in json.loads(table.schema.metadata[b"claims"]))
 
 
-def whole_table(plan: Plan, parts: list[Any]) -> Any:
+def whole_table(plan: SweepPlan, parts: list[Any]) -> Any:
     """The parts as one table, sorted by row, the same whatever the parts were."""
     labels = next((found for part in parts if (found := labels_of(part))), ())
     schema = schema_of(plan, labels)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import units
-from ..cosim.fmus import Port
-from ..cosim.instances import (
+from ..cosim.importing.fmus import Port
+from ..cosim.scenes.instances import (
     COARSE,
     FILES,
     PARAMETER_SETS,
@@ -17,7 +17,7 @@ from ..cosim.instances import (
     overridden,
     unit_of,
 )
-from ..cosim.scene import Scene, check_free
+from ..cosim.scenes.scene import Scene, check_free
 from ..errors import LoomfmuError
 from ..machines import TAKERS, named
 

@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from .. import machines
-from ..cosim.fmus import of_component
-from ..cosim.master import Interrupted
+from ..cosim.claims.verdict import Verdict
+from ..cosim.importing.fmus import of_component
+from ..cosim.master.master import Interrupted
 from ..cosim.run import evaluate, run
-from ..cosim.scene import Scene
-from ..cosim.verdict import Verdict
+from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
-from .plan import Plan, read_scene
+from .plan import SweepPlan, read_scene
 
 # the threads of one process share the instances that rest between runs: they take turns
 _turn = threading.Lock()
@@ -60,7 +60,7 @@ class Batch:
     seconds: float
 
 
-def job_of(plan: Plan) -> Job:
+def job_of(plan: SweepPlan) -> Job:
     """What workers are told of a plan."""
     return Job(
         plan.path, tuple(plan.fixed.items()), plan.flavour, plan.values, identity(plan.scene, plan.flavour)

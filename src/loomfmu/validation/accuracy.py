@@ -7,7 +7,7 @@ import numpy as np
 from ..components.belt_monitor import BeltMonitor
 from ..components.weft_insertion import WeftInsertion
 from ..machines import parameters
-from ..physics.rotor import SLOPED_SINE, UNIFORM, dwell_angle
+from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, dwell_angle
 from . import belt
 from .chain import RPM, HealdLine
 from .damper_reference import reference, simulated

@@ -5,10 +5,10 @@ from functools import cache
 
 import numpy as np
 
-from ..components.dobby_drive import DobbyDrive
+from ..components.dobby.drive import DobbyDrive
 from ..design.cam import Cam, design_cam, published_path
 from ..machines import table
-from ..physics.shed_cam import SPLINE_CAM
+from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from .sections import Pair, Row, Section, number
 
 FRAME = 6.0  # travel of the frame over the height of the warp, Appendix 2

@@ -2,11 +2,11 @@
 
 import math
 
-from ..components.dobby_drive import DobbyDrive
+from ..components.dobby.drive import DobbyDrive
 from ..components.heald_damper import HealdDamper
 from ..components.heald_frame import HealdFrame
 from ..components.warp_tension import WarpTension
-from ..physics.rotor import SLOPED_SINE
+from ..physics.rotor_laws.rotor import SLOPED_SINE
 
 RPM = math.pi / 30.0
 

@@ -4,18 +4,12 @@ import math
 
 import numpy as np
 
-from ..components.dobby_drive import DobbyDrive
+from ..components.dobby.drive import DobbyDrive
 from ..components.warp_tension import WarpTension
 from ..design.cam import TURN, published_path
 from ..machines import table
-from ..physics.pattern_lock import (
-    available_time,
-    largest_bend,
-    pawl_turn,
-    release_time,
-    torque_speed_limit,
-)
-from ..physics.shed_cam import SPLINE_CAM
+from ..physics.pattern_lock import available_time, largest_bend, pawl_turn, release_time, torque_speed_limit
+from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..physics.warp import constant_rate_force
 from . import cam, lock
 from .sections import Row, Section, number

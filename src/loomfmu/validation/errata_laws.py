@@ -2,8 +2,8 @@
 
 import math
 
-from ..physics.rotor import harmonic_ends, rotor_law, sloped_line, sloped_sine
-from ..physics.rotor_mechanisms import noncircular_gears, slotted_levers
+from ..physics.rotor_laws.mechanisms import noncircular_gears, slotted_levers
+from ..physics.rotor_laws.rotor import harmonic_ends, rotor_law, sloped_line, sloped_sine
 from .sections import Row, Section, number
 
 ZETA = 0.7

@@ -11,7 +11,7 @@ from ..components.warp_tension import WarpTension
 from ..design import loom
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics.belt import elastica_deflection
-from ..physics.rotor import SLOPED_SINE, UNIFORM, rotor_law
+from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, rotor_law
 from . import belt, cam, rotor
 from .chain import RPM, carrier
 from .sections import Chapter, Row, Section, number

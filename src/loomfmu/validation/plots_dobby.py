@@ -7,7 +7,7 @@ import numpy as np
 
 from ..components.heald_damper import HealdDamper
 from ..machines import table
-from ..physics.rotor import dwell_angle
+from ..physics.rotor_laws.rotor import dwell_angle
 from . import cam, rotor
 from .chain import HealdLine
 from .plot_style import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw

@@ -3,10 +3,10 @@
 import math
 from functools import cache
 
-from ..components.dobby_drive import DobbyDrive
+from ..components.dobby.drive import DobbyDrive
 from ..machines import table
 from ..physics.heald import lift_fraction
-from ..physics.rotor import HARMONIC_ENDS, SLOPED_LINE, SLOPED_SINE, UNIFORM, dwell_angle
+from ..physics.rotor_laws.rotor import HARMONIC_ENDS, SLOPED_LINE, SLOPED_SINE, UNIFORM, dwell_angle
 from .sections import Pair, Row, Section, number
 
 LAWS = {

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..components.heald_damper import HealdDamper
 from ..components.warp_tension import WarpTension
 from ..physics.damper import design_stiffness
-from ..physics.rotor import SLOPED_SINE, UNIFORM
+from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
 from .chain import HealdLine
 from .sections import Pair, Row, Section, number
 

@@ -1,0 +1,1 @@
+"""The dobby drive: its law's parameters, the laws, the FMU."""

@@ -1,0 +1,265 @@
+"""The rotor laws of a dobby drive: their course, their peaks and their dwells."""
+
+from dataclasses import dataclass
+from math import asin, fabs, floor, pi, sqrt
+from typing import ClassVar
+
+from ...physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
+from ...physics.rotor_laws.mechanisms import (
+    NONCIRCULAR_GEARS,
+    SLOTTED_LEVERS,
+    gear_speed_extremes,
+    noncircular_gears,
+    slotted_levers,
+)
+from ...physics.rotor_laws.rotor import dwell_angle, rotor_law
+from ...physics.rotor_laws.shed_cam import SPLINE_CAM, not_a_knot
+from ...physics.rotor_laws.table import TABLE, bend_weight
+from ...variables import Problem
+from ..shaft_driven import TOO_FAR
+from .parameters import LawParameters
+
+
+@dataclass(slots=True)
+class RotorLaws(LawParameters):
+    """A rotor that turns by one of several laws."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "eccentricity = {eccentricity} reaches or exceeds lever_radius = {lever_radius} or driven_radius"
+            " = {driven_radius}: the levers do not go round; it must be smaller than both"
+        ),
+        Problem(
+            "the rotor turns back or stops: by gear_harmonic_1 = {gear_harmonic_1} to gear_harmonic_4 ="
+            " {gear_harmonic_4} its lowest speed is {lowest_speed} of the shaft's; it must be above 0"
+        ),
+        Problem(
+            "the rotor turns back or stops: by the {table_points} points of its table its lowest speed is"
+            " {lowest_speed} of the shaft's; it must be above 0, so the points rise, and without sharp bends"
+        ),
+        Problem(
+            "cam_angle_1 = {cam_angle_1} to cam_angle_6 = {cam_angle_6} must rise from 0 to 720 deg, each by"
+            " 0.01 deg or more"
+        ),
+        Problem(
+            "the cam's spline starts at cam_height_1 = {cam_height_1}, ends at cam_height_6 = {cam_height_6}"
+            " and rises by {cam_span}; both ends must be alike, and it must rise"
+        ),
+        TOO_FAR,
+    )
+
+    def check(self) -> int:
+        """Whether the law can be driven: the rotor goes round, and never back."""
+        self.segment = -1
+        if self.law == SLOTTED_LEVERS:
+            if self.eccentricity >= self.lever_radius or self.eccentricity >= self.driven_radius:
+                return 1
+        elif self.law == NONCIRCULAR_GEARS:
+            self.lowest_speed, _highest = gear_speed_extremes(
+                self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
+            )
+            if self.lowest_speed <= 0.0:
+                return 2
+        elif self.law == TABLE:
+            lowest, _highest, _second, _third = self.spline_peaks()
+            self.lowest_speed = 1.0 + lowest
+            if self.lowest_speed <= 0.0:
+                return 3
+        elif self.law == SPLINE_CAM:
+            return self.check_cam()
+        return 0
+
+    def check_cam(self) -> int:
+        """Whether the cam's points make a law; its spline and highest point."""
+        before, _height, _bend = self.cam_knot(0)
+        last, _height, _bend = self.cam_knot(5)
+        if before != 0.0 or fabs(last - 4.0 * pi) > 1e-9:
+            return 4
+        for index in range(1, 6):
+            angle, _height, _bend = self.cam_knot(index)
+            if angle - before < 1.745e-4:
+                return 4
+            before = angle
+        (
+            self.cam_bend_1, self.cam_bend_2, self.cam_bend_3,
+            self.cam_bend_4, self.cam_bend_5, self.cam_bend_6,
+        ) = not_a_knot(
+            self.cam_angle_1, self.cam_angle_2, self.cam_angle_3,
+            self.cam_angle_4, self.cam_angle_5, self.cam_angle_6,
+            self.cam_height_1, self.cam_height_2, self.cam_height_3,
+            self.cam_height_4, self.cam_height_5, self.cam_height_6,
+        )  # fmt: skip
+        self.find_top()
+        if fabs(self.cam_height_6 - self.cam_height_1) > 1e-9 or self.cam_span < 1e-9:
+            return 5
+        return 0
+
+    def find_top(self) -> None:
+        """Highest point of the cam's spline."""
+        self.cam_top = 0.0
+        self.cam_span = 0.0
+        for index in range(5):
+            self.load(index)
+            first, second = turning_points(
+                self.segment_length, self.segment_left, self.segment_right,
+                self.segment_left_bend, self.segment_right_bend,
+            )  # fmt: skip
+            for place in range(3):
+                distance = self.segment_length
+                if place == 0:
+                    distance = first
+                if place == 1:
+                    distance = second
+                height, _slope, _bend, _third = self.piece(distance)
+                if height - self.cam_height_1 > self.cam_span:
+                    self.cam_span = height - self.cam_height_1
+                    self.cam_top = self.segment_start + distance
+
+    def deviation(self, index: int) -> float:
+        """By how much a point of the table is ahead of an even turn; counted from 0, round and round."""
+        point = index % self.table_points
+        return self.table_point(point) - 2.0 * pi * point / self.table_points
+
+    def table_bend(self, index: int) -> float:
+        """Second derivative of the table's spline at a point, counted from 0."""
+        before = self.deviation(index + self.table_points - 1)
+        here = self.deviation(index)
+        bend = 0.0
+        for distance in range(self.table_points):
+            after = self.deviation(index + distance + 1)
+            bend = bend + bend_weight(distance, self.table_points) * (before - 2.0 * here + after)
+            before = here
+            here = after
+        return bend
+
+    def load(self, index: int) -> None:
+        """Make a segment of the spline the present one."""
+        if index != self.segment:
+            if self.law == SPLINE_CAM:
+                self.segment_start, self.segment_left, self.segment_left_bend = self.cam_knot(index)
+                end, self.segment_right, self.segment_right_bend = self.cam_knot(index + 1)
+                self.segment_length = end - self.segment_start
+            else:
+                self.segment_length = 2.0 * pi / self.table_points
+                self.segment_start = self.segment_length * index
+                self.segment_left = self.deviation(index)
+                if index == self.segment + 1 and self.segment >= 0:
+                    self.segment_left_bend = self.segment_right_bend
+                else:
+                    self.segment_left_bend = self.table_bend(index)
+                self.segment_right = self.deviation(index + 1)
+                self.segment_right_bend = self.table_bend(index + 1)
+            self.segment = index
+
+    def piece(self, distance: float) -> tuple[float, float, float, float]:
+        """Value and derivatives of the spline at a distance from the start of the present segment."""
+        return cubic_piece(
+            distance, self.segment_length, self.segment_left, self.segment_right,
+            self.segment_left_bend, self.segment_right_bend,
+        )  # fmt: skip
+
+    def spline_peaks(self) -> tuple[float, float, float, float]:
+        """Lowest and highest slope of the spline, its largest second and third derivative."""
+        lowest = 1e300
+        highest = -1e300
+        second = 0.0
+        third = 0.0
+        segments = self.table_points if self.law == TABLE else 5
+        for index in range(segments):
+            self.load(index)
+            low, high = slope_extremes(
+                self.segment_length, self.segment_left, self.segment_right,
+                self.segment_left_bend, self.segment_right_bend,
+            )  # fmt: skip
+            lowest = low if low < lowest else lowest
+            highest = high if high > highest else highest
+            for end in range(2):
+                _value, _slope, bend, change = self.piece(end * self.segment_length)
+                second = fabs(bend) if fabs(bend) > second else second
+                third = fabs(change) if fabs(change) > third else third
+        return lowest, highest, second, third
+
+    def rotor(self, x: float) -> tuple[float, float, float]:
+        """Rotor angle and its derivatives over one turn, 0 to 2 pi from the slow point."""
+        if self.law == SLOTTED_LEVERS:
+            angle, first, second, _third = slotted_levers(
+                x, self.lever_radius, self.driven_radius, self.eccentricity
+            )
+            return angle, first, second
+        if self.law == NONCIRCULAR_GEARS:
+            angle, first, second, _third = noncircular_gears(
+                x, self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
+            )
+            return angle, first, second
+        if self.law == TABLE:
+            index = floor(x * self.table_points / (2.0 * pi))
+            if index >= self.table_points:
+                index = self.table_points - 1
+            self.load(index if index > 0 else 0)
+            ahead, first, second, _third = self.piece(x - self.segment_start)
+            return x + ahead, 1.0 + first, second
+        return rotor_law(self.law, x, self.speed_reduction)
+
+    def cam(self, x: float) -> tuple[float, float, float]:
+        """Height of the cam over its start, as a share of the largest, and its derivatives, 0 to 4 pi."""
+        index = 0
+        for knot in range(1, 5):
+            angle, _height, _bend = self.cam_knot(knot)
+            if x >= angle:
+                index = knot
+        self.load(index)
+        height, slope, bend, _third = self.piece(x - self.segment_start)
+        return (height - self.cam_height_1) / self.cam_span, slope / self.cam_span, bend / self.cam_span
+
+    def dwell(self, tolerance: float) -> float:
+        """Shaft angle during which a changing frame stays within a share of its stroke of its end.
+
+        For the rotor laws around the slow point; for the spline cam around its top, in two picks.
+        """
+        if self.law == SPLINE_CAM:
+            return self.angle_above(self.cam_height_1 + (1.0 - tolerance) * self.cam_span)
+        if self.law == SLOTTED_LEVERS or self.law == NONCIRCULAR_GEARS or self.law == TABLE:
+            reach = 4.0 * asin(sqrt(tolerance))
+            late = self.place_of(reach)
+            return late - self.place_of(-reach)
+        return dwell_angle(self.law, self.speed_reduction, tolerance)
+
+    def angle_above(self, level: float) -> float:
+        """Shaft angle during which the cam's spline lies at or above a height, in two picks."""
+        total = 0.0
+        for index in range(5):
+            self.load(index)
+            total = total + stretch_above(
+                level, self.segment_length, self.segment_left, self.segment_right,
+                self.segment_left_bend, self.segment_right_bend,
+            )  # fmt: skip
+        return total
+
+    def place_of(self, angle: float) -> float:
+        """Shaft angle from the slow point at which the rotor has an angle, by Newton steps in a bracket."""
+        start, _first, _second = self.rotor(0.0)
+        turns = floor((angle - start) / (2.0 * pi))
+        target = angle - 2.0 * pi * turns
+        low = 0.0
+        high = 2.0 * pi
+        if self.law == TABLE:
+            for index in range(1, self.table_points):
+                if self.table_point(index) <= target:
+                    low = 2.0 * pi * index / self.table_points
+            high = low + 2.0 * pi / self.table_points
+        x = 0.5 * (low + high)
+        for _ in range(200):
+            reached, first, _second = self.rotor(x)
+            if reached > target:
+                high = x
+            else:
+                low = x
+            nearer = 0.5 * (low + high)
+            if first > 0.0:
+                newton = x - (reached - target) / first
+                if low < newton < high:
+                    nearer = newton
+            if nearer == x or high - low <= 1e-16 * high:
+                break
+            x = nearer
+        return x + 2.0 * pi * turns

@@ -1,0 +1,360 @@
+"""Recorded signals between their samples."""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...errors import LoomfmuError
+from ...traces import Signals
+from . import bernstein
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+TURN = 2.0 * math.pi
+BLOCK = 1 << 16  # intervals that are looked at together
+SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
+ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
+COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples tell of one oscillation
+DOUBT = 0.1  # of the difference between second rates over an interval, see `Motion.doubt`
+ROUNDING = 1e-12  # of the largest value: what rounding may add
+# Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
+# margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
+FARTHEST = TURN / 20.0
+COARSE_NOTE = "the samples are too far apart to be sure: take more steps"
+
+
+class Stretch(NamedTuple):
+    """A stretch of time, and whether it begins and ends within the run."""
+
+    start: float
+    end: float
+    whole: bool = True
+
+
+class Extreme(NamedTuple):
+    """Lowest or highest value, its time, and whether the samples are too far apart to be sure of it.
+
+    `sure` is what the motion reaches in any case: less extreme by what the curve between the samples may be
+    off (see `Motion.doubt`), but not less than a sample.
+    """
+
+    value: float
+    time: float
+    coarse: bool = False
+    sure: float = math.nan
+
+    @property
+    def note(self) -> str:
+        """What a verdict says of it."""
+        return COARSE_NOTE if self.coarse else ""
+
+
+class Motion:
+    """A signal and its rates as far as they are recorded: on each interval the polynomial they give."""
+
+    def __init__(self, trace: Signals, signal: str, rates: int = 2):
+        self.signal = signal
+        self.time = trace.time
+        self.values: list[Floats] = []
+        name: str | None = signal
+        while name is not None and len(self.values) <= rates:
+            self.values.append(np.asarray(trace[name], dtype=float))
+            name = trace.rate(name)
+
+        self.finite = all(bool(np.isfinite(values).all()) for values in self.values)
+
+    @property
+    def note(self) -> str:
+        """What a verdict says where the values between the samples are not known."""
+        if not self.finite:
+            return f"{self.signal} or its rate is not finite everywhere"
+        steps = np.diff(self.values[0])
+        if len(self.values) > 1 or np.all(steps <= 0.0) or np.all(steps >= 0.0):
+            return ""
+        return f"{self.signal} is known at the samples only: its rate is not recorded"
+
+    def points(self, intervals: Integers) -> Floats:
+        """Bernstein points of the polynomials on some intervals."""
+        h = self._length(intervals)
+        ends = []
+        for order, values in enumerate(self.values):
+            ends.append((values[intervals] * h**order, values[intervals + 1] * h**order))
+        return bernstein.joining(ends)
+
+    def doubt(self, intervals: Integers) -> Floats:
+        """How far the polynomials on some intervals may be off.
+
+        Values and rates give a cubic. Its second rates at the ends of an interval are compared with the
+        recorded ones, or with those that the rates of the neighbouring samples give. A quintic with these is
+        away from the cubic by up to 1/29 of the difference; 1/10 covers also a jump of the second rate within
+        the interval. On a smooth motion the cubic is off by a tenth of that, the quintic by far less.
+        """
+        if len(self.values) == 1:
+            return np.zeros(len(intervals))
+        h, ends = self._length(intervals), (intervals, intervals + 1)
+        y0, y1 = (self.values[0][end] for end in ends)
+        v0, v1 = (self.values[1][end] * h for end in ends)
+        a0, a1 = (self._bends[end] * h**2 for end in ends)
+        before = np.abs(a0 - (6.0 * (y1 - y0) - 4.0 * v0 - 2.0 * v1))
+        after = np.abs(a1 - (2.0 * v0 + 4.0 * v1 - 6.0 * (y1 - y0)))
+        return DOUBT * np.maximum(before, after)
+
+    def doubt_at(self, time: float) -> float:
+        """How far the motion may be off about a time, rounding included."""
+        rounding = ROUNDING * float(np.max(np.abs(self.values[0])))
+        if len(self.time) == 1:
+            return rounding
+        return rounding + float(self.doubt(self.interval(np.array([time])))[0])
+
+    @cached_property
+    def _bends(self) -> Floats:
+        """Second rates at the samples."""
+        if len(self.values) > 2:
+            return self.values[2]
+        return np.asarray(np.gradient(self.values[1], self.time, edge_order=2 if len(self.time) > 2 else 1))
+
+    def _length(self, intervals: Integers) -> Floats:
+        return np.asarray(self.time[intervals + 1] - self.time[intervals])
+
+    def interval(self, times: Floats) -> Integers:
+        """The intervals that some times lie in."""
+        found = np.searchsorted(self.time, times, side="right") - 1
+        return np.asarray(np.clip(found, 0, len(self.time) - 2))
+
+    def along(self, times: Floats) -> Floats:
+        """Values at some times."""
+        if len(self.time) == 1:
+            return np.full(len(times), self.values[0][0])
+        intervals = self.interval(times)
+        return bernstein.value(
+            self.points(intervals), (times - self.time[intervals]) / self._length(intervals)
+        )
+
+    def at(self, time: float) -> float:
+        """Value at a time."""
+        return float(self.along(np.array([time]))[0])
+
+    def passages(self, level: float) -> list[tuple[float, bool]]:
+        """Times at which the motion passes a level, to rounding, and whether it rises there."""
+        found = []
+        for begin in range(0, len(self.time) - 1, BLOCK):
+            points = self.points(np.arange(begin, min(begin + BLOCK, len(self.time) - 1))) - level
+            astride = (points.min(axis=0) < 0.0) & (points.max(axis=0) >= 0.0)
+            for place in np.flatnonzero(astride):
+                rises = bool(points[0, place] < 0.0)
+                for share in bernstein.sign_changes(points[:, place]):
+                    found.append((self.moment(begin + int(place), share), rises))
+                    rises = not rises
+        return found
+
+    def crossings(self, level: float) -> list[float]:
+        """Times at which the motion passes a level."""
+        return [time for time, _rises in self.passages(level)]
+
+    def moment(self, interval: int, share: float) -> float:
+        """The time at a share of an interval."""
+        return float(self.time[interval] + share * (self.time[interval + 1] - self.time[interval]))
+
+    def beyond(self, level: float, sign: float) -> list[Stretch]:
+        """Stretches of time above a level, or with a negative sign below it; none if it is not finite."""
+        if not self.finite:
+            return []
+        inside = bool(self.values[0][0] >= level) == (sign > 0.0)
+        begin, whole = float(self.time[0]), False
+        stretches = []
+        for time, _rises in self.passages(level):
+            if inside:
+                stretches.append(Stretch(begin, time, whole))
+            inside, begin, whole = not inside, time, True
+        if inside:
+            stretches.append(Stretch(begin, float(self.time[-1]), False))
+        return stretches
+
+    def lowest(self, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
+        """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
+        values, largest = sign * self.values[0], float(np.max(np.abs(self.values[0])))
+        if not self.finite:
+            return self._lowest_sample(sign, within)
+        edges = np.array([time for each in within or () for time in each[:2]])
+        found, times = [sign * self.along(edges)], [edges]
+        if within is None:
+            found, times = [values[:1]], [self.time[:1]]
+        best = float(np.min(found[0], initial=math.inf))
+        sure = float(np.min(values[self._inside(within)], initial=math.inf))
+        for intervals, low, high in self._pieces(within):
+            points = bernstein.clipped(sign * self.points(intervals), low, high)
+            best = min(best, float(np.min(points[[0, -1]])))
+            near = points.min(axis=0) <= max(best + SAME * largest, sure)
+            lowest, share = bernstein.lowest(points[:, near])
+            sure = min(sure, float(np.min(lowest + self.doubt(intervals[near]), initial=math.inf)))
+            share = np.where(share < 1.0, low[near] + share * (high[near] - low[near]), high[near])
+            before, after = self.time[intervals[near]], self.time[intervals[near] + 1]
+            found.append(lowest)
+            times.append(np.where(share < 1.0, before + share * (after - before), after))
+        moments, extremes = np.concatenate(times), np.concatenate(found)
+        if not len(extremes):
+            return Extreme(math.nan, math.nan)
+        value, time = first_lowest(extremes, moments, SAME * largest)
+        beyond = float(np.min(values[self._ends(time)])) - value
+        coarse = beyond > max(COARSE * (float(values.max()) - value), SAME * largest)
+        sure = (sure if math.isfinite(sure) else value) + ROUNDING * largest
+        return Extreme(sign * value, time, coarse, sign * sure)
+
+    def _lowest_sample(self, sign: float, within: Sequence[Stretch] | None) -> Extreme:
+        inside = self._inside(within)
+        if not inside.any():
+            return Extreme(math.nan, math.nan)
+        value, time = first_lowest(sign * self.values[0][inside], self.time[inside])
+        return Extreme(sign * value, time, sure=sign * value)
+
+    def _inside(self, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
+        """Which samples are in some stretches of time."""
+        if within is None:
+            return np.ones(len(self.time), dtype=bool)
+        starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
+        return np.asarray(
+            np.searchsorted(starts, self.time, "right") > np.searchsorted(ends, self.time, "left")
+        )
+
+    def _ends(self, time: float) -> list[int]:
+        """The samples on both sides of a time."""
+        if len(self.time) == 1:
+            return [0]
+        interval = int(self.interval(np.array([time]))[0])
+        return [interval, interval + 1]
+
+    def _pieces(self, within: Sequence[Stretch] | None) -> Iterator[tuple[Integers, Floats, Floats]]:
+        """Intervals in some stretches of time, and the shares of each that lie within, block by block."""
+        if within is None:
+            cuts, inside = self.time, np.ones(len(self.time) - 1, dtype=bool)
+        else:
+            starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
+            cuts = np.unique(np.concatenate([self.time, starts, ends]))
+            middles = 0.5 * (cuts[1:] + cuts[:-1])
+            inside = np.searchsorted(starts, middles, "right") > np.searchsorted(ends, middles, "left")
+        pieces = np.flatnonzero(inside)
+        for begin in range(0, len(pieces), BLOCK):
+            some = pieces[begin : begin + BLOCK]
+            intervals = self.interval(cuts[some])
+            start, h = self.time[intervals], self._length(intervals)
+            yield intervals, (cuts[some] - start) / h, (cuts[some + 1] - start) / h
+
+    def nearest(self, level: float, within: Sequence[Stretch]) -> Extreme:
+        """How near the motion comes to a level in some stretches of time: 0 where it passes it."""
+        if not self.finite:
+            return Extreme(math.nan, math.nan)
+        for time in self.crossings(level):
+            if any(each.start <= time <= each.end for each in within):
+                return Extreme(0.0, time)
+        above = self.along(np.array([0.5 * (each.start + each.end) for each in within])) >= level
+        found = []
+        for sign in (1.0, -1.0):
+            side = [each for each, over in zip(within, above, strict=True) if over == (sign > 0.0)]
+            if side:
+                extreme = self.lowest(sign, side)
+                found.append(Extreme(sign * (extreme.value - level), extreme.time, extreme.coarse))
+        value, time = first_lowest([each.value for each in found], [each.time for each in found])
+        return Extreme(value, time, any(each.coarse for each in found))
+
+
+def first_lowest(values: ArrayLike, times: ArrayLike, same: float = SAME) -> tuple[float, float]:
+    """The lowest value, and the time of the first one that is equal to it."""
+    values, times = np.asarray(values, dtype=float), np.asarray(times, dtype=float)
+    lowest = float(np.min(values))  # NaN if there is one
+    equal = np.isnan(values) if math.isnan(lowest) else values <= lowest + same
+    return lowest, float(np.min(times[equal]))
+
+
+def spans_within(lift: Motion, distance: float, stroke: float) -> list[Stretch]:
+    """Times from entering to leaving a distance from the lower or the upper end.
+
+    A frame that holds stays within: its span is as long as the picks it holds for.
+    """
+    return sorted(lift.beyond(distance, -1.0) + lift.beyond(stroke - distance, 1.0))
+
+
+def shaft(trace: Signals) -> Motion | None:
+    """The main shaft's angle, if the run has a shaft."""
+    return Motion(trace, "shaft.angle") if "shaft.angle" in trace else None
+
+
+def too_coarse(turning: Motion) -> bool:
+    """Whether the shaft turns so far between two samples that they do not tell how a loom moves."""
+    return bool(np.any(np.abs(np.diff(turning.values[0])) > FARTHEST * (1.0 + SAME)))
+
+
+def on_the_shaft(turning: Motion, time: float) -> tuple[float, int]:
+    """Where the shaft stands in its revolution, and the revolution, counted from 1 the way that it turns."""
+    angle, first, last = turning.at(time), *turning.values[0][[0, -1]]
+    way = -1.0 if last < first else 1.0
+    revolution = math.floor(way * angle / TURN) - math.floor(way * first / TURN) + 1
+    return angle - TURN * math.floor(angle / TURN), revolution
+
+
+def needed_shaft(trace: Signals) -> Motion:
+    """The main shaft's angle. Raises LoomfmuError where the run has none."""
+    found = shaft(trace)
+    if found is None:
+        raise LoomfmuError(f"{trace.name}: the claim needs shaft angles, and no shaft.angle is recorded")
+    return found
+
+
+def times_at(trace: Signals, angle: float) -> list[float]:
+    """All times at which the shaft stands at an angle of its revolution."""
+    turning = needed_shaft(trace)
+    turned = (turning.values[0] - angle) / TURN
+    whole = np.floor(turned)
+    times = []
+    for interval in np.flatnonzero(whole[1:] != whole[:-1]):
+        points = turning.points(np.array([interval]))[:, 0]
+        low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
+        for turn in range(low + 1, high + 1):
+            level = points - (angle + TURN * turn)
+            # to rounding the level may be the sample itself
+            shares = bernstein.sign_changes(level) or [float(abs(level[-1]) < abs(level[0]))]
+            times += [turning.moment(int(interval), share) for share in shares]
+    for end in (0, -1):  # a run that begins or ends there, to rounding
+        if abs(turned[end] - round(float(turned[end]))) < 1e-9:
+            times.append(float(turning.time[end]))
+    return sorted(set(times))
+
+
+def within_window(trace: Signals, start: float, width: float) -> list[Stretch]:
+    """Stretches of time in which the shaft is in a window of its revolution, the edges included."""
+    turning = needed_shaft(trace)
+    edges = [*times_at(trace, start), *times_at(trace, start + width)]
+    marks = np.unique([turning.time[0], *edges, turning.time[-1]])
+    away = (turning.along(0.5 * (marks[1:] + marks[:-1])) - start) % TURN
+    inside = [
+        Stretch(float(marks[place]), float(marks[place + 1])) for place in np.flatnonzero(away <= width)
+    ]
+    return sorted([*inside, *(Stretch(edge, edge) for edge in edges)])
+
+
+def reached(trace: Signals, latch: str, followed: Floats) -> float:
+    """When a latched extreme was reached, as well as its samples tell.
+
+    The latch tells the step. In it the time is where the parabola through the lowest of the samples of what
+    the latch follows turns.
+
+    Args:
+        latch: the signal that keeps the extreme
+        followed: samples of what it follows, taken so that the extreme is the lowest
+    """
+    time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
+    step = int(np.argmax(kept <= ALIKE * np.max(np.abs(followed))))
+    if step == 0:
+        return float(time[0])
+    lowest = step if followed[step] <= followed[step - 1] else step - 1
+    if not 0 < lowest < len(time) - 1:
+        return float(time[lowest])
+    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2] for each in (time, followed))
+    before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
+    if after <= before:
+        return float(time[lowest])
+    turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
+    return float(np.clip(turn, time[step - 1], time[step]))

@@ -1,0 +1,128 @@
+"""The variables that a model description tells of, of FMI 2.0 and 3.0, ours and other makers'."""
+
+import math
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from ... import units
+from ...components import COMPONENTS
+from ...variables import variables_of
+from .ports import BASES, Definition, Port, Value, own_definition, own_name, shown_in
+
+# FMI type -> how scenes and the master know it; what is not here, such as String, is left out
+KINDS = {
+    "Real": "Real",
+    "Integer": "Integer",
+    "Enumeration": "Integer",
+    "Boolean": "Boolean",
+    "Float64": "Real",
+    "Float32": "Real",
+    **{f"{sign}Int{size}": "Integer" for sign in ("", "U") for size in (8, 16, 32, 64)},
+}
+
+
+def is_ours(description: Any) -> bool:
+    """Whether an FMU was made by this package."""
+    made_by = description.generationTool or ""
+    return made_by.startswith("loomfmu ") and description.modelName in COMPONENTS
+
+
+def ports_of(description: Any) -> dict[str, Port]:
+    """The scalar variables of the known types, by the names that scenes and traces use."""
+    known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
+    names = dict(zip((v.name for v in known), plain_names(v.name for v in known), strict=True))
+    if is_ours(description):
+        declared = {v.structured: v.name for v in variables_of(COMPONENTS[description.modelName])}
+        names = {name: declared.get(name, plain) for name, plain in names.items()}
+    rates = _rates(description, names)
+    definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
+    ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
+    return {port.name: port for port in ports}
+
+
+def plain_names(names: Iterable[str]) -> list[str]:
+    """Names of letters, digits and _, a letter first, all different.
+
+    >>> plain_names(["phi", "body.phi", "der(w)", "x[1]", "x_1", "time"])
+    ['phi', 'body_phi', 'der_w', 'x_1', 'x_1_2', 'time_']
+    """
+    found: dict[str, None] = {}
+    for name in names:
+        plain = re.sub("[^A-Za-z0-9_]+", "_", name).strip("_") or "unnamed"
+        plain = plain if plain[0].isalpha() else f"v_{plain}"
+        plain = "time_" if plain == "time" else plain  # each group of a trace has a time of its own
+        number, free = 1, plain
+        while free in found:
+            number += 1
+            free = f"{plain}_{number}"
+        found[free] = None
+    return list(found)
+
+
+def _rates(description: Any, names: dict[str, str]) -> dict[str, str]:
+    """Which output is the time derivative of which: our declarations, or what the description says."""
+    if is_ours(description):
+        return {v.name: v.rate for v in variables_of(COMPONENTS[description.modelName]) if v.rate}
+    return {
+        variable.derivative.name: names[variable.name]
+        for variable in description.modelVariables
+        if variable.derivative is not None and variable.causality == "output" and variable.name in names
+    }
+
+
+def _definition(base: Any) -> Definition | None:
+    if base is None:
+        return None
+    return Definition(tuple(getattr(base, name) for name in BASES), base.factor, base.offset)
+
+
+def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str, Definition | None]) -> Port:
+    kind, declared = KINDS[variable.type], variable.declaredType
+    items = declared.items if variable.type == "Enumeration" and declared else []
+    values = [int(item.value) for item in items]
+    in_a_row = values == list(range(values[0], values[0] + len(values))) if values else False
+
+    def said(attribute: str) -> Any:
+        """An attribute of the variable, or else of its declared type."""
+        own = getattr(variable, attribute)
+        return own if own is not None or declared is None else getattr(declared, attribute)
+
+    given = (said("unit") or "") if kind == "Real" else "1"
+    definition = definitions.get(given)
+    unit = own_name(given, definition) or given
+    return Port(
+        name=name,
+        kind=kind,
+        reference=variable.valueReference,
+        causality=variable.causality,
+        unit=unit or "1",
+        display=shown_in(unit or "1", said("displayUnit") or ""),
+        minimum=min(values) if values else _limit(kind, said("min")),
+        maximum=max(values) if values else _limit(kind, said("max")),
+        start=None if variable.start is None else _start(kind, variable.start),
+        description=variable.description or "",
+        choices=tuple(item.name for item in items) if in_a_row else (),
+        first_choice=values[0] if values else 1,
+        rate=rates.get(variable.name),
+        own=variable.name,
+        base_type=variable.type,
+        discrete=variable.variability == "discrete",
+        has_unit=given != "",
+        definition=own_definition(unit) if unit in units.UNITS else definition,
+        nominal=_limit(kind, said("nominal")),
+    )
+
+
+def _limit(kind: str, text: str | None) -> float | None:
+    """A limit that is one: tools write the largest numbers there are where there is none."""
+    if kind == "Integer" and text is not None:
+        return int(text)
+    value = None if text is None else float(text)
+    return None if value is None or math.isinf(value) else value
+
+
+def _start(kind: str, text: str) -> Value:
+    if kind == "Boolean":
+        return text in ("true", "1")
+    return int(text) if kind == "Integer" else float(text)

@@ -1,0 +1,176 @@
+"""An instance of an FMI 3.0 FMU, with the interface of `Slave`.
+
+Scalars are exchanged: floats, integers, booleans and enumerations. The instance is opened without event
+mode and without early return: it steps as an FMI 2.0 one does.
+"""
+
+import ctypes
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi3 import FMU3Slave
+
+from ...errors import LoomfmuError
+from .fmus import Fmu, Value
+from .foreign_slave import MOST_MESSAGES
+from .ports import CARRIED, RANGES
+from .slave import DISCARD, FATAL, REFUSED, WARNING, Call, Slave
+
+C_TYPES: dict[str, Any] = {
+    "Float64": ctypes.c_double,
+    "Float32": ctypes.c_float,
+    "Boolean": ctypes.c_bool,
+    "Enumeration": ctypes.c_int64,
+    **{f"Int{size}": getattr(ctypes, f"c_int{size}") for size in (8, 16, 32, 64)},
+    **{f"UInt{size}": getattr(ctypes, f"c_uint{size}") for size in (8, 16, 32, 64)},
+}
+EVERYTHING = (-math.inf, math.inf)
+FUNCTIONS = {"Enumeration": "Int64"}  # where the functions are not called as the type
+
+
+def _in_vector(base_type: str) -> Any:
+    """The C type that values of an FMI type have in the master's vectors."""
+    return ctypes.c_double if base_type.startswith("Float") else ctypes.c_int32
+
+
+def _one_by_one(calls: list[Call]) -> int:
+    """Make some calls, up to the first that is refused; the worst status."""
+    worst = 0
+    for call in calls:
+        worst = max(worst, call.function(*call.arguments))
+        if worst > WARNING:
+            break
+    return worst
+
+
+class Fmi3Slave(Slave):
+    """One instance of an FMI 3.0 co-simulation FMU."""
+
+    standard = "fmi3"
+    _state_word = "State"
+
+    def __init__(self, fmu: Fmu, name: str):
+        super().__init__(fmu, name)
+        self.pooled = fmu.ours
+        if not fmu.ours:  # it may have threads that log: they need Python's lock
+            self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+        self._reached: float | None = None  # when it ended the simulation
+        self._types = {port.reference: port.base_type for port in fmu.ports.values()}
+        self._names = {port.reference: port.name for port in fmu.ports.values()}
+
+    def _open(self) -> Any:
+        slave = FMU3Slave(
+            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            instanceName=self.name,
+        )  # fmt: skip
+        slave.instantiate(loggingOn=self.fmu.ours, logMessage=self._log_3)
+        return slave
+
+    def _log_3(self, _environment: Any, status: int, _category: bytes, message: bytes) -> None:
+        if status >= WARNING:
+            self.messages.append((status, " ".join((message or b"").decode(errors="replace").split())))
+            del self.messages[:-MOST_MESSAGES]
+
+    def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Call fmpy; a refusal by status becomes one line that names the instance."""
+        try:
+            function(*arguments)
+        except FMICallException as error:
+            self.fatal = self.fatal or error.status == FATAL
+            raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
+
+    def start(self, values: dict[str, Value], stop_time: float) -> None:
+        """Set the values and enter the initialization."""
+        self.messages.clear()
+        self.started = True
+        for name, value in values.items():
+            port = self.fmu.ports[name]
+            function = FUNCTIONS.get(port.base_type, port.base_type)
+            self._do(getattr(self._slave, f"set{function}"), [port.reference], [value])
+        self._do(self._slave.enterInitializationMode, None, 0.0, stop_time)
+
+    def finish_initialization(self) -> None:
+        """Leave the initialization."""
+        self._do(self._slave.exitInitializationMode)
+
+    def _ended(self) -> float | None:
+        return self._reached
+
+    # ---- prepared calls
+
+    def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
+        """Values between the FMU and the memory at an address, one FMI call for each run of one type."""
+        calls: list[Call] = []
+        start = 0
+        for end in range(1, len(references) + 1):
+            base_type = self._types[references[start]]
+            if end == len(references) or self._types[references[end]] != base_type:
+                size = ctypes.sizeof(_in_vector(base_type))
+                calls.append(self._typed(action, base_type, references[start:end], address + start * size))
+                start = end
+        if len(calls) == 1:
+            return calls[0]
+        return Call(_one_by_one, (calls,), " or ".join(call.name for call in calls), kind, plain=False)
+
+    def _typed(self, action: str, base_type: str, references: Sequence[int], address: int) -> Call:
+        """One FMI call; where the types differ in width, by way of an array of the FMU's own type."""
+        count = len(references)
+        own, masters = C_TYPES[base_type], _in_vector(base_type)
+        name = f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}"
+        function = self._library[name]
+        array, size = (ctypes.c_uint32 * count)(*references), ctypes.c_size_t(count)
+        if own is masters:
+            arguments = (self._component, array, size, ctypes.c_void_p(address), size)
+            return Call(function, arguments, name, base_type, plain=False)
+        between = (own * count)()
+        values = (masters * count).from_address(address)
+
+        def converted(*arguments: Any) -> int:
+            if action == "Set" and not self._moved(values, between, references, base_type):
+                return REFUSED
+            status = int(function(*arguments))
+            if action == "Get" and status <= WARNING and not self._moved(between, values, references, ""):
+                return REFUSED
+            return status
+
+        return Call(converted, (self._component, array, size, between, size), name, base_type, plain=False)
+
+    def _moved(self, source: Any, target: Any, references: Sequence[int], base_type: str) -> bool:
+        """Copy values to where there is room for an FMI type, or for what the master has; none if one does
+        not fit."""
+        carried = CARRIED if target._type_ is ctypes.c_int32 and not base_type else EVERYTHING
+        low, high = RANGES.get(base_type, carried)
+        for reference, value in zip(references, source, strict=True):
+            if value < low or value > high:
+                whose = (
+                    f"what {base_type} holds"
+                    if base_type
+                    else "the integers that a run carries; leave it out of record"
+                )
+                self.messages.append(
+                    (REFUSED, f"{self._names[reference]} = {value} is outside [{low}, {high}], {whose}")
+                )
+                return False
+        target[:] = source[:]
+        return True
+
+    def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
+        """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation says Discard."""
+        function = self._library["fmi3DoStep"]
+        event, terminate, early = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_bool()
+        reached = ctypes.c_double()
+        told = [ctypes.byref(told) for told in (event, terminate, early, reached)]
+
+        def stepped(*arguments: Any) -> int:
+            reached.value = time.value
+            status = int(function(*arguments))
+            if terminate.value:
+                self._reached = reached.value
+            elif early.value:
+                self.messages.append((DISCARD, "it returned before the end of the step, which it must not"))
+            return max(status, DISCARD) if terminate.value or early.value else status
+
+        arguments = (self._component, time, step_size, ctypes.c_bool(True), *told)
+        return Call(stepped, arguments, "fmi3DoStep", plain=False)

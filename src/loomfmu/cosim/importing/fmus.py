@@ -1,0 +1,232 @@
+"""FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
+
+import hashlib
+import shutil
+import zipfile
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import fmpy
+
+from ...components import COMPONENTS
+from ...errors import LoomfmuError, suggestion
+from ...files import source
+from ...fmi import builder
+from ...fmi.cache import cache_directory
+from ...fmi.description.model_description import model_description
+from ...fmi.native import builder as native_builder
+from ...variables import MOTION, Component
+from .descriptions import is_ours, ports_of
+from .ports import Port, Value
+
+FLAVOURS = ("live", "native")
+
+__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "file_of", "load", "of_component"]
+
+
+@dataclass(frozen=True)
+class Unpacked:
+    """The file of an FMU: where its content lies, and what tells it from others."""
+
+    path: Path
+    sha256: str
+    directory: Path
+    guid: str
+    identifier: str
+    version: str
+
+
+@dataclass(frozen=True)
+class Fmu:
+    """An FMU that can be instantiated.
+
+    `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
+    a process may have one instance of. `flavour` is that of one which is built when its file is first
+    needed, and empty for one that was given as a file. `fixed_step` is one that takes equal steps only,
+    `needs_tool` one that says it needs the tool that made it.
+    """
+
+    name: str
+    ports: dict[str, Port]
+    fmi: int = 2
+    ours: bool = True
+    single: bool = False
+    fixed_step: bool = False
+    needs_tool: bool = False
+    flavour: str = ""
+    given: Unpacked | None = field(default=None, repr=False)
+
+    @property
+    def component(self) -> type[Component] | None:
+        """The component it was made of, which declares what others must know; none of another maker's."""
+        return COMPONENTS.get(self.name) if self.ours else None
+
+    @property
+    def keeps(self) -> str:
+        """What it carries from step to step; of another maker's nobody knows, so that every step counts."""
+        return self.component.keeps if self.component else MOTION
+
+    @property
+    def built(self) -> bool:
+        """Whether it is built for a scene and not given as a file."""
+        return bool(self.flavour)
+
+    @cached_property
+    def file(self) -> Unpacked:
+        """Its file, built and unpacked at the first call."""
+        return self.given or _built(self.name, self.flavour)
+
+    @property
+    def path(self) -> Path:
+        """Path of the file."""
+        return self.file.path
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the file."""
+        return self.file.sha256
+
+    @property
+    def directory(self) -> Path:
+        """Where the file is unpacked."""
+        return self.file.directory
+
+    @property
+    def guid(self) -> str:
+        """Its GUID, or in FMI 3 its instantiation token."""
+        return self.file.guid
+
+    @property
+    def identifier(self) -> str:
+        """What its functions and its library are named after."""
+        return self.file.identifier
+
+    @property
+    def version(self) -> str:
+        """Its maker's version of it."""
+        return self.file.version
+
+    def check_platform(self, where: str) -> None:
+        """Refuse a file that has no library for this machine, naming the platforms that it has."""
+        here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
+        libraries = self.directory / "binaries"
+        if (libraries / here / f"{self.identifier}{fmpy.sharedLibraryExtension}").exists():
+            return
+        found = sorted({each.parent.name for each in libraries.glob(f"*/{self.identifier}.*")})
+        known = f"it has {', '.join(found)}" if found else "it has none at all"
+        raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
+
+    def name_of(self, variable: str) -> str:
+        """What scenes call a variable, given that name or the FMU's own."""
+        if variable in self.ports:
+            return variable
+        return next((port.name for port in self.ports.values() if port.own == variable), variable)
+
+    def port(self, name: str, where: str) -> Port:
+        """A variable by name. Raises LoomfmuError, naming the nearest."""
+        if name not in self.ports:
+            raise LoomfmuError(f"{where}: {self.name} has no variable {name!r}{suggestion(name, self.ports)}")
+        return self.ports[name]
+
+
+@cache
+def of_component(name: str, flavour: str = "live") -> Fmu:
+    """The FMU of one of our components, live or native. It is built only when its file is needed."""
+    _check(name, flavour)
+    description = BytesIO()
+    with zipfile.ZipFile(description, "w") as archive:
+        archive.writestr("modelDescription.xml", model_description(COMPONENTS[name], guid="", version=""))
+    read = fmpy.read_model_description(description, validate=False)
+    return Fmu(name=name, ports=ports_of(read), flavour=flavour)
+
+
+def _built(name: str, flavour: str) -> Unpacked:
+    return load(file_of(name, flavour, (native_builder.host_platform(),))).file
+
+
+def _check(name: str, flavour: str) -> None:
+    if name not in COMPONENTS:
+        raise LoomfmuError(f"there is no component {name!r}{suggestion(name, COMPONENTS)}")
+    if flavour not in FLAVOURS:
+        raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
+
+
+def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
+    """The file of one of our components, built unless the same one was; a live one is for all platforms."""
+    _check(name, flavour)
+    native, component = flavour == "native", COMPONENTS[name]
+    identity = native_builder.identity(component, platforms) if native else builder.guid(component)
+    built = cache_directory() / "fmus" / identity
+    path = built / f"{name}.fmu"
+    if not path.exists():
+        _ = native_builder.build_native(name, built, platforms) if native else builder.build(name, built)
+    return path
+
+
+def load(path: Path) -> Fmu:
+    """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
+    try:
+        sha256 = hashlib.sha256(source(path).read_bytes()).hexdigest()
+        directory = _unpacked(path, sha256)
+        found = (directory / "modelDescription.xml").exists()
+    except FileNotFoundError:
+        raise LoomfmuError(f"{path}: there is no such FMU") from None
+    except Exception as error:  # zipfile and fmpy raise a dozen kinds for a damaged archive
+        raise LoomfmuError(f"{path}: not a readable FMU ({_first_line(error)})") from None
+    if not found:
+        raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
+    try:
+        description = fmpy.read_model_description(str(directory), validate=False)
+        ports = ports_of(description)
+    except Exception as error:  # fmpy raises its own kinds for a description that is none
+        raise LoomfmuError(
+            f"{path}: its modelDescription.xml cannot be read ({_first_line(error)})"
+        ) from None
+    _check_runnable(path, description)
+    kind = description.coSimulation
+    return Fmu(
+        name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
+        ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
+        fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
+        given=Unpacked(
+            path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
+        ),
+    )  # fmt: skip
+
+
+def _first_line(error: Exception) -> str:
+    reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return str(reason).splitlines()[0]
+
+
+def _check_runnable(path: Path, description: Any) -> None:
+    """Refuse what the master cannot step."""
+    version, kind = description.fmiVersion, description.coSimulation
+    if version == "1.0":
+        raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are run")
+    if kind is None:
+        raise LoomfmuError(
+            f"{path}: it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run"
+        )
+
+
+def _unpacked(path: Path, sha256: str) -> Path:
+    """The FMU's files, unpacked once for all runs and processes."""
+    target = cache_directory() / "unpacked" / sha256
+    if not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        temporary = target.with_name(f"{sha256}.{uuid4().hex}")
+        temporary.mkdir()  # as open to others as the umask lets it be: a cache may be shared
+        try:
+            fmpy.extract(str(path), unzipdir=str(temporary))
+            temporary.rename(target)
+        except OSError:
+            if not target.exists():  # else another process was faster
+                raise
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    return target

@@ -1,0 +1,108 @@
+"""An instance of an FMI 2.0 FMU of another maker.
+
+It is taken at its status codes, not at its log; its messages come as printf formats with arguments; it is
+made anew for every run, since few tools make FMUs that can be reset; and Python's lock is released while
+it is called, since it may have threads of its own that log.
+"""
+
+import ctypes
+import math
+from typing import Any
+from weakref import WeakValueDictionary
+
+from fmpy import calloc, free
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2False,
+)
+from fmpy.logging import addLoggerProxy
+
+from ...errors import LoomfmuError
+from .fmus import Fmu
+from .slave import FATAL, WARNING, Slave
+
+LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # of fmi2StatusKind
+MOST_MESSAGES = 50  # the last ones are kept: some FMUs log at every step
+
+_instances: "WeakValueDictionary[int, ForeignSlave]" = WeakValueDictionary()
+
+
+def _dispatch(environment: int | None, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+    """Give a message to the instance it belongs to: fmpy's proxy has one logger for the whole process."""
+    slave = _instances.get(environment or 0)
+    if slave is not None:
+        slave._log(environment, b"", status, b"", message)
+
+
+_logger = fmi2CallbackLoggerTYPE(_dispatch)
+
+
+class ForeignSlave(Slave):
+    """One instance of an FMI 2.0 FMU that this package has not made."""
+
+    pooled = False
+
+    def __init__(self, fmu: Fmu, name: str):
+        super().__init__(fmu, name)
+        self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+
+    def _open(self) -> Any:
+        slave = FMU2Slave(
+            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            instanceName=self.name,
+        )  # fmt: skip
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = _logger
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        callbacks.componentEnvironment = id(self)
+        addLoggerProxy(ctypes.byref(callbacks))
+        _instances[id(self)] = self
+        self._callbacks = callbacks
+        slave.callbacks = callbacks
+        slave.component = slave.fmi2Instantiate(
+            self.name.encode(), fmi2CoSimulation, self.fmu.guid.encode(), _resources(self.fmu).encode(),
+            ctypes.byref(callbacks), fmi2False, fmi2False,
+        )  # fmt: skip
+        if slave.component is None:
+            raise LoomfmuError("no reason given")
+        return slave
+
+    def _log(self, _environment: Any, _instance: bytes, status: int, _category: bytes, text: bytes) -> None:
+        if status >= WARNING:
+            self.messages.append((status, " ".join((text or b"").decode(errors="replace").split())))
+            del self.messages[:-MOST_MESSAGES]
+
+    def _do(self, function: Any, *arguments: Any) -> None:
+        """Call fmpy; a refusal by status becomes one line that names the instance."""
+        try:
+            function(*arguments)
+        except FMICallException as error:
+            self.fatal = self.fatal or error.status == FATAL
+            raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
+
+    def finish_initialization(self) -> None:
+        """Leave the initialization."""
+        self._do(self._slave.exitInitializationMode)
+
+    def _ended(self) -> float | None:
+        kept = list(self.messages)  # it may complain of being asked
+        ended, time = ctypes.c_int(), ctypes.c_double(-math.inf)
+        try:
+            status = self._library.fmi2GetBooleanStatus(self._component, TERMINATED, ctypes.byref(ended))
+            if status <= WARNING and ended.value:
+                self._library.fmi2GetRealStatus(self._component, LAST_SUCCESSFUL_TIME, ctypes.byref(time))
+        except AttributeError:  # the library lacks a function that it should have
+            return None
+        self.messages[:] = kept
+        return time.value if ended.value else None
+
+
+def _resources(fmu: Fmu) -> str:
+    return (fmu.directory.absolute() / "resources").as_uri()

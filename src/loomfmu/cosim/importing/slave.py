@@ -1,0 +1,245 @@
+"""An instantiated FMU under a master's hand.
+
+Loading, checking and the life cycle go through fmpy. While stepping, the same library is called through
+`ctypes.PyDLL` with arguments that were prepared once and point into the master's vectors: a tenth of
+the cost of fmpy's public methods, and the same calls.
+"""
+
+import ctypes
+import logging
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+from urllib.parse import unquote
+
+from fmpy import calloc, free
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2False,
+    fmi2True,
+)
+
+from ...errors import LoomfmuError
+from .fmus import Fmu, Value
+
+WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
+REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
+NEEDS_TOOL = "it says that it needs the tool that made it: needsExecutionTool = true"
+STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
+PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
+
+
+class Ended(LoomfmuError):
+    """An FMU ended the simulation itself, at `time` [s]."""
+
+    def __init__(self, name: str, time: float):
+        super().__init__(f"{name} ended the simulation at {time:.9g} s")
+        self.name, self.time = name, time
+
+
+class Call(NamedTuple):
+    """A prepared call.
+
+    `name` is that of the FMU's function, `kind` the type of the values it moves, empty for a step; `plain`
+    one that is the FMU's own function.
+    """
+
+    function: Callable[..., int]
+    arguments: tuple[Any, ...]
+    name: str
+    kind: str = ""
+    plain: bool = True
+
+
+class Slave:
+    """One instance of an FMU. `messages` holds what it logged as (status, text)."""
+
+    standard = "fmi2"  # what its functions begin with
+    pooled = True  # whether it can be reset for another run
+    _state_word = "state"
+
+    def __init__(self, fmu: Fmu, name: str):
+        self.fmu = fmu
+        self.name = name
+        self.messages: list[tuple[int, str]] = []
+        self.fatal = False
+        self.started = False
+        self._saved: int | None = None
+        fmu.check_platform(name)
+        try:
+            self._slave = self._open()
+        except Exception as error:
+            hint = f" ({NEEDS_TOOL})" if fmu.needs_tool else ""
+            raise LoomfmuError(
+                f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}{hint}"
+            ) from None
+        self._library: Any = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+        self._component = ctypes.c_void_p(self._slave.component)
+
+    def _open(self) -> Any:
+        """fmpy's slave, instantiated."""
+        # live FMUs say there why they fail, for hosts without FMI's logging: here it is in `messages`
+        logging.getLogger("loomfmu.live").addHandler(_unheard)
+        slave = FMU2Slave(
+            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            instanceName=self.name,
+        )  # fmt: skip
+        self._callbacks = fmi2CallbackFunctions()
+        self._callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
+        self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        self._instantiate(slave)
+        return slave
+
+    def _instantiate(self, slave: FMU2Slave) -> None:
+        """As fmpy's own method, but with a plain resource location.
+
+        pythonfmu's wrapper knows no escape but %20 and crashes where it finds no resources.
+        """
+        slave.callbacks = self._callbacks
+        resources = unquote((self.fmu.directory.absolute() / "resources").as_uri())
+        slave.component = slave.fmi2Instantiate(
+            self.name.encode(), fmi2CoSimulation, self.fmu.guid.encode(), resources.encode(),
+            ctypes.byref(self._callbacks), fmi2False, fmi2True,
+        )  # fmt: skip
+        if slave.component is None:
+            raise LoomfmuError("no reason given")
+
+    def _log(
+        self, _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
+    ) -> None:
+        text = (message or b"").decode(errors="replace")
+        self.messages.append((status, text.partition("\n")[2] if text.startswith(PYTHONFMU) else text))
+
+    def _reason(self, error: Exception | None = None) -> str:
+        """The last complaint that the FMU logged, in one line."""
+        texts = [text for status, text in self.messages if status >= DISCARD]
+        return " ".join((texts[-1] if texts else str(error or "no reason given")).split())
+
+    def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Call fmpy; a refusal, by status or by log, becomes one line that names the instance."""
+        seen = len(self.messages)
+        failure: Exception | None = None
+        try:
+            function(*arguments)
+        except FMICallException as error:
+            failure = error
+            self._note(error.status)
+        if failure or any(status >= DISCARD for status, _text in self.messages[seen:]):
+            raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
+
+    def start(self, values: dict[str, Value], stop_time: float) -> None:
+        """Set the experiment up and the values, and enter the initialization."""
+        self.messages.clear()
+        self._do(self._slave.setupExperiment, None, 0.0, stop_time)
+        self.started = True
+        for kind, setter in (
+            ("Real", self._slave.setReal),
+            ("Integer", self._slave.setInteger),
+            ("Boolean", self._slave.setBoolean),
+        ):
+            chosen = [(self.fmu.ports[name], value) for name, value in values.items()]
+            chosen = [(port, value) for port, value in chosen if port.kind == kind]
+            if chosen:
+                self._do(setter, [port.reference for port, _ in chosen], [value for _, value in chosen])
+        self._do(self._slave.enterInitializationMode)
+
+    def finish_initialization(self) -> None:
+        """Leave the initialization; what the FMU complains of, or complained of before, is raised."""
+        if any(status >= DISCARD for status, _text in self.messages):
+            raise LoomfmuError(f"{self.name}: {self._reason()}")
+        self._do(self._slave.exitInitializationMode)
+
+    # ---- prepared calls
+
+    def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
+        """`fmi2GetReal` and its kin, moving values between the FMU and the memory at an address."""
+        name = f"fmi2{action}{kind}"
+        array = (ctypes.c_uint * len(references))(*references)
+        size, values = ctypes.c_size_t(len(references)), ctypes.c_void_p(address)
+        return Call(self._library[name], (self._component, array, size, values), name, kind)
+
+    def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
+        """`fmi2DoStep` over the step that `time` and `step_size` hold when it is called."""
+        arguments = (self._component, time, step_size, ctypes.c_int(1))
+        return Call(self._library["fmi2DoStep"], arguments, "fmi2DoStep")
+
+    # ---- rollback
+
+    def save(self) -> None:
+        """Keep the state as it is for `restore`. Raises LoomfmuError where the FMU cannot."""
+        state = ctypes.c_void_p(self._saved)
+        if self._state_function("Get")(self._component, ctypes.byref(state)) > WARNING:
+            raise LoomfmuError(
+                f"{self.name}: it cannot keep its state, which an iterated loop needs: {self._reason()}"
+            )
+        self._saved = state.value
+
+    def restore(self) -> None:
+        """Go back to the state that was kept last."""
+        if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) > WARNING:
+            raise LoomfmuError(f"{self.name}: it cannot go back to a state of its own: {self._reason()}")
+
+    def forget(self) -> None:
+        """Free the state that was kept."""
+        if self._saved is not None and not self.fatal:
+            self._state_function("Free")(self._component, ctypes.byref(ctypes.c_void_p(self._saved)))
+        self._saved = None
+
+    def _state_function(self, action: str) -> Callable[..., int]:
+        name = f"{self.standard}{action}FMU{self._state_word}"
+        try:
+            return self._library[name]  # type: ignore[no-any-return]
+        except AttributeError:
+            raise LoomfmuError(f"{self.name}: {self.fmu.path} has no {name}") from None
+
+    def failed(self, status: int, action: str, time: float) -> LoomfmuError:
+        """What to raise for a status that is not OK, of a call in the step from `time` on."""
+        self._note(status)
+        if status == REFUSED:
+            return LoomfmuError(f"{self.name} at {time:.9g} s: {self._reason()}")
+        if status == DISCARD and action.endswith("DoStep"):
+            ended = self._ended()
+            if ended is not None:
+                return Ended(self.name, ended if ended >= time else time)
+        kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
+        return LoomfmuError(f"{self.name} at {time:.9g} s: {action} gave {kind}: {self._reason()}")
+
+    def _ended(self) -> float | None:
+        """When the FMU ended the simulation, if that is why it has not made a step: ours never do."""
+        return None
+
+    # ---- end
+
+    def _note(self, status: int) -> None:
+        """After a fatal status nothing more may be called. Our own live FMUs know no other and outlive it."""
+        self.fatal = self.fatal or (status == FATAL and not self.fmu.ours)
+
+    def rest(self) -> bool:
+        """Terminate and reset for another run; whether it can be used again."""
+        try:
+            self.forget()
+            if self.started and not self.fatal:
+                self._slave.terminate()
+            self.started = False
+            if self.pooled and not self.fatal:
+                self._slave.reset()
+                self.messages.clear()
+                return True
+        except FMICallException:
+            pass
+        return False
+
+    def free(self) -> None:
+        """Free the instance, unless it ended fatally: then that is not allowed."""
+        if not self.fatal:
+            self._slave.freeInstance()
+            self.fatal = True
+
+
+_unheard = logging.NullHandler()

@@ -1,0 +1,105 @@
+"""Bringing the instances of a scene to the start of a run.
+
+Sources leave initialization before their sinks, and their outputs are read after that: many FMUs of other
+makers compute these only then. A sink takes them while it is still in initialization itself, since FMI lets
+nobody set an input and read an output afterwards without a step between.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..importing.slave import Slave
+from ..scenes.graph import Wire, step_order
+from .loops import MOST_EXCHANGES, TOLERANCE, Broyden
+from .steppers import Action, perform
+
+Slot = tuple[str, int]
+
+
+@dataclass
+class Start:
+    """The instances in the order of their steps, and the calls that hand over their inputs and outputs.
+
+    `warnings` tell where values do not agree at the start.
+    """
+
+    slaves: Mapping[str, Slave]
+    inputs: Mapping[str, Sequence[Action]]
+    outputs: Mapping[str, Sequence[Action]]
+    wires: Sequence[Wire]
+    lagged: Sequence[Wire]
+    slots: Mapping[tuple[str, str], Slot]
+    reals: NDArray[np.float64]
+    integers: NDArray[np.int32]
+    warnings: list[str] = field(default_factory=list)
+
+    def make(self) -> None:
+        """Let all instances leave initialization, with values that agree."""
+        order = list(self.slaves)
+        closing = {wire.sink[0] for wire in self.lagged}
+        first = next((place for place, name in enumerate(order) if name in closing), len(order))
+        for name in order[:first]:
+            perform(self.inputs[name], 0.0)
+            self._leave(name)
+        self._leave_loops(order[first:])
+
+    def _leave_loops(self, names: Sequence[str]) -> None:
+        """Instances from the first loop on agree before each of them leaves, if something has changed.
+
+        What may change by leaving leaves first: FMUs of other makers.
+        """
+        theirs_first = sorted(names, key=lambda name: self.slaves[name].fmu.ours)
+        within = [wire for wire in self.wires if wire.sink[0] in names and wire.source[0] in names]
+        leaving, _ = step_order(theirs_first, within)
+        handed: dict[Wire, float] = {}
+        settled = changed = True
+        for place, name in enumerate(leaving):
+            if changed:
+                settled &= self._exchange([each for each in names if each in leaving[place:]])
+            handed |= {wire: self._value(wire) for wire in within if wire.sink[0] == name}
+            changed = self._leave(name)
+        if not settled:
+            self.warnings.append(
+                f"loop: the values at the start have not settled after {MOST_EXCHANGES} exchanges"
+            )
+        self.warnings += [
+            f"loop: {wire} changed after {wire.sink[0]} had left initialization:"
+            f" its sample at 0 s is from the value before"
+            for wire, value in handed.items()
+            if not math.isclose(value, self._value(wire), rel_tol=TOLERANCE)
+        ]
+
+    def _value(self, wire: Wire) -> float:
+        kind, slot = self.slots[wire.source]
+        return float(self.reals[slot] if kind == "Real" else self.integers[slot])
+
+    def _leave(self, name: str) -> bool:
+        """Let an instance leave initialization and read its outputs; whether any value is another one now."""
+        before = self.reals.copy(), self.integers.copy()
+        self.slaves[name].finish_initialization()
+        perform(self.outputs[name], 0.0)
+        same = np.array_equal(before[0], self.reals, equal_nan=True)
+        return not (same and np.array_equal(before[1], self.integers))
+
+    def _exchange(self, names: Sequence[str]) -> bool:
+        """Hand all outputs on until loops agree with themselves; where they cannot, hand them on once."""
+        calls = [action for name in names for action in (*self.inputs[name], *self.outputs[name])]
+        perform(calls, 0.0)
+        lagged = [wire for wire in self.lagged if {wire.source[0], wire.sink[0]} <= set(names)]
+        if not lagged:
+            return True
+        first = self.reals.copy(), self.integers.copy()
+        told = {name: len(self.slaves[name].messages) for name in names}
+        slots = dict.fromkeys(self.slots[wire.source] for wire in lagged)
+        solver = Broyden(self.reals, self.integers, [slot for kind, slot in slots if kind == "Real"])
+        if solver.settle(lambda: perform(calls, 0.0)):
+            return True
+        self.reals[:], self.integers[:] = first
+        perform(calls, 0.0)
+        for name, count in told.items():
+            del self.slaves[name].messages[count:]  # of values that were only tried
+        return False

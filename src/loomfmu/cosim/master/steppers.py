@@ -1,0 +1,274 @@
+"""What makes the prepared calls of a master, step after step: in Python, or in C at its speed.
+
+Both make the same calls in the same order on the same memory, so their results are equal to the last bit. The
+compiled one is used where its library is there or can be built; the other one is the reference, and takes
+FMUs whose values must be converted on their way.
+"""
+
+import ctypes
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LoomfmuError
+from ...fmi.cache import cache_directory
+from ...fmi.native import builder as native_builder
+from ..importing.slave import WARNING, Call, Ended, Slave
+from .grid import Span
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int32]
+SOURCE = Path(__file__).with_name("native") / "stepper.c"
+
+
+@dataclass(frozen=True)
+class Action:
+    """A prepared call with whom it goes to."""
+
+    slave: Slave
+    call: Call
+
+
+class Driven(NamedTuple):
+    """Values of the driven inputs: a row for each step, a column for each input."""
+
+    reals: Floats
+    integers: Integers
+
+
+Advanced = tuple[int, LoomfmuError | None]
+
+
+class Stepper(Protocol):
+    """Takes steps and writes all values after each."""
+
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+        """Take the steps of a span; `reals` and `integers` are rows to fill.
+
+        Returns:
+            the number of steps taken, fewer when interrupted, and what an FMU failed with or ended the run
+        with, if one did
+        """
+
+
+def perform(actions: Iterable[Action], time: float) -> None:
+    """Make some calls. Raises LoomfmuError for the first that an FMU refuses."""
+    for action in actions:
+        if (status := action.call.function(*action.call.arguments)) > WARNING:
+            raise action.slave.failed(status, action.call.name, time)
+
+
+@dataclass
+class Memory:
+    """What a master shares with its stepper: values of all outputs, where driven inputs stand, the flag."""
+
+    reals: Floats
+    integers: Integers
+    driven_reals: Sequence[int]
+    driven_integers: Sequence[int]
+    interrupted: ctypes.c_int32
+
+    def drive(self, driven: Driven, step: int) -> None:
+        """Let the driven inputs have their values of a step."""
+        if self.driven_reals:
+            self.reals[self.driven_reals] = driven.reals[step]
+        if self.driven_integers:
+            self.integers[self.driven_integers] = driven.integers[step]
+
+
+def stopped(
+    actions: Sequence[Action], status: int, span: Span, step: int, memory: Memory, reals: Floats,
+    integers: Integers,
+) -> Advanced:  # fmt: skip
+    """What comes of a step one of whose calls had a status that is not OK; that call and those after it.
+
+    Where an FMU ends the simulation at the end of the step the others still make it: it counts. Else it does
+    not.
+    """
+    failures = []
+    for place, action in enumerate(actions):
+        status = action.call.function(*action.call.arguments) if place else status
+        if status > WARNING:
+            failures.append(action.slave.failed(status, action.call.name, float(span.starts[step])))
+            if not _at_end(failures[-1], span, step):
+                return step, failures[-1]
+    reals[step] = memory.reals
+    integers[step] = memory.integers
+    return step + 1, failures[0]
+
+
+def _at_end(failure: LoomfmuError, span: Span, step: int) -> bool:
+    """Whether it is an FMU that ended the simulation at the end of a step."""
+    size, end = float(span.sizes[step]), float(span.ends[step])
+    return isinstance(failure, Ended) and math.isclose(failure.time, end, rel_tol=1e-9, abs_tol=1e-6 * size)
+
+
+class PythonStepper:
+    """Makes the calls one by one through ctypes."""
+
+    def __init__(
+        self, actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double
+    ):
+        self._actions = actions
+        self._calls = [(action.call.function, action.call.arguments) for action in actions]
+        self._memory = memory
+        self._time, self._size = time, size
+
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+        """See `Stepper`."""
+        memory, time, size = self._memory, self._time, self._size
+        for step in range(len(span)):
+            if memory.interrupted.value:
+                return step, None
+            time.value, size.value = span.starts[step], span.sizes[step]
+            memory.drive(driven, step)
+            for function, arguments in self._calls:
+                if (status := function(*arguments)) > WARNING:
+                    done = next(
+                        place for place, each in enumerate(self._actions) if each.call.arguments is arguments
+                    )
+                    return stopped(self._actions[done:], status, span, step, memory, reals, integers)
+            reals[step] = memory.reals
+            integers[step] = memory.integers
+        return len(span), None
+
+
+class _Call(ctypes.Structure):
+    _fields_ = (
+        ("kind", ctypes.c_int64),
+        ("function", ctypes.c_void_p),
+        ("instance", ctypes.c_void_p),
+        ("references", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("values", ctypes.c_void_p),
+    )
+
+
+class _Plan(ctypes.Structure):
+    _fields_ = (
+        ("calls", ctypes.c_void_p),
+        ("call_count", ctypes.c_size_t),
+        ("reals", ctypes.c_void_p),
+        ("real_count", ctypes.c_size_t),
+        ("integers", ctypes.c_void_p),
+        ("integer_count", ctypes.c_size_t),
+        ("driven_reals", ctypes.c_void_p),
+        ("driven_real_count", ctypes.c_size_t),
+        ("driven_integers", ctypes.c_void_p),
+        ("driven_integer_count", ctypes.c_size_t),
+        ("interrupted", ctypes.c_void_p),
+    )
+
+
+class _Outcome(ctypes.Structure):
+    _fields_ = (("call", ctypes.c_int64), ("status", ctypes.c_int64))
+
+
+class CompiledStepper:
+    """Makes the same calls in C."""
+
+    def __init__(
+        self, library: Path, actions: Sequence[Action], memory: Memory, time: ctypes.c_double,
+        size: ctypes.c_double,
+    ):  # fmt: skip
+        # Python's lock is kept, unless an FMU of another maker may have threads that log
+        ours = all(action.slave.fmu.ours for action in actions)
+        self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
+        self._advance.restype = ctypes.c_int64
+        self._actions = actions
+        self._memory = memory
+        self._time, self._size = time, size
+        self._driven = [
+            np.array(slots, dtype=np.int64) for slots in (memory.driven_reals, memory.driven_integers)
+        ]
+        self._calls = (_Call * len(actions))(*(_prepared(action.call) for action in actions))
+        self._plan = _Plan(
+            ctypes.addressof(self._calls), len(actions),
+            memory.reals.ctypes.data, len(memory.reals),
+            memory.integers.ctypes.data, len(memory.integers),
+            *(part for slots in self._driven for part in (slots.ctypes.data, len(slots))),
+            ctypes.addressof(memory.interrupted),
+        )  # fmt: skip
+        self._outcome = _Outcome()
+
+    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+        """See `Stepper`."""
+        self._outcome.status = 0
+        arrays = (span.starts, span.sizes, *driven, reals, integers)
+        assert all(array.flags.c_contiguous for array in arrays)
+        taken = int(
+            self._advance(
+                ctypes.byref(self._plan),
+                ctypes.c_int64(len(span)),
+                *(ctypes.c_void_p(array.ctypes.data) for array in arrays),
+                ctypes.byref(self._outcome),
+            )
+        )
+        if not self._outcome.status:
+            return taken, None
+        self._time.value, self._size.value = span.starts[taken], span.sizes[taken]
+        left = self._actions[self._outcome.call :]
+        return stopped(left, self._outcome.status, span, taken, self._memory, reals, integers)
+
+
+KINDS = {"Real": 0, "Integer": 1, "Boolean": 1, "": 2}  # as stepper.c numbers them
+
+
+def _prepared(call: Call) -> _Call:
+    instance, *moved = call.arguments
+    function = ctypes.cast(cast(Any, call.function), ctypes.c_void_p)
+    if not call.kind:
+        return _Call(KINDS[""], function, instance, None, 0, None)
+    references, count, values = moved
+    return _Call(KINDS[call.kind], function, instance, ctypes.addressof(references), count, values)
+
+
+def stepper(
+    actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double,
+    compiled: bool | None = None,
+) -> Stepper:  # fmt: skip
+    """The compiled stepper where it can be had and the FMUs let it, unless told which one to take.
+
+    Raises LoomfmuError where the compiled one is wanted and cannot be had.
+    """
+    plain = all(action.call.plain for action in actions)
+    library = _library() if compiled or (compiled is None and plain) else None
+    if compiled and (library is None or not plain):
+        raise LoomfmuError("the compiled stepper is not to be had: pip install 'loomfmu[native]'")
+    if library:
+        return CompiledStepper(library, actions, memory, time, size)
+    return PythonStepper(actions, memory, time, size)
+
+
+@cache
+def _library() -> Path | None:
+    """The compiled stepper: it comes with the package, or is built once where a compiler is installed."""
+    platform = native_builder.host_platform()
+    shipped = _shipped(platform)
+    if shipped.exists():
+        return shipped
+    try:
+        kept = cache_directory() / "stepper" / native_builder.library_identity(SOURCE) / shipped.name
+        if not kept.exists():
+            native_builder.build_library(SOURCE, kept, platform)
+    except (LoomfmuError, OSError):  # no compiler, or no place to keep what it makes
+        return None
+    return kept
+
+
+def _shipped(platform: str) -> Path:
+    """Where the compiled stepper of a platform lies in a package that brings it."""
+    return SOURCE.with_name(platform) / f"stepper{native_builder.PLATFORMS[platform].suffix}"
+
+
+def build_all() -> list[Path]:
+    """Build the stepper for all platforms, for a package that brings it. Raises LoomfmuError, OSError."""
+    for platform in native_builder.PLATFORMS:
+        native_builder.build_library(SOURCE, _shipped(platform), platform)
+    return [_shipped(platform) for platform in native_builder.PLATFORMS]

@@ -1,0 +1,341 @@
+"""The window grid: steps where the claims look, landing on what they look for; coarse ones elsewhere.
+
+A coarse run of what the claims need tells about where that is: the edges of the belt's window of risk and
+its lowest point, the edges of a dwell, the angles that a claim names. A second one, with points in the
+windows of risk, tells it so well that steps can land on it. A sample has no error of interpolation, and
+close to one it is small: so few steps do for what takes many equal ones.
+
+That holds for what follows from the sample alone. What integrates over its inputs keeps the error of every
+step, and how large that is depends on the motion: it gets the scene's own steps, and the landings.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import units
+from ...errors import LoomfmuError
+from ...traces import Recording
+from ...variables import MOTION, variables_of
+from ..claims import claims, curves
+from ..master.grid import Grid, chosen, period, uniform
+from ..scenes.graph import step_order
+from ..scenes.scene import Scene
+from ..scenes.standard_loom import turns_others
+from .plan import in_memory
+from .pruning import prune
+from .requested import shaft_angle, with_rates
+
+Floats = NDArray[np.float64]
+Look = Callable[..., None]
+
+SCOUTS = 2  # runs that look for the windows: the second one sees the lowest points
+MOST_STEPS = 10_000_000  # that are kept in memory, with what is watched at each
+INSIDE = 6  # points within a window of risk, for the second scout
+REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
+APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
+NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
+WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that it stands for has none
+
+
+@dataclass
+class Places:
+    """Where claims look, [s]: points to land on, points about them, and the longest step anywhere."""
+
+    period: float
+    most: float
+    points: list[float] = field(default_factory=list)
+    about: list[float] = field(default_factory=list)
+
+    def bracket(self, time: float, reach: float) -> None:
+        """Land on a point that is known to within a reach, and on both of its sides."""
+        if any(abs(time - point) < 0.5 * reach for point in self.points):
+            return  # two claims look for the same
+        self.points.append(time)
+        self.about += [time - reach, time + reach]
+
+
+def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
+    """The communication points of a scene whose `grid` is "windows" and that keeps these signals.
+
+    Raises:
+        LoomfmuError: the scene has no shaft or no claim to look for, or an FMU takes equal steps only
+    """
+    _check(scene)
+    fine = period(scene) / scene.steps_per_period
+    needed = prune(scene, signals).scene
+    coarse, why = min(_showing(scene))
+    unequal = _unequal(needed)
+    if unequal:
+        return replace(uniform(scene), notes=(f"steps: the scene's own everywhere ({unequal})",))
+    longest = coarse
+    for name, instance in needed.instances.items():
+        if instance.fmu.keeps == MOTION and longest > fine:
+            longest, why = fine, f"{name} integrates"
+    places, scouted = _scouted(scene, signals, coarse, longest)
+    points = _merged(_equal(scene, places.most), places)
+    notes = (
+        f"steps: {period(scene) / places.most:.0f} in a revolution{_because(why)}, and landings"
+        f" where the claims look; {scouted} steps of FMUs to find these",
+    )
+    return chosen(scene, points, notes, scouted)
+
+
+def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float) -> tuple[Places, int]:
+    """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
+    # an input that the scene drives has kinks
+    kinks = [turn * period(scene) for drive in scene.drives for turn in drive.periods]
+    places, scouted = Places(period(scene), longest, kinks), 0
+    for _ in range(SCOUTS):
+        points = _merged(_equal(scene, coarse), places)
+        recording, plan, steps, _ended, _warnings = in_memory(
+            scene, _watched(scene, signals), chosen(scene, points)
+        )
+        scouted += len(plan.pruned.scene.instances) * steps
+        places = Places(period(scene), longest, list(kinks))
+        for claim in scene.claims:
+            arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
+            LOOKS.get(claim["kind"], _everywhere)(places, recording, scene, **arguments)
+        for output in _latched(scene, signals):
+            _extremes(places, recording, scene, output)
+    return places, scouted
+
+
+def _because(why: str) -> str:
+    return f" ({why})" if why else ""
+
+
+def _unequal(needed: Scene) -> str:
+    """What in a run takes no steps but equal ones, and why: they might tell it something else.
+
+    A loop, a shaft that feels its load, an FMU that we know nothing of.
+    """
+    _order, lagged = step_order(needed.instances, needed.wires)
+    if lagged:
+        return f"{lagged[0]} closes a loop"
+    for name, instance in needed.instances.items():
+        component = instance.fmu.component
+        if component is None or (component.keeps == MOTION and turns_others(component)):
+            return f"{name} integrates"
+    return ""
+
+
+def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
+    """The longest steps that show how mechanisms move, how the shaft's speed changes, and why."""
+    yield period(scene) / scene.coarse_steps_per_revolution, ""
+    for each in scene.instances.values():
+        if each.fmu.component:
+            yield each.fmu.component.longest_step(each.effective())
+
+
+def _check(scene: Scene) -> None:
+    where = 'grid = "windows"'
+    if not scene.claims:
+        raise LoomfmuError(f"{where}: the scene has no claims, whose windows these could be")
+    if "shaft" not in scene.instances:
+        raise LoomfmuError(f"{where}: the scene has no shaft, along which the claims look")
+    if scene.coarse_steps_per_revolution > scene.steps_per_period:
+        raise LoomfmuError(
+            f"coarse_steps_per_revolution = {scene.coarse_steps_per_revolution} is outside"
+            f" [1, {scene.steps_per_period}], the fine steps_per_revolution"
+        )
+    for name, instance in scene.instances.items():
+        if instance.fmu.fixed_step:
+            raise LoomfmuError(
+                f"{where}: {name} takes equal steps only ({instance.fmu.name} has"
+                " canHandleVariableCommunicationStepSize = false)"
+            )
+
+
+def _equal(scene: Scene, longest: float) -> Floats:
+    """Equal steps no longer than that."""
+    end = uniform(scene).stop_time
+    steps = max(1, math.ceil(end / longest - 1e-9))
+    if steps > MOST_STEPS:
+        raise LoomfmuError(
+            f'grid = "windows": {steps} steps are more than {MOST_STEPS}, which it keeps in memory;'
+            ' take grid = "uniform" or fewer revolutions'
+        )
+    return np.linspace(0.0, end, steps + 1)
+
+
+def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
+    """The outputs of an instance that hold an extreme or are followed by one: of which, 1 for its lowest."""
+    component = scene.instances[instance].fmu.component
+    found: dict[str, tuple[str, float]] = {}
+    for variable in variables_of(component) if component else ():
+        for followed, sign in ((variable.lowest_of, 1.0), (variable.highest_of, -1.0)):
+            if followed:
+                found |= {variable.name: (followed, sign), followed: (followed, sign)}
+    return found
+
+
+def _latched(scene: Scene, signals: Iterable[str]) -> list[str]:
+    """The signals that hold an extreme so far."""
+    parts = [signal.split(".") for signal in signals]
+    held = [(name, variable, _extremes_of(scene, name).get(variable)) for name, variable in parts]
+    return [f"{name}.{variable}" for name, variable, extreme in held if extreme and extreme[0] != variable]
+
+
+def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
+    """The signals that tell where the claims look, and where what is latched in those kept comes from."""
+    wanted, owners = list(shaft_angle(scene)), list[str]()
+    for claim in scene.claims:
+        signals = claims.signals_of(claim, scene.instances)
+        wanted += signals if LOOKS.get(claim["kind"]) not in (None, _nowhere) else []
+        owners += [signal.split(".")[0] for signal in signals]
+    owners += [signal.split(".")[0] for signal in _latched(scene, kept)]
+    for owner in dict.fromkeys(owners):
+        followed = dict.fromkeys(name for name, _sign in _extremes_of(scene, owner).values())
+        component = scene.instances[owner].fmu.component
+        windows = component.windows if component and followed else ()
+        wanted += [f"{owner}.{name}" for name in (*windows, *followed)]
+    return with_rates(scene, wanted)
+
+
+def _merged(equal: Floats, places: Places) -> Floats:
+    """All points in order. Of two that are too close the one that a claim looks for stays."""
+    apart = min(APART * places.period, NARROW * float(equal[1] - equal[0]))
+    kept = np.empty(0)
+    for points in (equal[[0, -1]], _thinned(places.points, apart), _thinned(places.about, apart), equal):
+        points = points[(points >= equal[0]) & (points <= equal[-1])]
+        if len(kept):
+            after = np.clip(np.searchsorted(kept, points), 1, len(kept) - 1)
+            away = np.minimum(np.abs(points - kept[after - 1]), np.abs(kept[after] - points))
+            points = points[away > apart]
+        kept = np.sort(np.concatenate([kept, points]))
+    return kept
+
+
+def _thinned(points: Sequence[float], apart: float) -> Floats:
+    """Points in order, without those that are too close to the one before them that stays."""
+    kept: list[float] = []
+    for point in sorted(points):
+        if not kept or point - kept[-1] > apart:
+            kept.append(point)
+    return np.array(kept)
+
+
+# ---- where the claims of each kind look
+
+
+def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> None:
+    """The edges of each window, the extreme within once samples show it, else points to see it by."""
+    instance, _, variable = signal.partition(".")
+    followed, sign = _extremes_of(scene, instance)[variable]
+    for low, high in _windows(trace, scene, instance):
+        places.points += [low, high]
+        inside = np.flatnonzero((trace.time > low) & (trace.time < high))
+        if len(inside) < INSIDE:
+            places.about += list(np.linspace(low, high, INSIDE + 2)[1:-1])
+            continue
+        seen = slice(inside[0], inside[-1] + 1)
+        spacing = (high - low) / (INSIDE + 1)
+        values = sign * trace[f"{instance}.{followed}"][seen]
+        if followed in WITH_POLES:
+            values = -(values**-2.0)
+        for time in _lowest_points(trace.time[seen], values):
+            places.bracket(time, REACH * spacing)
+
+
+def _windows(trace: Recording, scene: Scene, instance: str) -> list[tuple[float, float]]:
+    """Where all outputs that bound an instance's windows are positive: splines through the samples tell."""
+    from scipy.interpolate import CubicSpline
+
+    component = scene.instances[instance].fmu.component
+    names = component.windows if component else ()
+    bounding = [CubicSpline(trace.time, trace[f"{instance}.{name}"]) for name in names]
+    roots = [root for each in bounding for root in each.roots(extrapolate=False)]
+    edges = np.unique([*trace.time[[0, -1]], *roots])
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    within = np.all([np.ones(len(middles), dtype=bool), *(each(middles) > 0.0 for each in bounding)], axis=0)
+    return [(float(edges[place]), float(edges[place + 1])) for place in np.flatnonzero(within)]
+
+
+def _lowest_points(time: Floats, values: Floats) -> list[float]:
+    """Times of the local minima inside, on the spline through the samples."""
+    from scipy.interpolate import CubicSpline
+
+    curve = CubicSpline(time, values)
+    turns = curve.derivative().roots(extrapolate=False)
+    return [float(turn) for turn in turns[curve(turns, 2) > 0.0]]
+
+
+def _bounded(sign: float) -> Look:
+    """Looks of a claim that a signal stays on one side: its extremes, and the edges of the claim's window."""
+
+    def look(
+        places: Places, trace: Recording, scene: Scene, signal: str, bound: object,
+        window: Sequence[float | str] | None = None,
+    ) -> None:  # fmt: skip
+        instance, _, variable = signal.partition(".")
+        for edge in window or ():
+            places.points += curves.times_at(trace, units.parse(edge, "rad"))
+        if variable in _extremes_of(scene, instance):
+            _extremes(places, trace, scene, signal)
+        elif trace.rate(signal) is None:
+            _everywhere(places, trace, scene)
+        else:
+            for time in _lowest_points(trace.time, sign * trace[signal]):
+                place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
+                places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
+
+    return look
+
+
+def _lowest_margin(places: Places, trace: Recording, scene: Scene, bound: object, belt: str = "belt") -> None:
+    _extremes(places, trace, scene, f"{belt}.lowest_margin")
+
+
+def _dwell(
+    places: Places, trace: Recording, scene: Scene, heald: str, at_least: object,
+    tolerance: float | str = claims.TOLERANCE,
+) -> None:  # fmt: skip
+    stroke = trace.parameter(f"{heald}.stroke")
+    _levels(places, trace, heald, units.parse(tolerance, "1") * stroke)
+
+
+def _clear_shed(
+    places: Places, trace: Recording, scene: Scene, heald: str, clearance: float | str, at_least: object
+) -> None:
+    stroke, ratio = (trace.parameter(f"{heald}.{name}") for name in ("stroke", "warp_ratio"))
+    _levels(places, trace, heald, 0.5 * stroke - units.parse(clearance, "m") / ratio)
+
+
+def _levels(places: Places, trace: Recording, heald: str, distance: float) -> None:
+    """Where a frame passes a distance from the ends of its stroke."""
+    lift = curves.Motion(trace, f"{heald}.lift")
+    stroke = trace.parameter(f"{heald}.stroke")
+    places.points += lift.crossings(distance) + lift.crossings(stroke - distance)
+
+
+def _dwell_contains(
+    places: Places, trace: Recording, scene: Scene, heald: str, angles: Sequence[float | str],
+    tolerance: object = None,
+) -> None:  # fmt: skip
+    for angle in angles:
+        places.points += curves.times_at(trace, units.parse(angle, "rad"))
+
+
+def _nowhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
+    """A claim on what its component latches, on its own continuous curve."""
+
+
+def _everywhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
+    """A claim that is judged at the samples needs them all."""
+    places.most = min(places.most, period(scene) / scene.steps_per_period)
+
+
+LOOKS: dict[str, Look] = {
+    "above": _bounded(1.0),
+    "below": _bounded(-1.0),
+    "lowest_margin": _lowest_margin,
+    "dwell": _dwell,
+    "clear_shed": _clear_shed,
+    "dwell_contains": _dwell_contains,
+    "peak_load": _nowhere,
+    "stop_contacts": _nowhere,
+}

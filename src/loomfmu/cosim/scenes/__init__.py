@@ -1,0 +1,1 @@
+"""Scenes: what is simulated, read from text, checked, and wired."""

@@ -1,0 +1,325 @@
+"""The instances of a scene: which FMU each is, and the values it starts with."""
+
+import re
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from ... import machines
+from ...errors import LoomfmuError, suggestion
+from ..importing import fmus
+from ..importing.fmus import Fmu, Port, Value
+from . import standard_loom
+from .graph import Wire
+
+COARSE = "coarse_steps_per_revolution"
+WHOLE = ("grid", COARSE, "coupling")  # keys of the scene itself that can be set beside its times
+KEYS = (
+    "title",
+    "description",
+    "revolutions",
+    "steps_per_revolution",
+    "duration",
+    "step",
+    *WHOLE,
+    "record",
+    "loom",
+    "wires",
+    "inputs",
+    "claims",
+)
+TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
+PARAMETER_SETS = ("machine", "head", "pattern", "component")
+FILES = ("fmu", "units")
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
+# switch of our components -> what counts only while it is on, and what only while it is off
+SWITCHES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "follow_shaft": (tuple(standard_loom.FOLLOWED), ("speed", "start_angle")),
+    "follow_lift": (("lift_fraction", "lift_rate", "lift_acceleration"), ()),
+    "prescribe_length_factor": (("prescribed_length_factor",), ("guide_clearance",)),
+}
+SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
+
+
+@dataclass
+class Instance:
+    """One FMU of a scene with the values that are set at its start (SI).
+
+    `published` are the machine and the head that it was told to be of, `doubts` what is odd about values.
+    """
+
+    name: str
+    fmu: Fmu
+    values: dict[str, Value] = field(default_factory=dict)
+    published: dict[str, str] = field(default_factory=dict)
+    doubts: dict[str, str] = field(default_factory=dict)
+
+    def set(self, key: str, given: Any) -> None:
+        """Set a parameter, the start of an input, or all parameters that a published name stands for.
+
+        Raises LoomfmuError for what cannot be set.
+        """
+        if self.fmu.ours and key in machines.TAKERS:
+            self._publish(key, given)
+            return
+        if self.fmu.ours and key == "pattern":
+            if "pattern_length" not in self.fmu.ports:
+                raise LoomfmuError(f"{self.name}.pattern: a {self.fmu.name} has no pattern")
+            self.values |= standard_loom.pattern(given, f"{self.name}.pattern")
+            return
+        name = self.fmu.name_of(key)
+        if name not in self.fmu.ports:
+            settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
+            extra = PARAMETER_SETS if self.fmu.built else FILES
+            hint = suggestion(key, [*settable, *extra], settable)
+            if key in KEYS:
+                hint = f": {key} belongs to the scene, write it above the first [table]"
+            raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
+        port = self.fmu.ports[name]
+        if not _can_be_set(port):
+            kind = "an output" if port.causality == "output" else "a state"
+            raise LoomfmuError(f"{self.name}.{key} is {kind} of {self.fmu.name} and cannot be set")
+        where = f"{self.name}.{key}"
+        self.values[name] = port.value(given, where)
+        self.doubts[where] = port.doubt(given, where)
+
+    def _publish(self, kind: str, given: Any) -> None:
+        """Take all that a published machine or head gives this component."""
+        where = f"{self.name}.{kind}"
+        if not isinstance(given, str):
+            raise LoomfmuError(f"{where} = {given!r} is not a name in quotes")
+        if self.fmu.name not in machines.TAKERS[kind]:
+            takers = " or a ".join(machines.TAKERS[kind])
+            raise LoomfmuError(f"{where}: a {self.fmu.name} takes nothing from a {kind}, only a {takers}")
+        found = machines.parameters(self.fmu.name, **{kind: given})
+        for key in found:
+            self.fmu.port(key, self.name)  # an FMU of another version may lack it
+        self.values |= found
+        self.published[kind] = given
+
+    def settle(self) -> None:
+        """What our FMUs are told of our master: it works in dependency order."""
+        if self.fmu.ours and "inputs_at_step_end" in self.fmu.ports:
+            self.values.setdefault("inputs_at_step_end", True)
+
+    def follow(self, wire: Wire) -> None:
+        """A mechanism whose shaft angle is wired follows it, and a frame the lift of its dobby."""
+        switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
+        if self.fmu.ours and switch in self.fmu.ports:
+            self.values.setdefault(switch, True)
+
+    def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
+        """Its parameters and inputs at the start, without what is fed and what has no effect."""
+        values: dict[str, Value] = {}
+        for port in self.fmu.ports.values():
+            start = self.values.get(port.name, port.start)
+            if _can_be_set(port) and port.name not in fed and start is not None:
+                values[port.name] = TYPES[port.kind](start)
+        for switch, (when_on, when_off) in SWITCHES.items() if self.fmu.ours else ():
+            if switch in values:
+                for idle in when_off if values[switch] else when_on:
+                    values.pop(idle, None)
+        return values
+
+
+def _can_be_set(port: Port) -> bool:
+    return port.causality in ("parameter", "input")
+
+
+def check_name(name: str) -> None:
+    """Refuse what cannot be the name of an instance."""
+    if not NAME.fullmatch(name):
+        raise LoomfmuError(f"instance name {name!r} is not letters, digits and _, a letter first")
+    if name in TAKEN:
+        raise LoomfmuError(f"instance name {name!r} is taken: a trace has its own {name}")
+
+
+def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+    """The table of each instance: the standard loom's, then what the scene says of each."""
+    given = _loom(tables, directory)
+    groups: list[str] = []
+    for key, table in tables.items():
+        if key in KEYS:
+            continue
+        if not isinstance(table, dict):
+            raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
+        siblings = [] if "component" in table else [name for name in tables if name != key]
+        if key not in given and members(key, [*given, *siblings]):
+            groups.append(key)
+            continue
+        known = standard_loom.COMPONENT_OF
+        named = "component" in table or "fmu" in table
+        if key not in given and not named and standard_loom.stem(key) not in known:
+            hint = suggestion(key, dict.fromkeys([*KEYS, *given, *known]))
+            raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
+        check_name(key)
+        given[key] = given.get(key, {}) | table
+    for key in groups:  # a table for all members says less than a member's own
+        for member in members(key, given):
+            given[member] = given[member] | tables[key] | tables.get(member, {})
+    return given
+
+
+def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+    """The instances that a scene need not spell out. One that runs by seconds needs no shaft."""
+    loom = tables.get("loom")
+    if loom is None:
+        return {} if "duration" in tables or "step" in tables else {"shaft": {}}
+    if not isinstance(loom, dict):
+        raise LoomfmuError(f"loom = {loom!r} is no table")
+    return standard_loom.loom(loom, directory)
+
+
+def members(key: str, given: Iterable[str]) -> list[str]:
+    """The numbered instances that a name without number stands for."""
+    if key in given:
+        return []
+    return [name for name in given if standard_loom.stem(name) == key]
+
+
+def override(
+    tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any, directory: Path
+) -> None:
+    """Let one value of the scene be another."""
+
+    def component(name: str) -> str:
+        fmu = _fmu(name, given[name], directory)
+        return fmu.name if fmu.ours else ""
+
+    for member, variable in overridden(given, key, component):
+        about = unit_of(variable)
+        if about:
+            stated = given[member].get("units", {})
+            value = {**stated, about: value} if isinstance(stated, dict) else stated
+            given[member] = given[member] | {"units": value}
+        elif member:
+            given[member] = given[member] | {variable: value}
+        else:
+            tables[variable] = value
+
+
+def unit_of(key: str) -> str:
+    """The variable whose unit a key of an instance states, such as `units.flange.w`; nothing for others."""
+    return key.removeprefix("units.") if key.startswith("units.") else ""
+
+
+def components(instances: dict[str, Instance]) -> Callable[[str], str]:
+    """What tells the component of each instance; nothing for an FMU of another maker."""
+    return lambda name: instances[name].fmu.name if instances[name].fmu.ours else ""
+
+
+def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) -> list[tuple[str, str]]:
+    """What a key of `--set` or of a sweep stands for, as (instance, variable).
+
+    The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
+    instances that take something of it.
+    """
+    given = list(given)
+    instance, dot, variable = key.partition(".")
+    if instance == "loom" and "loom" not in given:
+        if variable not in machines.TAKERS:
+            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, machines.TAKERS)}")
+        key, dot = variable, ""
+    if key in machines.TAKERS:
+        takers = machines.TAKERS[key]
+        found = [name for name in given if component(name) in takers]
+        if not found:
+            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} that would take it")
+        return [(name, key) for name in found]
+    if not dot:
+        if key not in (*TIMES, *WHOLE):
+            known = [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in given)]
+            raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
+        return [("", key)]
+    found = [instance] if instance in given else members(instance, given)
+    if not found:
+        raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, given)}")
+    return [(member, variable) for member in found]
+
+
+def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
+    """An instance with its values checked and in SI: a value of its own prevails over its machine's."""
+    fmu = _fmu(name, table, directory)
+    found = Instance(name, fmu)
+    for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
+        if key != "component" and (key not in FILES or fmu.built):
+            found.set(key, table[key])
+    found.settle()
+    return found
+
+
+def mixed(instances: dict[str, Instance]) -> list[str]:
+    """What tells of a loom whose instances are not all of one machine, or not all of one head."""
+    notes = []
+    for kind, takers in machines.TAKERS.items():
+        fitted = [each for each in instances.values() if each.fmu.ours and each.fmu.name in takers]
+        names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
+        differing = [
+            each
+            for each in fitted
+            if kind not in each.published and not all(_is(each, kind, n) for n in names)
+        ]
+        if len(names) > 1 or differing:
+            shown = [
+                f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published
+            ] + [f"{each.name} has values of its own" for each in differing]
+            notes.append(f"the loom mixes {kind}s: {', '.join(shown)}; {kind} = NAME sets all of them")
+    return notes
+
+
+def _is(each: Instance, kind: str, name: str) -> bool:
+    """Whether an instance has the values of a published machine or head though it does not name it."""
+    wanted = machines.parameters(each.fmu.name, **{kind: name})
+    return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
+
+
+def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
+    """The FMU that a table names: a file, or one of our components."""
+    for key in ("component", "fmu"):
+        if not isinstance(table.get(key, ""), str):
+            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
+    component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
+    if "fmu" not in table:
+        fmu = fmus.of_component(str(component))
+        shafts = standard_loom.shafts()
+        if name == "shaft" and fmu.name not in shafts:
+            raise LoomfmuError(
+                f"shaft.component = {component!r}: the shaft of a scene is a {' or a '.join(shafts)}"
+            )
+        return fmu
+    if "component" in table:
+        raise LoomfmuError(f"{name} has both a component and an fmu; it is one of them")
+    try:
+        fmu = with_units(fmus.load(directory / table["fmu"]), table.get("units", {}), name)
+    except LoomfmuError as error:
+        raise LoomfmuError(
+            str(error) if str(error).startswith(f"{name}.") else f"{name}.fmu: {error}"
+        ) from None
+    return as_shaft(fmu) if name == "shaft" else fmu
+
+
+def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
+    """An FMU with the units that a scene says its variables have, where it says none itself."""
+    if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
+        raise LoomfmuError(f'{name}.units = {stated!r} is no table of variable = "unit"')
+    ports = dict(fmu.ports)
+    for key, unit in stated.items():
+        port = fmu.port(fmu.name_of(key), f"{name}.units")
+        ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
+    return replace(fmu, ports=ports)
+
+
+def as_shaft(fmu: Fmu) -> Fmu:
+    """An FMU in the place of the main shaft: it tells the angle, and its other outputs are its rates."""
+    ports = dict(fmu.ports)
+    for variable, (unit, rate) in SHAFT.items():
+        port = ports.get(variable)
+        fits = port is not None and port.causality == "output" and port.unit == unit
+        if port is not None and fits:
+            ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
+        elif variable == "angle":
+            raise LoomfmuError(f"{fmu.path}: the shaft of a scene has an output angle in rad")
+    return replace(fmu, ports=ports)

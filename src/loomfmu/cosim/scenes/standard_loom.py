@@ -1,0 +1,136 @@
+"""The loom that a scene need not spell out: its instances, their components and their wiring."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from ...components import COMPONENTS
+from ...components.shaft_driven import ShaftDriven
+from ...components.terminals import SHAFT
+from ...errors import LoomfmuError, suggestion
+from ...variables import Component, Terminal, variables_of
+from . import weave as weaves
+
+COMPONENT_OF = {
+    "shaft": "MainShaft",
+    "weft": "WeftInsertion",
+    "belt": "BeltMonitor",
+    "dobby": "DobbyDrive",
+    "heald": "HealdFrame",
+    "damper": "HealdDamper",
+    "warp": "WarpTension",
+    "reed": "ReedBeatUp",
+    "lock": "PatternLock",
+    "wrap": "BeltWrap",
+    "roller": "DetachingRoller",
+}
+
+# kind of terminal -> the instance whose outputs it carries; # is the number of the instance that follows it
+SOURCES = {"shaft": "shaft", "head": "weft", "rotor": "dobby", "frame": "heald_#"}
+
+# input of a mechanism on the shaft -> output of the shaft that it follows
+FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
+
+FRAME_FITTINGS = {"warps": "warp", "dampers": "damper"}  # one for each frame
+LOOM_FITTINGS = {"reed": "reed", "locks": "lock"}  # one for the loom
+LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
+PICKS_IN_A_WORD = 16
+
+
+def stem(instance: str) -> str:
+    """An instance's name without its number: `heald_3` is a `heald`."""
+    return re.sub(r"_\d+$", "", instance)
+
+
+def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+    """Instances of a standard loom, each with the keys that a scene would give it.
+
+    `machine` and `head` name published ones, `weave` is one string of pegs for each frame
+    (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
+    `warps` loads it with its threads, `reed` and `locks` add beat-up and pattern locks.
+    """
+    for key in table:
+        if key not in LOOM_KEYS:
+            raise LoomfmuError(f"loom.{key} is unknown{suggestion(key, LOOM_KEYS)}")
+    frames = weaves.parse(table["weave"], directory).pegs if "weave" in table else ()
+    machine = {key: table[key] for key in ("machine",) if key in table}
+    head = {key: table[key] for key in ("head",) if key in table}
+    instances: dict[str, dict[str, Any]] = {"shaft": {}, "weft": machine | head, "belt": machine | head}
+    if frames:
+        instances["dobby"] = {}
+    for number, pegs in enumerate(frames, start=1):
+        instances[f"heald_{number}"] = {"pattern": pegs}
+    for key, name in FRAME_FITTINGS.items():
+        if _wanted(table, key):
+            instances |= {f"{name}_{number}": {} for number in range(1, len(frames) + 1)}
+    for key, name in LOOM_FITTINGS.items():
+        if _wanted(table, key):
+            instances[name] = {}
+    return instances
+
+
+def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:
+    """Put the pegs of a WIF file in the place of its name; the texts of such files, as they were read."""
+    table = tables.get("loom")
+    if not isinstance(table, dict) or not weaves.is_wif(table.get("weave")):
+        return {}
+    given = table["weave"]
+    path = directory / given
+    text = weaves.wif_text(path)
+    tables["loom"] = table | {"weave": list(weaves.of_wif(text, path).pegs)}
+    return {given: text}
+
+
+def _wanted(table: dict[str, Any], key: str) -> bool:
+    wanted = table.get(key, False)
+    if not isinstance(wanted, bool):
+        raise LoomfmuError(f"loom.{key} = {wanted!r} is neither true nor false")
+    return wanted
+
+
+def pattern(pegs: Any, where: str) -> dict[str, int]:
+    """Parameters of a heald frame for a string of pegs, the first pick first: 1 raised, 0 lowered.
+
+    >>> pattern("10", "heald_1.pattern")["pattern_1"]
+    1
+    """
+    pegs = weaves.check_pegs(pegs, where)
+    values = {"pattern_length": len(pegs)}
+    for word in range(weaves.MOST_PICKS // PICKS_IN_A_WORD):
+        part = pegs[word * PICKS_IN_A_WORD : (word + 1) * PICKS_IN_A_WORD]
+        values[f"pattern_{word + 1}"] = int(part[::-1] or "0", 2)
+    return values
+
+
+def wires(instance: str, component: type[Component]) -> dict[str, str]:
+    """Where the inputs of an instance are wired to in a standard loom, by its declarations."""
+    found = {v.name: v.source for v in variables_of(component) if v.causality == "input" and v.source}
+    for terminal in _terminals(component, "input"):
+        owner = SOURCES[terminal.name]
+        feeding = COMPONENTS[COMPONENT_OF[owner.removesuffix("_#")]]
+        (outputs,) = (each for each in _terminals(feeding, "output") if each.name == terminal.name)
+        pairs = zip(terminal.variables, outputs.variables, strict=True)
+        found |= {sink: f"{owner}.{output}" for sink, output in pairs}
+    number = instance.removeprefix(stem(instance))
+    return {name: source.replace("_#", number) for name, source in found.items()}
+
+
+def _terminals(component: type[Component], causality: str) -> list[Terminal]:
+    """The terminals of a component whose variables are its inputs, or its outputs."""
+    names = {v.name for v in variables_of(component) if v.causality == causality}
+    return [terminal for terminal in component.terminals if terminal.variables[0] in names]
+
+
+def shaft_inputs(component: type[Component]) -> tuple[str, ...]:
+    """The inputs by which a component follows a shaft; none where it follows none."""
+    return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
+
+
+def shafts() -> list[str]:
+    """The components that turn others: those whose outputs are a shaft."""
+    return [name for name, each in COMPONENTS.items() if turns_others(each)]
+
+
+def turns_others(component: type[Component]) -> bool:
+    """Whether the outputs of a component are a shaft that others follow."""
+    return any(terminal.name == SHAFT.name for terminal in _terminals(component, "output"))

@@ -1,0 +1,80 @@
+"""What gives the inputs of a scene their values: wires from outputs, and tables that drive them."""
+
+from typing import Any
+
+from ...errors import LoomfmuError, shown, suggestion
+from ..importing.ports import mismatch
+from . import standard_loom
+from .drives import Drive, drive, split
+from .graph import Wire
+from .instances import Instance
+
+
+def wires_of(instances: dict[str, Instance], spelt_out: Any) -> list[Wire]:
+    """The standard loom's wires where both ends are there, and those that the scene spells out."""
+    if not isinstance(spelt_out, dict):
+        raise LoomfmuError('wires is no table of "instance.input" = "instance.output"')
+    sources: dict[str, str] = {}
+    for name, each in instances.items():
+        standard = standard_loom.wires(name, each.fmu.component) if each.fmu.component else {}
+        for sink, source in standard.items():
+            if source.split(".")[0] in instances:
+                sources[f"{name}.{sink}"] = source
+    for sink, source in dotted(spelt_out).items():
+        if source is False:
+            if sources.pop(sink, None) is None:
+                raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
+        else:
+            sources[sink] = source
+    return [wire(instances, sink, source) for sink, source in sources.items()]
+
+
+def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A TOML table with its keys joined by dots, quoted or not."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        flat |= dotted(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return flat
+
+
+def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
+    """A wire whose ends are known, of the right kind and of the same unit."""
+    if not isinstance(source, str):
+        raise LoomfmuError(
+            f'wires: "{sink}" = {shown(source).lower()} is neither an output nor false, which cuts the wire'
+        )
+    where = f"wire {source} -> {sink}"
+    ends = []
+    for end, causality in ((sink, "input"), (source, "output")):
+        name, _, variable = str(end).partition(".")
+        if name not in instances:
+            raise LoomfmuError(f"{where}: there is no instance {name!r}{suggestion(name, instances)}")
+        fmu = instances[name].fmu
+        variable = fmu.name_of(variable)
+        fitting = [port.name for port in fmu.ports.values() if port.causality == causality]
+        if variable not in fitting:
+            raise LoomfmuError(
+                f"{where}: {name} has no {causality} {variable!r}{suggestion(variable, fitting)}"
+            )
+        ends.append((name, variable))
+    to, origin = (instances[name].fmu.ports[variable] for name, variable in ends)
+    reason = mismatch(str(source), origin, sink, to)
+    if reason:
+        raise LoomfmuError(f"{where}: {reason}")
+    if origin.kind != to.kind:
+        raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
+    return Wire(source=ends[1], sink=ends[0])
+
+
+def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
+    """The inputs that the scene drives along tables; an input has one source."""
+    if not isinstance(table, dict):
+        raise LoomfmuError('inputs is no table of "instance.input" = [[revolution, value], ...]')
+    drives = []
+    for name, rows in dotted(table).items():
+        owner, variable = split(name, instances)
+        variable = instances[owner].fmu.name_of(variable)
+        if any(each.sink == (owner, variable) for each in wires):
+            raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
+        drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
+    return drives

@@ -1,0 +1,80 @@
+"""What the writer and the reader of system packages (SSP 1.0) share: names, and units as XML."""
+
+from collections.abc import Iterable
+from xml.etree.ElementTree import Element, SubElement
+
+from ...errors import LoomfmuError
+from ...fmi.description.parameter_sets import SSC, SSV
+from ..importing.ports import BASES, Definition
+
+SSD_FILE = "SystemStructure.ssd"
+PARAMETER_SET = "application/x-ssp-parameter-set"
+FMU = "application/x-fmu-sharedlibrary"
+OSP = "com.opensimulationplatform"  # annotation of the Open Simulation Platform: the step
+OMS = "org.openmodelica"  # annotation of OMSimulator: its master and its step
+OURS = "org.pypi.loomfmu"  # our own annotation: the text of the scene
+NAMESPACES = {
+    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+    "ssc": SSC,
+    "ssv": SSV,
+    "ssm": "http://ssp-standard.org/SSP1/SystemStructureParameterMapping",
+    "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
+    "loomfmu": "https://pypi.org/project/loomfmu/scene",
+}
+
+
+def root(tag: str, *prefixes: str, **attributes: str) -> Element:
+    """A root element. Names are written with these prefixes, which some tools look for literally."""
+    spaces = {f"xmlns:{prefix}": NAMESPACES[prefix] for prefix in prefixes}
+    return Element(tag, spaces | attributes)
+
+
+def full(name: str) -> str:
+    """A prefixed name as ElementTree reads it.
+
+    >>> full("ssc:Unit")
+    '{http://ssp-standard.org/SSP1/SystemStructureCommon}Unit'
+    """
+    prefix, _, tag = name.partition(":")
+    return f"{{{NAMESPACES[prefix]}}}{tag}"
+
+
+def write_units(parent: Element, tag: str, units: dict[str, Definition]) -> None:
+    """A section with the definitions of units, if there are any."""
+    if not units:
+        return
+    section = SubElement(parent, tag)
+    for name, definition in sorted(units.items()):
+        unit = SubElement(section, "ssc:Unit", name=name)
+        exponents = zip(BASES, definition.exponents, strict=True)
+        attributes = {base: str(power) for base, power in exponents if power}
+        if definition.factor != 1.0:
+            attributes["factor"] = repr(definition.factor)
+        if definition.offset != 0.0:
+            attributes["offset"] = repr(definition.offset)
+        SubElement(unit, "ssc:BaseUnit", attributes)
+
+
+def read_units(sections: Iterable[Element]) -> dict[str, Definition]:
+    """The definitions in the sections of units of a file."""
+    found = {}
+    for section in sections:
+        for unit in section.iterfind(full("ssc:Unit")):
+            base = unit.find(full("ssc:BaseUnit"))
+            if base is not None:
+                exponents = tuple(int(base.get(name, "0")) for name in BASES)
+                factor, offset = (float(base.get(key, default)) for key, default in _LINEAR)
+                found[unit.get("name", "")] = Definition(exponents, factor, offset)
+    return found
+
+
+_LINEAR = (("factor", "1"), ("offset", "0"))
+
+
+def said(element: Element, attribute: str) -> str:
+    """An attribute that has to be there. Raises LoomfmuError where it is not."""
+    value = element.get(attribute)
+    if value is None:
+        raise LoomfmuError(f"{element.tag.rpartition('}')[2]} has no {attribute}")
+    return value

@@ -1,0 +1,181 @@
+"""modelDescription.xml of an FMI 2.0 co-simulation FMU, derived from a component's declarations."""
+
+from xml.etree.ElementTree import Element, SubElement
+
+from ... import units
+from ...variables import NOTHING, Component, Variable, variables_of
+from ..live.live_slave import CATEGORIES
+from .xml_text import text_of
+
+AUTHOR = "the loomfmu authors"
+COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
+RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
+FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
+FIRST_REFERENCE = 1  # not 0: then a value reference is a variable's place too, for which OMSimulator takes it
+DEFAULT_STOP_TIME = 1.0
+DEFAULT_STEP_SIZE = 1e-4
+DEFAULT_TOLERANCE = 1e-6  # for hosts that ask for one; nothing here is solved to a tolerance
+
+
+def model_description(
+    component: type[Component], guid: str, version: str, native: dict[str, str] | None = None
+) -> bytes:
+    """The model description as XML text, the same bytes for the same declarations.
+
+    `native` holds what the native flavour can do beyond the live one.
+    """
+    variables = variables_of(component)
+    name = component.__name__
+    root = Element(
+        "fmiModelDescription",
+        {"fmiVersion": "2.0", "modelName": name, "guid": guid} | about(component, version),
+    )
+    capabilities = {
+        "modelIdentifier": name,
+        "needsExecutionTool": "false",
+        "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canNotUseMemoryManagementFunctions": str(native is None).lower(),
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+    }
+    if native is not None and (component.keeps == NOTHING):
+        root.set("numberOfEventIndicators", str(sum(variable.indicator for variable in variables)))
+        exchange = SubElement(
+            root, "ModelExchange", capabilities | {"completedIntegratorStepNotNeeded": "false"}
+        )
+        SubElement(SubElement(exchange, "SourceFiles"), "File", name="fmi2.c")
+    steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
+    kind = SubElement(root, "CoSimulation", capabilities | steps | (native or {}))
+    if native is not None:
+        SubElement(SubElement(kind, "SourceFiles"), "File", name="fmi2.c")
+    unit_definitions(root, variables)
+    _types(root, name, variables)
+    categories = SubElement(root, "LogCategories")
+    for category, description in CATEGORIES.values():
+        SubElement(categories, "Category", name=category, description=description)
+    SubElement(
+        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
+        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
+    )  # fmt: skip
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
+        _scalar(listed, reference, variable, name)
+    _structure(root, variables)
+    return text_of(root)
+
+
+def about(component: type[Component], version: str) -> dict[str, str]:
+    """What FMI 2 and FMI 3 tell of the model as a whole."""
+    return {
+        "description": (component.__doc__ or "").splitlines()[0],
+        "author": AUTHOR,
+        "version": version,
+        "copyright": COPYRIGHT,
+        "license": "MIT",
+        "generationTool": f"loomfmu {version}",
+        "generationDateAndTime": RELEASED,
+        "variableNamingConvention": "structured",
+    }
+
+
+def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple[str, ...] = ()) -> None:
+    """Every unit in use, with its SI exponents and its display units."""
+    displays: dict[str, set[str]] = {name: {name} for name in also}
+    for variable in variables:
+        if variable.type is float:
+            displays.setdefault(variable.unit, set()).add(variable.display)
+    definitions = SubElement(root, "UnitDefinitions")
+    for name in sorted(displays):
+        known = units.unit(name)
+        definition = SubElement(definitions, "Unit", name=name)
+        exponents = zip(("kg", "m", "s", "rad"), known.dimension, strict=True)
+        SubElement(definition, "BaseUnit", {base: str(power) for base, power in exponents if power})
+        for display in sorted(displays[name] - {name}):
+            factor = known.factor / units.unit(display).factor
+            SubElement(definition, "DisplayUnit", name=display, factor=repr(factor))
+
+
+def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:
+    """An enumeration type for each variable that has choices."""
+    chosen = [variable for variable in variables if variable.choices]
+    if not chosen:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for variable in chosen:
+        simple = SubElement(definitions, "SimpleType", name=f"{name}.{variable.name}")
+        enumeration = SubElement(simple, "Enumeration")
+        for value, choice in enumerate(variable.choices, start=1):
+            SubElement(enumeration, "Item", name=choice, value=str(value))
+
+
+def _scalar(listed: Element, reference: int, variable: Variable, model: str) -> None:
+    """One variable with its type, unit, limits and start."""
+    scalar = SubElement(
+        listed,
+        "ScalarVariable",
+        name=variable.structured,
+        valueReference=str(reference),
+        causality=variable.causality,
+        variability=variable.variability,
+        description=variable.description,
+    )
+    if not variable.settable:
+        scalar.set("initial", "calculated")
+    kind = "Enumeration" if variable.choices else FMI_TYPES[variable.type]
+    SubElement(scalar, kind, attributes_of(variable, model))
+
+
+def attributes_of(variable: Variable, model: str) -> dict[str, str]:
+    """Start, limits, unit and type of a variable, which FMI 2 and FMI 3 call by the same names."""
+    attributes: dict[str, str] = {}
+    if variable.settable:
+        attributes["start"] = _text(variable.start)
+    if variable.type is not bool:
+        for key, value in (("min", variable.minimum), ("max", variable.maximum)):
+            if value is not None:
+                attributes[key] = _text(variable.type(value))
+    if variable.type is float:
+        if variable.quantity:
+            attributes["quantity"] = variable.quantity
+        attributes["unit"] = variable.unit
+        if variable.display != variable.unit:
+            attributes["displayUnit"] = variable.display
+        if variable.nominal is not None:
+            attributes["nominal"] = _text(variable.nominal)
+        if variable.unbounded:
+            attributes["unbounded"] = "true"
+    if variable.choices:
+        attributes["declaredType"] = f"{model}.{variable.name}"
+    return attributes
+
+
+def _text(value: float | int | bool) -> str:
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
+    """Outputs with the inputs they depend on, and the unknowns of the initialization."""
+    index = {variable.name: position for position, variable in enumerate(variables, start=1)}
+    inputs = [variable.name for variable in variables if variable.causality == "input"]
+    structure = SubElement(root, "ModelStructure")
+    outputs = SubElement(structure, "Outputs")
+    unknowns = SubElement(structure, "InitialUnknowns")
+    for variable in variables:
+        if variable.causality != "output":
+            continue
+        needed = inputs if variable.depends is None else variable.depends
+        dependencies = " ".join(str(index[name]) for name in sorted(needed, key=index.__getitem__))
+        SubElement(outputs, "Unknown", index=str(index[variable.name]), dependencies=dependencies)
+        SubElement(unknowns, "Unknown", index=str(index[variable.name]))
+
+
+def output_order(component: type[Component]) -> int:
+    """How often the outputs can be differentiated by reading the rates they are declared to have."""
+    rates = {variable.name: variable.rate for variable in variables_of(component)}
+    longest = 0
+    for variable in variables_of(component):
+        order, rate = 0, variable.rate if variable.causality == "output" else None
+        while rate is not None:
+            order, rate = order + 1, rates[rate]
+        longest = max(longest, order)
+    return longest

@@ -1,0 +1,109 @@
+"""modelDescription.xml of an FMI 3.0 FMU, derived from a component's declarations."""
+
+from xml.etree.ElementTree import Element, SubElement
+
+from ...variables import NOTHING, Component, Variable, variables_of
+from ..live.live_slave import CATEGORIES
+from .model_description import (
+    DEFAULT_STEP_SIZE,
+    DEFAULT_STOP_TIME,
+    DEFAULT_TOLERANCE,
+    FIRST_REFERENCE,
+    about,
+    attributes_of,
+    output_order,
+    unit_definitions,
+)
+from .xml_text import text_of
+
+FMI3_TYPES = {float: "Float64", int: "Int64", bool: "Boolean"}
+
+
+def model_description3(component: type[Component], token: str, version: str) -> bytes:
+    """The model description as XML text, the same bytes for the same declarations."""
+    variables = variables_of(component)
+    name = component.__name__
+    root = Element(
+        "fmiModelDescription",
+        {"fmiVersion": "3.0", "modelName": name, "instantiationToken": token} | about(component, version),
+    )
+    common = {"modelIdentifier": name, "canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+    if component.keeps == NOTHING:
+        SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "true"})
+    order = str(output_order(component))
+    steps = {"canHandleVariableCommunicationStepSize": "true", "maxOutputDerivativeOrder": order}
+    SubElement(root, "CoSimulation", common | steps)
+    unit_definitions(root, variables, also=("s",))
+    _types(root, name, variables)
+    categories = SubElement(root, "LogCategories")
+    for category, description in CATEGORIES.values():
+        SubElement(categories, "Category", name=category, description=description)
+    SubElement(
+        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
+        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
+    )  # fmt: skip
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
+        _variable(listed, reference, variable, name)
+    SubElement(
+        listed, "Float64", name="time", valueReference=str(_time_reference(variables)),
+        causality="independent", variability="continuous", unit="s", description="Simulation time",
+    )  # fmt: skip
+    _structure(root, variables)
+    return text_of(root)
+
+
+def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:
+    """An enumeration type for each variable that has choices."""
+    chosen = [variable for variable in variables if variable.choices]
+    if not chosen:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for variable in chosen:
+        enumeration = SubElement(definitions, "EnumerationType", name=f"{name}.{variable.name}")
+        for value, choice in enumerate(variable.choices, start=1):
+            SubElement(enumeration, "Item", name=choice, value=str(value))
+
+
+def _variable(listed: Element, reference: int, variable: Variable, model: str) -> None:
+    """One variable with its type, unit, limits and start: in FMI 3 all of them in one element."""
+    kind = "Enumeration" if variable.choices else FMI3_TYPES[variable.type]
+    about = {
+        "name": variable.structured,
+        "valueReference": str(reference),
+        "causality": variable.causality,
+        "variability": variable.variability,
+        "description": variable.description,
+    }
+    if not variable.settable:
+        about["initial"] = "calculated"
+    SubElement(listed, kind, about | attributes_of(variable, model))
+
+
+def _time_reference(variables: tuple[Variable, ...]) -> int:
+    """The value reference of the time: the one after all others."""
+    return FIRST_REFERENCE + len(variables)
+
+
+def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
+    """Outputs with what they depend on (inputs, parameters and time), and the unknowns of the start."""
+    references = {
+        variable.name: reference for reference, variable in enumerate(variables, start=FIRST_REFERENCE)
+    }
+    inputs = [variable.name for variable in variables if variable.causality == "input"]
+    parameters = [variable.name for variable in variables if variable.causality == "parameter"]
+    structure = SubElement(root, "ModelStructure")
+    outputs = [variable for variable in variables if variable.causality == "output"]
+    for variable in outputs:
+        needed = inputs if variable.depends is None else list(variable.depends)
+        found = sorted(references[name] for name in (*needed, *parameters))
+        found += [] if variable.depends == () else [_time_reference(variables)]
+        SubElement(
+            structure, "Output", valueReference=str(references[variable.name]),
+            dependencies=" ".join(map(str, found)),
+        )  # fmt: skip
+    for variable in outputs:
+        SubElement(structure, "InitialUnknown", valueReference=str(references[variable.name]))
+    for variable in variables:
+        if variable.indicator:
+            SubElement(structure, "EventIndicator", valueReference=str(references[variable.name]))

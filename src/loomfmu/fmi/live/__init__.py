@@ -1,0 +1,1 @@
+"""Live FMUs: what runs a component in the host's Python."""

@@ -1,0 +1,1 @@
+"""Native FMUs: components translated to C, compiled with one shell for all."""

@@ -1,0 +1,444 @@
+"""DobbyDrive with levers, gears, a spline cam or a table, and the HealdFrame that follows its lift."""
+
+from itertools import pairwise
+from math import asin, cos, degrees, pi, radians, sin, sqrt
+
+import numpy as np
+import pytest
+from driving import assign, values
+from hypothesis import given
+from hypothesis import strategies as st
+from reference import MP
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from loomfmu.components import DobbyDrive, HealdFrame
+from loomfmu.machines import table
+from loomfmu.physics.rotor_laws.mechanisms import noncircular_gears, slotted_levers
+from loomfmu.physics.rotor_laws.rotor import rotor_law
+
+LAWS = (
+    "uniform", "harmonic_ends", "sloped_line", "sloped_sine", "slotted_levers", "noncircular_gears",
+    "spline_cam", "table",
+)  # fmt: skip
+NUMBER = {name: number for number, name in enumerate(LAWS, start=1)}
+ROTORS = [name for name in LAWS if name != "spline_cam"]
+FRAME = 6.0  # travel of the frame over the height of the warp
+RISE = radians(170.0)  # where the frames of the air-jet loom begin to rise
+
+LEVERS = [(0.1, 0.1, 0.04), (0.08, 0.15, 0.05), (0.3, 0.1, 0.09), (0.1, 0.2, 0.099)]
+GEARS = [(-0.27, -0.13, -0.05, -0.025), (0.2, -0.3, 0.1, 0.05), (0.0, 0.0, 0.0, -0.2), (-0.5, 0.0, 0.1, 0.0)]
+
+
+def dobby(law, **given):
+    """A drive with its law, started."""
+    drive = DobbyDrive(law=NUMBER[law], **given)
+    assert drive.initialize(0.0) == 0
+    return drive
+
+
+def at(drive, theta, speed=1.0, acceleration=0.0):
+    """The drive at a shaft angle."""
+    drive.follow_shaft = drive.inputs_at_step_end = True
+    drive.shaft_angle, drive.shaft_velocity, drive.shaft_acceleration = theta, speed, acceleration
+    assert drive.step(0.0, 0.0) == 0
+    return drive
+
+
+def skewed(points, first=0.0):
+    """A table that is not symmetric, and starts at an angle of choice."""
+    places = 2.0 * pi * np.arange(points) / points
+    shape = places - 0.35 * np.sin(places) - 0.2 * np.sin(2.0 * places + 0.7) + 0.2 * sin(0.7) + first
+    return {f"table_{k}": float(angle) for k, angle in enumerate(shape, start=1)} | {"table_points": points}
+
+
+def table_spline(given):
+    """The same law by scipy: the deviation from an even turn."""
+    points = given["table_points"]
+    places = 2.0 * pi * np.arange(points + 1) / points
+    ahead = np.array([given[f"table_{k}"] for k in range(1, points + 1)]) - places[:-1]
+    return CubicSpline(places, np.append(ahead, ahead[0]), bc_type="periodic")
+
+
+def cam_spline():
+    rows = table("shed_control_points")
+    angles = [radians(float(row["shaft_angle_deg"])) for row in rows]
+    return CubicSpline(angles, [1e-3 * float(row["warp_height_mm"]) for row in rows], bc_type="not-a-knot")
+
+
+def cam_top():
+    spline = cam_spline()
+    place = max(spline.derivative().roots(extrapolate=False), key=lambda x: float(spline(x)))
+    return float(place), float(spline(place))
+
+
+# The rotor
+
+
+@pytest.mark.parametrize("law", ROTORS)
+def test_every_rotor_turns_once_a_pick_and_never_back(law):
+    drive = dobby(law)
+    angles = []
+    for step in range(-720, 1441):
+        at(drive, 2.0 * pi * step / 360.0)
+        assert drive.rotor_velocity > 0.0
+        angles.append(drive.rotor_angle)
+    assert all(before < after for before, after in pairwise(angles))
+    for before, after in zip(angles, angles[360:], strict=False):
+        assert after - before == pytest.approx(2.0 * pi, abs=1e-13)  # shaft angles of 25 rounded to 4e-15
+    at(drive, pi)  # the slow point
+    assert drive.rotor_angle == pytest.approx(0.0, abs=1e-15)
+    assert drive.lift_fraction == pytest.approx(0.0, abs=1e-30)
+
+
+@pytest.mark.parametrize("points", range(4, 37))
+def test_table_is_the_periodic_spline_of_scipy(points):
+    given = skewed(points)
+    drive = dobby("table", slow_point=0.0, **given)
+    exact = table_spline(given)
+    rng = np.random.default_rng(points)
+    for x in [*rng.uniform(0.0, 2.0 * pi, 20), *(2.0 * pi * np.arange(points + 1) / points)]:
+        at(drive, float(x))
+        u = float(x) % (2.0 * pi)
+        # rounding of values up to 2 pi, divided by the step, 0.17 rad, once for each derivative
+        assert drive.rotor_angle == pytest.approx(float(x) + float(exact(u)), abs=1e-13)
+        assert drive.rotor_velocity == pytest.approx(1.0 + float(exact(u, 1)), abs=1e-12)
+        assert drive.rotor_acceleration == pytest.approx(float(exact(u, 2)), abs=1e-12)
+
+
+def test_table_of_a_law_is_that_law():
+    # a cubic spline of step h misses a smooth law by about h^4 / 384 of its fourth derivative: at the ends
+    # of the sloped sine up to 16 4 eta; its derivatives by h^3 / 24 and h^2 / 12
+    sampled = {f"table_{k + 1}": rotor_law(4, 2.0 * pi * k / 36, 0.5)[0] for k in range(36)}
+    of_table, of_law = dobby("table", **sampled), dobby("sloped_sine", speed_reduction=0.5)
+    for step in range(500):
+        at(of_table, 0.01256 * step)
+        at(of_law, 0.01256 * step)
+        assert of_table.rotor_angle == pytest.approx(of_law.rotor_angle, abs=1e-4)
+        assert of_table.rotor_velocity == pytest.approx(of_law.rotor_velocity, abs=3e-3)
+        assert of_table.rotor_acceleration == pytest.approx(of_law.rotor_acceleration, abs=0.1)
+    assert degrees(of_table.dwell_angle) == pytest.approx(degrees(of_law.dwell_angle), abs=0.02)
+
+
+def test_a_table_read_in_any_order_gives_the_same_bits():
+    given = skewed(24)
+    places = [float(x) for x in np.random.default_rng(1).uniform(-20.0, 20.0, 200)]
+    forwards, backwards = dobby("table", **given), dobby("table", **given)
+    one = {x: at(forwards, x).rotor_angle for x in sorted(places)}
+    other = {x: at(backwards, x).rotor_angle for x in sorted(places, reverse=True)}
+    assert one == other
+
+
+def test_a_new_table_counts_from_the_next_start():
+    drive = dobby("table", **skewed(12))
+    at(drive, 4.0)
+    assign(drive, skewed(12, first=0.3))
+    assert drive.initialize(0.0) == 0
+    fresh = dobby("table", **skewed(12, first=0.3))
+    assert at(drive, 4.0).rotor_angle == at(fresh, 4.0).rotor_angle
+
+
+@pytest.mark.parametrize("law", ["spline_cam", "table"])
+def test_a_restored_state_goes_on_as_if_nothing_had_happened(law):
+    drive = dobby(law, speed=60.0)
+    for step in range(100):
+        drive.step(0.002 * step, 0.002)
+    copy = DobbyDrive()
+    assign(copy, values(drive))
+    for step in range(100, 200):
+        drive.step(0.002 * step, 0.002)
+        copy.step(0.002 * step, 0.002)
+        assert values(copy) == values(drive)
+
+
+# Peaks
+
+
+def crest(function, start, end, samples=4000):
+    """Largest size of a smooth function: samples, the highest refined by a parabola of neighbours."""
+    x = np.linspace(start, end, samples + 1)
+    y = abs(np.array([function(float(place)) for place in x]))
+    k = int(np.argmax(y))
+    if k in (0, samples):
+        return y[k]
+    before, here, after = y[k - 1 : k + 2]
+    return here - (after - before) ** 2 / (8.0 * (before - 2.0 * here + after))
+
+
+@pytest.mark.parametrize(("r", "b", "e"), LEVERS)
+def test_peaks_of_the_levers(r, b, e):
+    drive = dobby("slotted_levers", lever_radius=r, driven_radius=b, eccentricity=e)
+    assert drive.highest_speed == pytest.approx(
+        r * b / ((r - e) * (b - e)), rel=1e-11
+    )  # (r / (r - e))^2 roundings
+    for order, found in ((2, drive.highest_acceleration), (3, drive.highest_jerk)):
+        # half a turn, its quick end drawn out: pi - x from 3 down to 1e-4 in equal ratios, and the end itself
+        largest = max(
+            crest(lambda s, order=order: slotted_levers(pi - np.exp(s), r, b, e)[order], -9.2, 1.1),
+            abs(slotted_levers(pi, r, b, e)[order]),
+        )
+        # the parabola over steps of 0.0026 misses by the fourth power of that, times 100
+        assert found == pytest.approx(largest, rel=1e-8)
+
+
+@pytest.mark.parametrize("harmonics", GEARS)
+def test_peaks_of_the_gears(harmonics):
+    given = {f"gear_harmonic_{k}": a for k, a in enumerate(harmonics, start=1)}
+    drive = dobby("noncircular_gears", **given)
+    for order, found in ((1, drive.highest_speed), (2, drive.highest_acceleration), (3, drive.highest_jerk)):
+        largest = crest(lambda x, order=order: noncircular_gears(x, *harmonics)[order], -0.1, 2.0 * pi)
+        assert found == pytest.approx(largest, rel=1e-9)  # as above, steps of 0.0016 of 4 waves
+
+
+def test_levers_peak_in_fifty_digits():
+    r, b, e = (MP.mpf(text) for text in ("0.1", "0.1", "0.04"))
+
+    def lever(x, q):
+        return x - MP.atan2(e * MP.sin(x), q + e * MP.cos(x))
+
+    def second(x):
+        return MP.diff(lambda t: lever(lever(t, r), b), x, 2)
+
+    place = MP.findroot(lambda x: MP.diff(second, x), MP.mpf("2.7"))
+    drive = dobby("slotted_levers")
+    # golden sections find the value at a crest to rounding, terms up to 30
+    assert drive.highest_acceleration == pytest.approx(float(second(place)), rel=1e-13)
+
+
+@pytest.mark.parametrize("points", [4, 5, 12, 36])
+def test_peaks_of_a_table(points):
+    given = skewed(points)
+    drive = dobby("table", **given)
+    exact = table_spline(given)
+    crests = exact.derivative(2).roots(extrapolate=False)
+    knots = exact.x
+    # rounding, once over the step for each derivative
+    assert drive.highest_speed == pytest.approx(1.0 + max(exact(np.append(crests, knots), 1)), abs=1e-12)
+    assert drive.highest_acceleration == pytest.approx(max(abs(exact(knots, 2))), abs=1e-12)
+    assert drive.highest_jerk == pytest.approx(max(abs(exact.c[0] * 6.0)), abs=1e-11)
+
+
+# Dwells
+
+
+def crossing(spline, target):
+    """Shaft angle at which the law of a spline of the deviation has an angle."""
+    return brentq(lambda x: x + float(spline(x % (2.0 * pi))) - target, -2.0 * pi, 2.0 * pi, xtol=1e-14)
+
+
+@pytest.mark.parametrize("first", [0.0, 0.4, -0.9])
+@pytest.mark.parametrize("tolerance", [1e-6, 0.015, 0.5])
+def test_dwell_of_a_law_that_is_not_symmetric(first, tolerance):
+    given = skewed(24, first)
+    drive = dobby("table", dwell_tolerance=tolerance, clear_fraction=tolerance, **given)
+    exact = table_spline(given)
+    reach = 4.0 * asin(sqrt(tolerance))
+    dwell = crossing(exact, reach) - crossing(exact, -reach)
+    assert drive.dwell_angle == pytest.approx(dwell, abs=1e-13)  # the root finder's 1e-14, and rounding
+    assert drive.clear_shed_angle == drive.dwell_angle
+
+
+@pytest.mark.parametrize("law", ROTORS)
+@pytest.mark.parametrize("tolerance", [0.001, 0.015, 0.2])
+def test_frame_is_within_the_tolerance_just_during_the_dwell(law, tolerance):
+    drive = dobby(law, slow_point=0.0, dwell_tolerance=tolerance)
+    # all laws here are symmetric: half the dwell to either side; 1e-13 times a rate of at most 2
+    for side in (-0.5, 0.5):
+        assert at(drive, side * drive.dwell_angle).lift_fraction == pytest.approx(tolerance, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", ["uniform", "harmonic_ends", "sloped_line", "sloped_sine"])
+def test_clear_shed_is_the_dwell_of_its_own_share(law):
+    drive = dobby(law, dwell_tolerance=0.1, clear_fraction=0.1)
+    assert drive.clear_shed_angle == drive.dwell_angle
+
+
+# The spline cam
+
+
+def test_published_figures_of_the_spline_cam():
+    drive = dobby("spline_cam")
+    travel = 1e3 * FRAME * drive.cam_span
+    assert travel == pytest.approx(98.17, abs=5e-3)  # two decimals
+    assert travel * drive.highest_speed == pytest.approx(24.76, abs=5e-3)
+    assert travel * drive.highest_acceleration == pytest.approx(16.99, abs=5e-3)
+    assert degrees(drive.clear_shed_angle) == pytest.approx(142.9, abs=0.05)  # above 15 mm of warp height
+
+
+def test_published_clearance_in_full():
+    # 15 mm as a share of the stroke to all digits, against the spline's own crossings
+    _place, height = cam_top()
+    drive = dobby("spline_cam", clear_fraction=1.0 - 0.015 / height)
+    clear = np.ptp(cam_spline().solve(0.015, extrapolate=False))
+    assert drive.clear_shed_angle == pytest.approx(clear, abs=1e-12)  # rounding over a slope of 0.01
+
+
+def test_spline_cam_lifts_by_its_spline():
+    drive, exact, (_place, height) = dobby("spline_cam", slow_point=RISE), cam_spline(), cam_top()
+    for x in np.linspace(-15.0, 30.0, 500):
+        at(drive, RISE + float(x), speed=3.0, acceleration=5.0)
+        share, slope, bend = (float(exact(float(x) % (4.0 * pi), order)) / height for order in range(3))
+        # shaft angles up to 30 are rounded to 4e-15; slopes and bends below 1
+        assert drive.lift_fraction == pytest.approx(share, abs=1e-13)
+        assert drive.lift_rate == pytest.approx(3.0 * slope, abs=1e-13)
+        assert drive.lift_acceleration == pytest.approx(9.0 * bend + 5.0 * slope, abs=1e-12)
+
+
+def test_phase_of_the_spline_cam():
+    drive, (top, _height) = dobby("spline_cam", slow_point=RISE), cam_top()
+    assert drive.cam_top == pytest.approx(top, abs=1e-13)  # of scipy's root, rounding over a bend of 0.1
+    assert degrees(top) == pytest.approx(366.44, abs=5e-3)
+    for x, phase in (
+        (0.0, 0.0),
+        (top, 2.0 * pi),
+        (4.0 * pi, 4.0 * pi),
+        (4.0 * pi + top, 6.0 * pi),
+        (-1.0, None),
+    ):
+        at(drive, RISE + x, speed=2.0)
+        if phase is not None:
+            assert drive.rotor_angle == pytest.approx(phase, abs=1e-13)  # angles of 25, rounded
+        inside = x % (4.0 * pi) <= drive.cam_top
+        assert drive.rotor_acceleration == 0.0
+        if x not in (0.0, top, 4.0 * pi, 4.0 * pi + top):
+            rate = 2.0 * pi / (top if inside else 4.0 * pi - top)
+            assert drive.rotor_velocity == pytest.approx(2.0 * rate, rel=1e-12)  # that of the top
+
+
+def test_dwell_of_the_spline_cam_is_that_of_its_top():
+    drive, exact, (_place, height) = dobby("spline_cam"), cam_spline(), cam_top()
+    dwell = np.ptp(exact.solve(0.985 * height, extrapolate=False))
+    assert drive.dwell_angle == pytest.approx(dwell, abs=1e-12)  # rounding over a slope of 0.005
+    assert degrees(dwell) == pytest.approx(60.66, abs=5e-3)
+
+
+# The frame
+
+
+@pytest.mark.parametrize("law", ROTORS)
+@pytest.mark.parametrize("pegs", [(1, 2), (2, 2), (0b0011, 4), (0b0001, 4), (0b01101, 5)])
+def test_frame_that_follows_the_lift_moves_as_by_the_rotor(law, pegs):
+    drive = dobby(law, speed=50.0)
+    pattern, length = pegs
+    given = {"pattern_1": pattern, "pattern_length": length, "inputs_at_step_end": True}
+    crank, follower = HealdFrame(**given), HealdFrame(follow_lift=True, **given)
+    for step in range(400):
+        drive.step(0.003 * step, 0.003)
+        for frame in (crank, follower):
+            for name in ("angle", "velocity", "acceleration"):
+                setattr(frame, f"rotor_{name}", getattr(drive, f"rotor_{name}"))
+            frame.lift_fraction, frame.lift_rate = drive.lift_fraction, drive.lift_rate
+            frame.lift_acceleration = drive.lift_acceleration
+            frame.step(0.003 * step, 0.003)
+        # rotor angles up to 60 are rounded to 7e-15; the lift's rates reach 50 and 1e4
+        assert follower.lift == pytest.approx(crank.lift, abs=1e-15)
+        assert follower.velocity == pytest.approx(crank.velocity, abs=1e-12)
+        assert follower.acceleration == pytest.approx(crank.acceleration, abs=1e-10)
+        assert follower.moving == crank.moving
+
+
+def followed(drive, frame, step_size, steps):
+    """The frame behind the drive, at rows of time, lift, velocity and acceleration."""
+    rows = []
+    for step in range(steps):
+        drive.step(step * step_size, step_size)
+        frame.rotor_angle, frame.rotor_velocity = drive.rotor_angle, drive.rotor_velocity
+        frame.rotor_acceleration = drive.rotor_acceleration
+        frame.lift_fraction, frame.lift_rate = drive.lift_fraction, drive.lift_rate
+        frame.lift_acceleration = drive.lift_acceleration
+        frame.step(step * step_size, step_size)
+        rows.append((drive.lift_fraction, frame.lift, frame.velocity, frame.acceleration, drive.lift_rate))
+    return rows
+
+
+def test_frame_under_the_cam_in_plain_weave_has_the_cams_lift():
+    drive = dobby("spline_cam", slow_point=RISE, start_angle=RISE, speed=radians(3000.0))
+    frame = HealdFrame(follow_lift=True, inputs_at_step_end=True, pattern_1=2, stroke=0.09817)
+    for share, lift, velocity, _second, rate in followed(drive, frame, 1e-4, 4000):
+        # 1 - (1 - share) is rounded to 1e-16
+        assert lift == pytest.approx(0.09817 * share, abs=1e-16)
+        assert velocity == pytest.approx(0.09817 * rate, abs=1e-15)
+
+
+def test_frames_under_the_cam_hold_and_go_the_other_way():
+    # up at once, in the falling half of the cam; then held over two picks
+    drive = dobby("spline_cam", slow_point=RISE, start_angle=RISE, speed=radians(3000.0))
+    frame = HealdFrame(follow_lift=True, inputs_at_step_end=True, pattern_1=0b1100, pattern_length=4)
+    rows = followed(drive, frame, 1e-4, 4800)
+    turn = round(drive.cam_top / drive.speed / 1e-4)
+    assert {row[1] for row in rows[: turn - 1]} == {0.0}  # lowered at peg 0, and asked to be at peg 1
+    assert rows[turn + 1000][1] == pytest.approx(0.098 * (1.0 - rows[turn + 1000][0]), abs=1e-16)
+    assert {row[1] for row in rows[2402 : 2400 + turn - 1]} == {0.098}
+    assert rows[-1][1] == pytest.approx(0.098 * rows[-1][0], abs=1e-16)
+
+
+def test_held_inputs_are_carried_over_the_step():
+    # share + rate h + second h^2 / 2: exact for these
+    frame = HealdFrame(
+        follow_lift=True, pattern_1=2, lift_fraction=0.25, lift_rate=4.0, lift_acceleration=-8.0
+    )
+    frame.rotor_angle, frame.rotor_velocity = 1.0, 10.0
+    frame.initialize(0.0)
+    assert frame.lift == 0.098 * 0.25
+    frame.step(0.0, 0.125)
+    assert (frame.lift, frame.velocity) == (0.098 * (0.25 + 0.5 - 0.0625), 0.098 * 3.0)
+
+
+# What is refused
+
+
+def refused(law, **given):
+    drive = DobbyDrive(law=NUMBER[law], **given)
+    problem = drive.initialize(0.0)
+    assert problem == drive.check() != 0
+    return DobbyDrive.problems[problem - 1].text.format(**values(drive))
+
+
+def test_levers_that_do_not_go_round_are_refused():
+    for eccentricity in (0.1, 0.11, 1.0):
+        assert "eccentricity" in refused("slotted_levers", lever_radius=0.1, eccentricity=eccentricity)
+        assert "driven_radius" in refused(
+            "slotted_levers", lever_radius=2.0, driven_radius=0.1, eccentricity=eccentricity
+        )
+    dobby("slotted_levers", eccentricity=0.0999)
+
+
+@given(st.tuples(*4 * [st.integers(-100, 100).map(lambda hundredths: hundredths / 100)]))
+def test_gears_that_turn_back_are_refused(harmonics):
+    given = {f"gear_harmonic_{k}": a for k, a in enumerate(harmonics, start=1)}
+    drive = DobbyDrive(law=NUMBER["noncircular_gears"], **given)
+    grid = [2.0 * pi * k / 3600 for k in range(1801)]
+    slowest = min(1.0 + sum(a * cos(k * x) for k, a in enumerate(harmonics, start=1)) for x in grid)
+    if drive.initialize(0.0) == 0:
+        assert slowest > 0.0
+        assert drive.highest_speed > 0.0
+    else:
+        # the grid comes within (0.9 mrad)^2 / 8 of the largest curvature, 30, of the true minimum
+        assert slowest < 1e-5
+        assert "gear_harmonic_1" in refused("noncircular_gears", **given)
+
+
+def test_a_table_that_turns_back_is_refused():
+    even = {f"table_{k + 1}": 2.0 * pi * k / 36 for k in range(36)}
+    assert "table" in refused("table", **(even | {"table_5": even["table_3"]}))
+    # points that rise all the way, with a spline between them that does not
+    steps = [0.0, 0.01, 0.02, 3.0, 3.01, 3.02, 6.0, 6.01]
+    rising = {f"table_{k}": angle for k, angle in enumerate(steps, start=1)} | {"table_points": 8}
+    assert np.all(np.diff(steps) > 0.0)
+    assert min(1.0 + table_spline(rising)(np.linspace(0.0, 2.0 * pi, 1000), 1)) < 0.0
+    assert "its lowest speed is -" in refused("table", **rising)
+    # a table meant for fewer points than are told
+    assert "36 points" in refused("table", **{f"table_{k + 1}": 2.0 * pi * k / 12 for k in range(12)})
+
+
+def test_cams_that_make_no_law_are_refused():
+    assert "must rise from 0 to 720" in refused("spline_cam", cam_angle_3=1.0)
+    assert "must rise from 0 to 720" in refused("spline_cam", cam_angle_1=0.1)
+    assert "must rise from 0 to 720" in refused("spline_cam", cam_angle_6=12.5)
+    assert "cam_height_6" in refused("spline_cam", cam_height_6=0.001)
+    assert "rises by" in refused("spline_cam", **{f"cam_height_{k}": 0.0 for k in range(1, 7)})
+    sunk = {
+        f"cam_height_{k}": -height
+        for k, height in zip(range(2, 6), (0.002, 0.015, 0.0145, 0.0015), strict=True)
+    }
+    dobby("spline_cam", **sunk)  # it rises by the little that the published one sinks

@@ -1,0 +1,57 @@
+"""Curves between samples: their extremes and zeros beside those of numpy's polynomials."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import polynomial
+
+from loomfmu.cosim.claims import bernstein
+
+RANDOM = np.random.default_rng(5)
+
+
+def hermite(ends: list[tuple[float, float]]) -> np.ndarray:
+    """Coefficients of the polynomial with given values and rates at 0 and 1, by solving for them."""
+    rows, right = [], []
+    for order, values in enumerate(ends):
+        for place, value in zip((0.0, 1.0), values, strict=True):
+            basis = np.eye(2 * len(ends))
+            rows.append([polynomial.polyval(place, polynomial.polyder(each, order)) for each in basis])
+            right.append(value)
+    return np.linalg.solve(rows, right)
+
+
+@pytest.mark.parametrize("rates", [0, 1, 2])
+def test_values_extremes_and_zeros_are_those_of_the_joining_polynomial(rates: int) -> None:
+    for _ in range(200):
+        ends = [(RANDOM.normal(), RANDOM.normal()) for _ in range(rates + 1)]
+        coefficients = hermite(ends)
+        points = bernstein.joining([(np.array([a]), np.array([b])) for a, b in ends])
+        share = RANDOM.uniform()
+        # rounding of a handful of terms of order 10
+        assert abs(bernstein.value(points, share)[0] - polynomial.polyval(share, coefficients)) < 1e-12
+        turns = polynomial.polyroots(polynomial.polyder(coefficients))
+        turns = turns[np.abs(turns.imag) < 1e-12].real
+        places = np.array([0.0, 1.0, *turns[(turns > 0.0) & (turns < 1.0)]])
+        lowest, at = bernstein.lowest(points)
+        assert abs(lowest[0] - polynomial.polyval(places, coefficients).min()) < 1e-12
+        assert abs(polynomial.polyval(at[0], coefficients) - lowest[0]) < 1e-12
+        zeros = polynomial.polyroots(coefficients)
+        zeros = np.sort(zeros[(np.abs(zeros.imag) < 1e-12) & (zeros.real > 0) & (zeros.real < 1)].real)
+        found = bernstein.sign_changes(points[:, 0])
+        assert len(found) == len(zeros)
+        assert np.allclose(found, zeros, rtol=0.0, atol=1e-9)  # of zeros that lie close together
+
+
+def test_a_piece_is_cut_exactly_or_left_as_it_is() -> None:
+    points = RANDOM.normal(size=(6, 3))
+    low, high = np.array([0.0, 0.25, 0.0]), np.array([1.0, 0.75, 0.5])
+    parts = bernstein.clipped(points, low, high)
+    assert np.array_equal(parts[:, 0], points[:, 0])
+    for share in (0.0, 0.3, 1.0):
+        inside = low + share * (high - low)
+        assert np.allclose(bernstein.value(parts, share), bernstein.value(points, inside), rtol=0, atol=1e-14)
+
+
+def test_a_zero_that_is_touched_is_not_passed() -> None:
+    touching = bernstein.joining([(np.array([1.0]), np.array([1.0])), (np.array([-4.0]), np.array([4.0]))])
+    assert bernstein.sign_changes(touching[:, 0]) == []  # (1 - 2 u)^2

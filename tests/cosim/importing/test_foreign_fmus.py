@@ -1,0 +1,341 @@
+"""FMUs of other makers, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
+
+import zipfile
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from foreign_motors import description2, library, motor2, motor3, packed
+from live_fmus import fmu_cache
+from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
+
+from loomfmu import LoomfmuError, Trace, evaluate, run
+from loomfmu.cli import main
+from loomfmu.components import WeftInsertion
+from loomfmu.cosim.importing import fmus, pool
+from loomfmu.cosim.importing.ports import Port
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.drives import drive
+from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.machines import parameters
+
+__all__ = ["fmu_cache"]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with the motors."""
+    directory = tmp_path_factory.mktemp("motors")
+    motor2(directory)
+    motor3(directory)
+    return directory
+
+
+# ---- they drive our mechanisms
+
+
+@pytest.mark.parametrize("step", ["1 ms", "0.1 ms"])
+def test_a_motor_of_fmi_2_drives_the_weft(place: Path, tmp_path: Path, step: str) -> None:
+    trace = ran(place, MOTOR + WEFT, tmp_path, step=step).trace
+    angle, velocity, acceleration = exact(trace.time)
+    # some thousand roundings of sums that grow to 3 rad, 30 rad/s, 200 rad/s2
+    np.testing.assert_allclose(trace["motor.flange_phi"], angle, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(trace["motor.flange_w"], velocity, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(trace["motor.flange_a"], acceleration, rtol=0, atol=1e-10)
+    weft = WeftInsertion(**parameters("WeftInsertion", machine="WL680-3600"))
+    weft.follow_shaft = weft.inputs_at_step_end = True
+    for row in (0, 50, trace.rows - 1):
+        names = (("shaft_angle", "phi"), ("shaft_velocity", "w"), ("shaft_acceleration", "a"))
+        for entry, signal in names:
+            setattr(weft, entry, float(trace[f"motor.flange_{signal}"][row]))
+        assert weft.initialize(0.0) == 0
+        assert weft.travel == pytest.approx(trace["weft.travel"][row], rel=1e-13, abs=1e-13)
+        assert weft.acceleration == pytest.approx(trace["weft.acceleration"][row], rel=1e-12, abs=1e-10)
+
+
+def test_a_boolean_input_of_fmi_3_is_driven(place: Path, tmp_path: Path) -> None:
+    text = LENGTH + SHAFT3 + '[inputs]\n"shaft.stalled" = [[0, false], [0.1, true]]\n'
+    with suppress(LoomfmuError):  # the motor ends the simulation when it stalls
+        ran(place, text, tmp_path)
+    (path,) = tmp_path.iterdir()
+    with Trace(path) as trace:
+        assert not np.any(trace["shaft.stalled"][:100])
+        assert 100 <= trace.rows <= 101  # of 201: up to the step in which it is told
+
+
+def test_a_motor_of_fmi_3_in_the_place_of_the_shaft_gives_the_same_bits(place: Path, tmp_path: Path) -> None:
+    second = ran(place, MOTOR + WEFT, tmp_path).trace
+    third = ran(place, LENGTH + SHAFT3 + '[weft]\nmachine = "WL680-3600"\n', tmp_path / "third").trace
+    for one, other in (("flange_phi", "angle"), ("flange_w", "velocity"), ("flange_a", "acceleration")):
+        np.testing.assert_array_equal(second[f"motor.{one}"], third[f"shaft.{other}"])
+    np.testing.assert_array_equal(second["weft.acceleration"], third["weft.acceleration"])
+    np.testing.assert_array_equal(third.shaft_angle, third["shaft.angle"])
+    assert not np.any(second.shaft_angle)  # a scene without shaft has none, and says 0
+
+
+def test_a_loom_can_be_turned_by_a_motor_that_feels_it(place: Path, tmp_path: Path) -> None:
+    text = LENGTH + '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10"\n' + SHAFT3
+    text += '[wires]\n"shaft.load" = "weft.shaft_torque"\n'
+    text += '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "80 deg"\n'
+    result = ran(place, text, tmp_path, duration="1 s", shaft__J=5.0, shaft__tau_stall=400.0)
+    assert "loop: weft.shaft_torque -> shaft.load carries the value of the step before" in result.warnings
+    velocity = result.trace["shaft.velocity"]
+    assert np.any(np.diff(velocity) < 0.0) and velocity[-1] > 40.0  # the head's inertia slows it now and then
+    # the dwell is the law's angle, whatever the speed does meanwhile
+    assert result.claims[0].holds and result.claims[0].worst == pytest.approx(np.radians(85.92125), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("file", "names"),
+    [
+        ("Motor.fmu", ("load_tau", "flange_phi", "flange_w", "flange_a")),
+        ("Motor3.fmu", ("load", "angle", "velocity", "acceleration")),
+    ],
+)
+def test_a_loop_with_an_fmu_that_keeps_no_state_cannot_be_iterated(
+    place: Path, tmp_path: Path, file: str, names: tuple[str, ...]
+) -> None:
+    text = (
+        LENGTH + f'coupling = "iterated"\n[weft]\nmachine = "WL680-3600"\n[motor]\nfmu = "{file}"\n[wires]\n'
+    )
+    text += f'"motor.{names[0]}" = "weft.shaft_torque"\n'
+    inputs = ("shaft_angle", "shaft_velocity", "shaft_acceleration")
+    text += "".join(f'"weft.{to}" = "motor.{name}"\n' for to, name in zip(inputs, names[1:], strict=True))
+    with pytest.raises(LoomfmuError) as raised:
+        ran(place, text, tmp_path)
+    assert str(raised.value).startswith("motor: it cannot keep its state, which an iterated loop needs: ")
+    assert "\n" not in str(raised.value)
+
+
+def test_integers_booleans_and_enumerations_come_through(place: Path, tmp_path: Path) -> None:
+    text = LENGTH + SHAFT3 + '[motor]\nfmu = "Motor.fmu"\nmode = "no way back"\n'
+    trace = ran(place, text, tmp_path, shaft__mode="no_way_back", shaft__w_free="100 rpm").trace
+    np.testing.assert_array_equal(trace["motor.steps"], np.arange(201))
+    np.testing.assert_array_equal(trace["shaft.steps"], np.arange(201))
+    assert set(trace["shaft.mode_used"]) == {2}
+    assert trace.parameter("motor.mode") == trace.parameter("shaft.mode") == 2
+    turned = trace["shaft.velocity"] > 0.9 * np.pi / 30 * 100
+    np.testing.assert_array_equal(trace["shaft.at_speed"], turned)
+    assert 0 < np.count_nonzero(turned) < 201
+    np.testing.assert_array_equal(trace["shaft.microradians"], np.int64(trace["shaft.angle"] * 1e6))
+    np.testing.assert_array_equal(trace["shaft.velocity_32"], np.float32(trace["shaft.velocity"]))
+    assert "motor.label" not in trace and "shaft.table" not in trace  # texts and arrays are not exchanged
+
+
+def test_names_and_units_are_ours_where_they_can_be(place: Path, tmp_path: Path) -> None:
+    trace = ran(place, MOTOR, tmp_path).trace
+    assert set(trace) == {
+        "motor.flange_phi", "motor.flange_w", "motor.flange_a", "motor.time_", "motor.steps",
+        "motor.at_speed", "motor.winding",
+    }  # fmt: skip
+    assert (trace.unit("motor.flange_w"), trace.rate("motor.flange_phi")) == ("rad/s", "motor.flange_w")
+    assert (trace.unit("motor.flange_phi"), trace.display("motor.flange_phi")) == ("rad", "deg")
+    assert (trace.unit("motor.winding"), trace.display("motor.winding")) == ("K", "1")
+    ports = scenes.parse(MOTOR, directory=place).instances["motor"].fmu.ports
+    assert ports["tau_stall"].unit == "N.m"  # Nm there, the same by its definition
+
+
+def test_claims_on_other_makers_signals(place: Path, tmp_path: Path) -> None:
+    text = MOTOR + '[[claims]]\nkind = "below"\nsignal = "motor.{}"\nbound = {}\n'
+    assert ran(place, text.format("flange_w", '"600 rpm"'), tmp_path).holds
+    result = ran(place, text.format("winding", "150"), tmp_path)
+    assert not result.holds and "winding, 200 K at 0 s" in str(result.claims[0])
+    with pytest.raises(
+        LoomfmuError, match=r"^claim 'below': window is a shaft angle, and the scene has no sh"
+    ):
+        ran(place, text.format("winding", "150\nwindow = [0, 1]"), tmp_path)
+
+
+def test_show_prints_units_that_are_not_ours(
+    place: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ran(place, MOTOR, tmp_path)
+    assert main(["show", str(tmp_path / "motor.h5")]) == 0
+    rows = {
+        line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines() if "motor." in line
+    }
+    assert rows["motor.winding"][2:] == ["200", "102.683", "K"]
+    assert rows["motor.flange_phi"][-1] == "deg"
+
+
+def test_run_says_how_long(place: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (place / "plain.toml").write_text('title = "A motor"\n' + MOTOR)
+    trace = tmp_path / "x.h5"
+    assert main(["run", str(place / "plain.toml"), "--output", str(trace), "--set", "step=2ms"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "A motor: 0.2 s in 100 steps of 0.002 s"
+    assert Trace(trace).attributes["step"] == "0.002 s"
+
+
+# ---- units on wires: nothing is converted and nothing is guessed
+
+
+@pytest.fixture
+def unitless(tmp_path: Path) -> Path:
+    motor2(tmp_path, units=False)
+    return tmp_path
+
+
+def test_degrees_are_not_radians(tmp_path: Path) -> None:
+    motor2(tmp_path, phi="deg")
+    assert refused(tmp_path, MOTOR + WEFT) == (
+        "wire motor.flange.phi -> weft.shaft_angle: motor.flange.phi is in deg, weft.shaft_angle in rad:"
+        " 1 deg is 0.0174532925 rad, and a wire converts nothing"
+    )
+
+
+def test_a_unit_that_is_not_there_is_asked_for(unitless: Path, tmp_path: Path) -> None:
+    assert refused(unitless, MOTOR + WEFT) == (
+        "wire motor.flange.phi -> weft.shaft_angle: motor.flange.phi has no unit, weft.shaft_angle is in rad;"
+        ' say what it is: [motor] units = {flange_phi = "..."} in a scene,'
+        " or --set motor.units.flange_phi=..."
+    )
+    by_hand = {"motor.units.flange.phi": "rad", "motor.units.flange_w": "rad/s"}
+    stated = MOTOR + 'units = {flange_a = "rad/s2"}\n' + WEFT
+    scene = scenes.parse(stated, "x", by_hand, unitless)
+    ports = scene.instances["motor"].fmu.ports
+    assert [ports[f"flange_{x}"].unit for x in ("phi", "w", "a")] == ["rad", "rad/s", "rad/s2"]
+    with pytest.raises(LoomfmuError, match=r"^motor\.units: Motor has no variable 'x'"):
+        scenes.parse(MOTOR, "x", {"motor.units.x": "rad"}, unitless)
+    units = 'units = {"flange.phi" = "rad", flange_w = "rad/s", flange_a = "rad/s2"}\n'
+    trace = ran(unitless, MOTOR + units + WEFT, tmp_path).trace
+    assert trace.unit("motor.flange_w") == "rad/s"
+    np.testing.assert_allclose(trace["motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-12)
+
+
+def test_units_as_they_are_written_in_the_wild(tmp_path: Path) -> None:
+    written = description2(units=False)
+    for name, unit in (
+        ("flange.phi", "[rad]"),
+        ("flange.w", "[rad/s]"),
+        ("flange.a", "[rad/s2]"),
+        ("time", "-"),
+    ):
+        before, named, after = written.partition(f'name="{name}"')
+        written = before + named + after.replace("<Real ", f'<Real unit="{unit}" ', 1)
+    packed(tmp_path / "Motor.fmu", written, library("fmi2.c", tmp_path / "Motor.so"), "Motor")
+    trace = ran(tmp_path, MOTOR + WEFT, tmp_path).trace
+    assert [trace.unit(f"motor.{x}") for x in ("flange_phi", "time_")] == ["rad", "1"]
+
+
+def test_two_that_both_have_none_can_be_wired(unitless: Path, tmp_path: Path) -> None:
+    text = MOTOR + '[other]\nfmu = "Motor.fmu"\n[wires]\n"other.load.tau" = "motor.flange.w"\n'
+    assert ran(unitless, text, tmp_path).trace["other.flange_a"][-1] < 200.0
+
+
+def test_a_unit_that_the_fmu_says_is_not_said_again_otherwise(place: Path) -> None:
+    assert scenes.parse(MOTOR + 'units = {flange_w = "rad/s"}\n', directory=place)
+    said = refused(place, MOTOR + 'units = {flange_w = "m/s"}\n')
+    assert said == "motor.units.flange_w = 'm/s': the FMU itself says rad/s"
+    assert refused(place, MOTOR + "units = 5\n") == 'motor.units = 5 is no table of variable = "unit"'
+    assert "motor.units: Motor has no variable 'x'" in refused(place, MOTOR + 'units = {x = "m"}\n')
+
+
+# ---- how they live
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    pool.free_all()
+    made: list[str] = []
+    original = pool._opened
+    monkeypatch.setattr(pool, "_opened", lambda fmu, name: made.append(name) or original(fmu, name))
+    yield made
+    pool.free_all()
+
+
+def test_they_are_made_anew_for_every_run(place: Path, tmp_path: Path, opened: list[str]) -> None:
+    text = MOTOR + SHAFT3 + "[weft]\n"
+    first, again = (ran(place, text, tmp_path / name).trace for name in ("first", "again"))
+    for signal in ("motor.flange_w", "shaft.angle"):
+        np.testing.assert_array_equal(again[signal], first[signal])
+    assert sorted(opened) == ["motor", "motor", "shaft", "shaft", "weft"]  # ours is reset
+
+
+def test_one_that_a_process_can_have_once(tmp_path: Path) -> None:
+    path = motor2(tmp_path, single=True)
+    for _ in range(2):
+        assert ran(tmp_path, MOTOR, tmp_path).holds
+    assert refused(tmp_path, MOTOR + '[other]\nfmu = "Motor.fmu"\n') == (
+        f"motor and other: a process can have one instance only of {path}"
+        " (canBeInstantiatedOnlyOncePerProcess)"
+    )
+
+
+def test_messages_with_arguments_are_told_whole_and_to_the_right_instance(
+    place: Path, tmp_path: Path
+) -> None:
+    text = MOTOR + 'verbose = true\n[second]\nfmu = "Motor.fmu"\nverbose = true\n"load.tau" = 12.5\n'
+    result = ran(place, text, tmp_path, duration="3 ms")
+    assert result.warnings == tuple(
+        f"{name}: {name} carries {load} N.m, step {step}"
+        for name, load in (("motor", "0.000"), ("second", "12.500"))
+        for step in range(3)
+    )
+    assert len(ran(place, text, tmp_path, duration="1 s").warnings) == 100  # the last fifty of each
+
+
+def test_one_without_outputs_runs_for_what_it_does(tmp_path: Path) -> None:
+    binary = library("fmi2.c", tmp_path / "Motor.so")
+    sink = description2().replace('causality="output"', 'causality="local"')
+    packed(tmp_path / "Motor.fmu", sink, binary, "Motor")
+    told = [f"motor: motor carries 7.500 N.m, step {step}" for step in range(3)]
+    text = MOTOR + 'verbose = true\n"load.tau" = 7.5\n'
+    alone = ran(tmp_path, text, tmp_path, duration="3 ms")
+    assert list(alone.warnings) == told and alone.trace.rows == 4 and list(alone.trace) == []
+    # nothing that is recorded or claimed depends on it, and it depends on what is recorded nowhere
+    wired = '[weft]\n[wires]\n"motor.load.tau" = "weft.shaft_torque"\n'
+    text = 'record = ["weft.stroke"]\n' + MOTOR + "verbose = true\n" + wired
+    scene = scenes.parse(text, "x", {"duration": "3 ms"}, tmp_path)
+    carried = [f"motor: motor carries {torque:.3f} N.m, step" for torque in torques(scene)]
+    for result in (run(scene, output=tmp_path / "x.h5"), evaluate(scene)):
+        assert [warning.rpartition(" ")[0] for warning in result.warnings] == carried
+
+
+def torques(scene: Scene) -> list[float]:
+    """What the weft's torque is at the end of each step."""
+    trace = evaluate(scene, values=["weft.shaft_torque"]).trace
+    return [float(value) for value in trace["weft.shaft_torque"][1:]]
+
+
+def test_one_that_says_it_needs_its_tool_is_tried(tmp_path: Path) -> None:
+    motor2(tmp_path, flags='needsExecutionTool="true"')
+    result = ran(tmp_path, MOTOR, tmp_path)
+    said = "it says that it needs the tool that made it: needsExecutionTool = true"
+    assert result.holds and result.warnings == (f"motor: {said}",)
+    with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
+        description = archive.read("modelDescription.xml").decode()
+    binary = library("fmi2.c", tmp_path / "Motor.so")
+    packed(tmp_path / "Motor.fmu", description.replace("{motor-2}", "{other}"), binary, "Motor")
+    with pytest.raises(LoomfmuError) as raised:
+        ran(tmp_path, MOTOR, tmp_path)
+    assert str(raised.value).endswith(f"cannot be instantiated: {{other}}: 0 alive ({said})")
+
+
+def test_what_they_refuse_is_told_in_one_line(place: Path, tmp_path: Path) -> None:
+    for text, said in {
+        MOTOR + "J = -1\n": "motor: J = -1 kg.m2 is not above 0",
+        MOTOR + '"load.tau" = 200\n': "motor at 0 s: fmi2DoStep gave fmi2Discard: stalled by 200 N.m at 0 s",
+        LENGTH + SHAFT3 + "J = -1\n": "shaft: J is not above 0",
+    }.items():
+        with pytest.raises(LoomfmuError) as raised:
+            ran(place, text, tmp_path)
+        assert str(raised.value) == said
+
+
+def test_our_own_fmus_can_be_given_as_files(tmp_path: Path) -> None:
+    weft = fmus.of_component("WeftInsertion").path
+    text = f'[shaft]\n[weft]\nmachine = "WL680-3600"\n[other]\nfmu = "{weft}"\nmachine = "WL680-3600"\n'
+    trace = ran(tmp_path, text, tmp_path).trace
+    np.testing.assert_array_equal(trace["weft.travel"], trace["other.travel"])
+    assert trace.rate("other.travel") == "other.velocity"
+
+
+def test_a_discrete_real_input_is_held_between_the_rows_of_its_table() -> None:
+    port = Port("u", "Real", 1, "input", "1", "1", None, None, 0.0, "An input", discrete=True)
+    rows, between = [[0, 1.0], [1, 2.0]], np.array([0.0, 0.5, 0.999, 1.0, 2.0])
+    np.testing.assert_array_equal(drive("a.u", port, rows).along(between), [1.0, 1.0, 1.0, 2.0, 2.0])
+    ramped = drive("a.u", replace(port, discrete=False), rows).along(between)
+    np.testing.assert_array_equal(ramped, between.clip(0.0, 1.0) + 1.0)

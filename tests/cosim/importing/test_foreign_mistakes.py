@@ -1,0 +1,118 @@
+"""FMU files that cannot be run, and scenes that use them wrongly: one line for each."""
+
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from foreign_motors import FIXED, FMI3, description2, library, motor2, motor3, packed
+from live_fmus import fmu_cache
+from motor_scenes import LENGTH, MOTOR, SHAFT3, ran, refused
+
+from loomfmu import LoomfmuError
+from loomfmu.cli import main
+from loomfmu.cosim.scenes import scene as scenes
+
+__all__ = ["fmu_cache"]
+
+THIRD = FMI3.format(fixed=FIXED)
+FILES = {
+    "an FMI 1.0 FMU; only FMI 2.0 and 3.0 are run": (
+        '<fmiModelDescription fmiVersion="1.0" modelName="M" modelIdentifier="M" guid="g"'
+        ' numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables/></fmiModelDescription>'
+    ),
+    "it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run": THIRD.replace(
+        "<CoSimulation", "<ModelExchange"
+    ),
+    "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
+}
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory with the motors."""
+    directory = tmp_path_factory.mktemp("motors")
+    motor2(directory)
+    motor3(directory)
+    return directory
+
+
+def bad(tmp_path: Path, description: str, binary: bytes | None = None) -> None:
+    packed(tmp_path / "Motor.fmu", description, binary, "Motor")
+
+
+@pytest.mark.parametrize("said", FILES)
+def test_fmus_that_cannot_be_run_are_told(tmp_path: Path, said: str) -> None:
+    bad(tmp_path, FILES[said])
+    assert refused(tmp_path, MOTOR) == f"motor.fmu: {tmp_path}/Motor.fmu: {said}"
+
+
+def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said = f"motor: {tmp_path / 'Motor.fmu'} has no library for this platform, {fmpy.platform}; it has "
+    bad(tmp_path, description2())
+    scene = 'record = ["weft.*"]\n' + MOTOR + "[weft]\n"  # nothing recorded depends on the motor
+    with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
+        archive.writestr("binaries/other64/NotIt.so", b"")
+    for folder, known in (("", "none at all"), ("win64", "win64"), ("darwin64", "darwin64, win64")):
+        if folder:
+            with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
+                archive.writestr(f"binaries/{folder}/Motor.dll", b"")
+        with pytest.raises(LoomfmuError) as raised:
+            ran(tmp_path, scene, tmp_path)
+        assert str(raised.value) == said + known
+        assert not (tmp_path / "motor.h5").exists()
+    monkeypatch.chdir(tmp_path)
+    Path("x.toml").write_text(scene)
+    assert main(["run", "x.toml"]) == 2
+
+
+def test_another_guid_is_told_in_the_fmus_words(tmp_path: Path) -> None:
+    binary = library("fmi2.c", tmp_path / "Motor.so", "-DSINGLE=0")
+    bad(tmp_path, description2().replace("{motor-2}", "{other}"), binary)
+    with pytest.raises(LoomfmuError, match=r"cannot be instantiated: \{other\}: 0 alive$"):
+        ran(tmp_path, MOTOR, tmp_path)
+
+
+def test_a_damaged_zip_is_told(place: Path, tmp_path: Path) -> None:
+    content = bytearray((place / "Motor3.fmu").read_bytes())
+    with zipfile.ZipFile(place / "Motor3.fmu") as archive:
+        start = archive.getinfo("binaries/x86_64-linux/Motor3.so").header_offset
+    for offset in range(start + 400, start + 800):
+        content[offset] ^= 0xFF
+    (tmp_path / "Motor3.fmu").write_bytes(content)
+    assert refused(tmp_path, LENGTH + SHAFT3) == (
+        f"shaft.fmu: {tmp_path}/Motor3.fmu: not a readable FMU"
+        " (Bad CRC-32 for file 'binaries/x86_64-linux/Motor3.so')"
+    )
+
+
+TEXTS = {
+    MOTOR + "label = 'x'\n": "motor.label is unknown; known: J, tau_stall, w_free, load_tau, verbose, mode,",
+    MOTOR + '"flange.w" = 1\n': "motor.flange.w is an output of Motor and cannot be set",
+    MOTOR + 'J = "2 m"\n': "motor.J: '2 m' is in m, which does not fit kg.m2",
+    MOTOR + "J = -11\n": "motor.J = -11 kg.m2 is outside [-10, inf] kg.m2",
+    MOTOR + 'component = "MainShaft"\n': "motor has both a component and an fmu; it is one of them",
+    LENGTH + "[motor]\nfmu = 5\n": "motor.fmu = 5 is not a name in quotes",
+    LENGTH + '[motor]\nfmu = "no.fmu"\n': "no.fmu: there is no such FMU",
+    LENGTH + '[shaft]\nfmu = "Motor.fmu"\n': "the shaft of a scene has an output angle in rad",
+    SHAFT3: 'there is no shaft whose speed sets the step: say duration = "2 s" and step = "1 ms"',
+    'duration = "1 s"\n': "duration: a scene runs either by duration and step, or by revolutions and",
+    LENGTH
+    + "revolutions = 2\n": "revolutions and duration and step: a scene runs either by duration and step",
+    LENGTH.replace("1 ms", "1 mm"): "step: '1 mm' is in mm, which does not fit s",
+    LENGTH.replace("1 ms", "0 s"): "step = 0 is outside [1e-12, 1e+09]",
+    LENGTH.replace("1 ms", "1 s"): "duration = 0.2 s in steps of 1 s is less than one step",
+}
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_a_mistake_in_a_scene_is_told_in_one_line(place: Path, text: str) -> None:
+    said = refused(place, text)
+    assert TEXTS[text] in said and "\n" not in said
+
+
+def test_a_scene_by_revolutions_has_its_shaft_beside_other_makers_fmus(place: Path) -> None:
+    scene = scenes.parse('[motor]\nfmu = "Motor.fmu"\n', directory=place)
+    assert list(scene.instances) == ["shaft", "motor"]

@@ -1,0 +1,249 @@
+"""Loops: watched for swinging up while they lag, and cured by iteration with rollback of states."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from live_fmus import fmu_cache
+from scipy.integrate import solve_ivp
+
+import loomfmu
+from loomfmu import LoomfmuError
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.master.loops import Broyden, Swing
+from loomfmu.cosim.run import Evaluation
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.graph import Wire
+
+__all__ = ["fmu_cache"]
+
+LOOP = """
+revolutions = {revolutions}
+steps_per_revolution = {steps}
+coupling = "{coupling}"
+[loom]
+machine = "WL680-3600"
+[shaft]
+component = "DrivenShaft"
+speed = "400 rpm"
+torque_slope = "40 N.m.s/rad"
+inertia = "{inertia} kg.m2"
+"""
+# the head's mass seen from the shaft is at most 0.1985 kg.m2: a lighter shaft swings up while the loop lags
+LIGHT, LIGHTEST, HEAVY = 0.1, 0.002, 2.0
+
+
+def driven(
+    coupling: str, inertia: float, steps: int = 720, revolutions: float = 2.0, flavour: str = "live"
+) -> Evaluation:
+    text = LOOP.format(coupling=coupling, inertia=inertia, steps=steps, revolutions=revolutions)
+    return loomfmu.evaluate(
+        scenes.parse(text, "loop"), values=["shaft.velocity", "weft.shaft_torque"], flavour=flavour
+    )
+
+
+def exact(inertia: float, time: np.ndarray) -> np.ndarray:
+    """Velocity of the shaft: `(J + m s'^2) w' + m s' s'' w^2 = k (w0 - w)`, with tight tolerances."""
+    scene = scenes.parse(LOOP.format(coupling="lagged", inertia=inertia, steps=90, revolutions=1))
+    weft = COMPONENTS["WeftInsertion"](**scene.instances["weft"].values)
+    mass = weft.moving_mass + weft.wheel_inertia / (0.5 * weft.wheel_diameter) ** 2
+
+    def slopes(angle: float) -> tuple[float, float]:
+        weft.shaft_angle, weft.shaft_velocity, weft.shaft_acceleration = angle, 1.0, 0.0
+        weft.initialize(0.0)
+        return weft.velocity, weft.acceleration
+
+    def rates(_time: float, state: np.ndarray) -> tuple[float, float]:
+        first, second = slopes(state[0])
+        torque = 40.0 * (scene.speed - state[1]) - mass * first * second * state[1] ** 2
+        return state[1], torque / (inertia + mass * first**2)
+
+    start = (0.0, scene.speed)
+    found = solve_ivp(rates, (0.0, time[-1]), start, method="DOP853", rtol=1e-12, atol=1e-12, t_eval=time)
+    return found.y[1]
+
+
+# ---- lagged
+
+
+@pytest.mark.parametrize("flavour", fmus.FLAVOURS)
+@pytest.mark.parametrize("inertia", [LIGHT, LIGHTEST])
+def test_a_lagged_loop_that_swings_up_is_told_with_its_remedy(inertia: float, flavour: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        driven("lagged", inertia, flavour=flavour)
+    said = str(raised.value)
+    assert said.startswith(
+        "loop: weft.shaft_torque -> shaft.torque_1: with the value of the step before it swings up, "
+    )
+    assert said.endswith('; set coupling = "iterated"')
+    assert "\n" not in said
+
+
+@pytest.mark.parametrize("steps", [720, 2880, 23040])
+def test_no_step_is_small_enough_to_cure_it(steps: int) -> None:
+    with pytest.raises(LoomfmuError, match="swings up"):
+        driven("lagged", LIGHT, steps, flavour="native" if steps > 9000 else "live", revolutions=1.0)
+
+
+def test_a_heavy_shaft_does_not_swing_and_is_not_said_to() -> None:
+    found = driven("lagged", HEAVY)
+    assert found.warnings == (
+        "loop: weft.shaft_torque -> shaft.torque_1 carries the value of the step before",
+    )
+    # one step late: of first order in the step
+    assert np.max(np.abs(found.trace["shaft.velocity"] - exact(HEAVY, found.trace.time))) < 3e-2
+
+
+# ---- iterated
+
+
+@pytest.mark.parametrize("inertia", [HEAVY, 0.21, LIGHT, LIGHTEST])
+def test_iterated_it_follows_the_exact_motion_in_second_order(inertia: float) -> None:
+    errors = []
+    for steps in (360, 720, 1440):
+        found = driven("iterated", inertia, steps)
+        assert found.warnings == ()
+        difference = found.trace["shaft.velocity"] - exact(inertia, found.trace.time)
+        errors.append(np.max(np.abs(difference)))
+    # the torque runs on straight lines between the samples: a quarter of the error for half the step, and a
+    # bound that a lagged loop exceeds a hundred times; the lightest shaft has a time constant of 50 us
+    assert errors[-1] < (2e-3 if inertia > LIGHTEST else 2e-2)
+    if inertia > LIGHTEST:
+        for coarse, fine in itertools.pairwise(errors):
+            assert 3.0 < coarse / fine < 5.0
+
+
+def test_both_flavours_iterate_alike() -> None:
+    live, native = (driven("iterated", LIGHT, 180, flavour=flavour).trace for flavour in fmus.FLAVOURS)
+    # each step ends when both ends agree to 1e-11 of the largest torque
+    np.testing.assert_allclose(live["shaft.velocity"], native["shaft.velocity"], rtol=1e-10)
+
+
+def test_a_loop_that_needs_no_iteration_gives_the_lagged_result_in_the_limit() -> None:
+    lagged = [driven("lagged", HEAVY, steps).trace["shaft.velocity"][-1] for steps in (720, 1440)]
+    iterated = driven("iterated", HEAVY, 1440).trace["shaft.velocity"][-1]
+    # the error of the lagged one halves: twice the finer less the coarser one is left with its square
+    assert 2.0 * lagged[1] - lagged[0] == pytest.approx(iterated, abs=2e-5)
+
+
+def test_rolled_back_extremes_and_counters_are_those_of_the_last_try() -> None:
+    scene = LOOP.format(coupling="iterated", inertia=LIGHT, steps=360, revolutions=1)
+    found = loomfmu.evaluate(scenes.parse(scene), values=["belt.lowest_margin", "belt.margin"])
+    lowest, margin = found.trace["belt.lowest_margin"], found.trace["belt.margin"]
+    # the tries of a step reach far; were they not taken back, the latched value would lie below every sample
+    assert np.all(lowest <= np.minimum.accumulate(margin) + 1e-15)
+    assert (
+        np.min(margin) - lowest[-1] < 4e-3
+    )  # what a margin with a curvature of 90 falls within half a degree
+
+
+def test_a_loop_without_solution_is_told_with_place_and_time(tmp_path: Path) -> None:
+    rest = """
+coupling = "iterated"
+steps_per_revolution = 90
+[loom]
+machine = "WL680-3600"
+weave = "10"
+dampers = true
+[damper_1]
+damping_ratio = 0.0
+spring_stiffness = 0.0
+carrier_mass = 0.1105 # the head's own: the belt's force would have to be 5 N more than it is
+[wires]
+"belt.acceleration" = "damper_1.carrier_acceleration"
+"damper_1.warp_force" = "belt.axial_force"
+[inputs]
+"belt.yarn_tension" = [[0, 0], [0.01, 0], [0.02, "5 N"]]
+"""
+    with pytest.raises(LoomfmuError) as raised:
+        loomfmu.run(scenes.parse(rest, "unsolved"), output=tmp_path / "unsolved.h5")
+    said = str(raised.value)
+    assert "damper_1.carrier_acceleration -> belt.acceleration" in said
+    assert "in 50 exchanges" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["unsolved.h5.partial"]
+
+
+def test_a_coupling_of_another_name_is_refused() -> None:
+    with pytest.raises(LoomfmuError, match=r"coupling = 'iterate' is unknown; did you mean 'iterated'"):
+        scenes.parse('coupling = "iterate"')
+
+
+# ---- the solver and the watch by themselves
+
+
+@pytest.mark.parametrize("gain", [-1000.0, -10.0, -1.0, 0.0, 0.5, 0.99, 5.0])
+def test_the_solver_finds_the_fixed_point_of_linear_loops_of_any_gain(gain: float) -> None:
+    reals, integers = np.array([0.0]), np.zeros(1, dtype=np.int32)
+
+    def exchange() -> None:
+        reals[0] = gain * reals[0] + 3.0
+
+    assert Broyden(reals, integers, [0]).settle(exchange)
+    # the residual is below 1e-11 of the value, the value itself off by that over (1 - gain)
+    assert reals[0] == pytest.approx(3.0 / (1.0 - gain), rel=1e-8)
+
+
+def test_the_solver_finds_coupled_fixed_points_and_keeps_what_it_learnt() -> None:
+    random = np.random.default_rng(2)
+    matrix, constant = random.normal(size=(4, 4)) * 3.0, random.normal(size=4)
+    reals, integers = np.zeros(4), np.zeros(1, dtype=np.int32)
+    solver, calls = Broyden(reals, integers, [0, 1, 2, 3]), []
+
+    def exchange() -> None:
+        calls.append(1)
+        reals[:] = matrix @ reals + constant
+
+    assert solver.settle(exchange)
+    expected = np.linalg.solve(np.eye(4) - matrix, constant)
+    np.testing.assert_allclose(reals, expected, rtol=1e-8)
+    first = len(calls)
+    constant += 0.1
+    assert solver.settle(exchange)
+    assert len(calls) - first <= first
+
+
+def test_the_solver_gives_up_where_there_is_nothing_to_find() -> None:
+    reals, integers = np.array([1.0]), np.zeros(1, dtype=np.int32)
+
+    def exchange() -> None:
+        reals[0] += 1.0
+
+    assert not Broyden(reals, integers, [0]).settle(exchange)
+    assert np.isfinite(reals[0])
+
+
+def swing() -> Swing:
+    return Swing([Wire(("a", "y"), ("b", "u"))], [0])
+
+
+@pytest.mark.parametrize("factor", [1.05, 1.5, 10.0])
+@pytest.mark.parametrize("block", [3, 50, 400])
+def test_a_growing_alternation_is_seen_whatever_the_blocks(factor: float, block: int) -> None:
+    steps = np.arange(400)
+    with np.errstate(over="ignore"):
+        values = (1.0 + 1e-9 * (-factor) ** np.minimum(steps, 250.0))[:, None]
+    watch = swing()
+    with pytest.raises(LoomfmuError, match=rf"swings up, {factor:.3g} times a step"):
+        for start in range(0, 400, block):
+            watch.check(steps[start : start + block] * 1e-3, values[start : start + block])
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.sin(np.linspace(0.0, 60.0, 1000)),
+        np.exp(np.linspace(0.0, 60.0, 1000)),
+        np.random.default_rng(3).normal(size=1000),
+        (-0.999) ** np.arange(1000),
+        1.0 + 1e-13 * np.random.default_rng(4).normal(size=1000) * np.linspace(0.0, 1.0, 1000),
+        np.zeros(1000),
+        np.tile([1.0, -1.0], 500),
+    ],
+    ids=["sine", "growth", "noise", "fading", "rounding", "rest", "steady"],
+)
+def test_what_only_moves_is_no_swing(values: np.ndarray) -> None:
+    watch = swing()
+    for start in range(0, 1000, 100):
+        watch.check(np.arange(start, start + 100) * 1e-3, values[start : start + 100, None])

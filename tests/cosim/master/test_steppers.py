@@ -1,0 +1,249 @@
+"""The compiled stepper makes the calls of the Python loop: equal to the last bit, with the same failures."""
+
+import signal
+import sys
+import threading
+import time
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from direct_loom import small
+from live_fmus import fmu_cache
+from odd_components import odd
+
+import loomfmu
+from loomfmu import LoomfmuError
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.master import steppers
+from loomfmu.cosim.master.grid import Grid, chosen, uniform
+from loomfmu.cosim.master.master import Interrupted, Master
+from loomfmu.cosim.planning.pruning import prune
+from loomfmu.cosim.run import _in_flavour
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
+
+__all__ = ["fmu_cache", "odd"]
+
+pytestmark = pytest.mark.skipif(
+    find_spec("ziglang") is None or not sys.platform.startswith("linux"),
+    reason="there is no compiler to build the stepper with",
+)
+Rows = list[tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+DRIVEN = '[inputs]\n"belt.guide_clearance" = [[0.1, "0.3 mm"], [0.3, "0.5 mm"], [0.6, "0.9 mm"]]\n'
+SCENES = {
+    "constant": {},
+    "ramp and ripple": {"shaft__ramp_duration": 0.05, "shaft__ripple_amplitude": 0.05},
+    "driven": {"rest": DRIVEN},
+    "loop": {"rest": '[wires]\n"belt.yarn_tension" = "belt.inertia_force"\n'},
+}
+
+
+def rows_of(scene: Scene, compiled: bool, grid: Grid | None = None, block: int = 100) -> Rows:
+    """All blocks of a run: times, reals and integers."""
+    rows: Rows = []
+    with Master(scene, grid, compiled=compiled) as master:
+        master.initialize()
+        kind = steppers.CompiledStepper if compiled else steppers.PythonStepper
+        assert type(master._stepper) is kind
+        master.run(
+            block, lambda *parts: rows.append(tuple(part.copy() for part in parts)), lambda _step: None
+        )
+    return rows
+
+
+def equal(one: Rows, other: Rows) -> None:
+    assert len(one) == len(other)
+    for parts, others in zip(one, other, strict=True):
+        for part, its in zip(parts, others, strict=True):
+            np.testing.assert_array_equal(part, its)
+
+
+@pytest.mark.parametrize("flavour", fmus.FLAVOURS)
+@pytest.mark.parametrize("changed", SCENES.values(), ids=list(SCENES))
+def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: str) -> None:
+    scene = _in_flavour(small(180, **changed), flavour)
+    equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
+
+
+SWITCHED = """
+revolutions = 1
+steps_per_revolution = 90
+coupling = "{coupling}"
+[odd]
+component = "Switched"
+[inputs]
+"odd.gear" = [[0, 2], [0.4, -3], [0.7, "4"]]
+"odd.engaged" = [[0.2, false], [0.5, true]]
+"odd.ratio" = [[0, 0.0], [1, 1.0]]
+{rest}
+"""
+
+
+@pytest.mark.usefixtures("odd")
+@pytest.mark.parametrize("compiled", [True, False])
+def test_driven_integers_and_booleans_are_held_until_the_next_row(compiled: bool) -> None:
+    scene = scenes.parse(SWITCHED.format(coupling="lagged", rest=""), "switched")
+    with Master(scene, compiled=compiled) as master:
+        slots = {variable: slot for (name, variable), (_kind, slot) in master.slots.items() if name == "odd"}
+    times, reals, integers = (np.concatenate(p) for p in zip(*rows_of(scene, compiled), strict=True))
+    turns = np.arange(91) / 90
+    gear = np.where(turns < 0.4, 2, np.where(turns < 0.7, -3, 4))
+    for variable in ("gear", "gear_in_use"):
+        np.testing.assert_array_equal(integers[:, slots[variable]], gear)
+    for variable in ("engaged", "running"):
+        np.testing.assert_array_equal(integers[:, slots[variable]], turns >= 0.5)
+    ratio = reals[:, slots["ratio"]]
+    np.testing.assert_allclose(ratio, turns, rtol=0, atol=2e-16)  # one rounding
+    np.testing.assert_array_equal(reals[:, slots["value"]], np.where(turns < 0.5, 0.0, gear * ratio))
+    assert len(times) == 91
+
+
+@pytest.mark.usefixtures("odd")
+def test_an_iterated_loop_takes_driven_integers_too() -> None:
+    text = SWITCHED.replace('"odd.ratio" = [[0, 0.0], [1, 1.0]]\n', "").format(
+        coupling="iterated",
+        rest='"other.engaged" = [[0, true]]\n"other.gear" = [[0, 0], [0.5, 1]]\n'
+        '[other]\ncomponent = "Switched"\n'
+        '[wires]\n"other.ratio" = "odd.value"\n"odd.ratio" = "other.value"\n',
+    )
+    evaluated = loomfmu.evaluate(
+        scenes.parse(text, "switched"), values=["odd.gear_in_use", "other.gear_in_use"]
+    )
+    turns = np.arange(91) / 90
+    np.testing.assert_array_equal(evaluated.trace["other.gear_in_use"], turns >= 0.5)
+    np.testing.assert_array_equal(evaluated.trace["odd.gear_in_use"][[0, 36, 63]], [2, -3, 4])
+
+
+@pytest.mark.parametrize("block", [1, 2, 7, 4096])
+def test_the_size_of_a_block_changes_nothing(block: int) -> None:
+    scene = small(90, rest=DRIVEN)
+    whole = [np.concatenate(parts) for parts in zip(*rows_of(scene, True), strict=True)]
+    parts = [np.concatenate(parts) for parts in zip(*rows_of(scene, True, block=block), strict=True)]
+    equal([tuple(whole)], [tuple(parts)])
+
+
+def test_very_many_blocks_are_handed_over(tmp_path: Path) -> None:
+    scene = scenes.parse("steps_per_revolution = 3000\n[shaft]", "long")
+    with Master(scene) as master:
+        master.initialize()
+        rows = 0
+
+        def count(times: np.ndarray, *_: np.ndarray) -> None:
+            nonlocal rows
+            rows += len(times)
+
+        master.run(2, count, lambda _step: None)  # what a run of millions of steps has in blocks of thousands
+    assert rows == 3001
+
+
+def test_chosen_points_are_stepped_by_both_alike() -> None:
+    scene = small(90, shaft__ramp_duration=0.05, rest=DRIVEN)
+    random = np.random.default_rng(1)
+    points = np.concatenate([[0.0], np.cumsum(random.uniform(1e-7, 2e-3, 200))])
+    grid = chosen(scene, points)
+    compiled = rows_of(scene, True, grid)
+    equal(compiled, rows_of(scene, False, grid))
+    np.testing.assert_array_equal(np.concatenate([times for times, _, _ in compiled]), points)
+
+
+def test_equal_points_that_were_chosen_give_the_results_of_equal_steps() -> None:
+    scene = small(90)
+    even = uniform(scene)
+    points = chosen(scene, np.arange(even.steps + 1) * even.step_size)
+    for one, other in zip(rows_of(scene, True, points), rows_of(scene, True), strict=True):
+        for part, its in zip(one, other, strict=True):
+            # the sizes of the steps differ by the rounding of a difference, 1e-16 of 0.1 s in steps of 1 ms
+            np.testing.assert_allclose(part, its, rtol=1e-9, atol=1e-9)
+
+
+def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None:
+    scene = small(180)
+    everything = [f"{name}.{variable}" for name, variable in Master(scene).slots]
+    less = prune(scene, everything)
+    assert "shaft" not in less.scene.instances
+    whole, without = Master(scene), Master(less.scene, uniform(scene), less.fetched, less.shafts)
+    found = {}
+    for master in (whole, without):
+        with master:
+            master.initialize()
+            blocks = []
+            master.run(
+                5000, lambda t, r, i, blocks=blocks: blocks.append((r.copy(), i.copy())), lambda _: None
+            )
+            (found[master],) = blocks
+    for key, (kind, slot) in whole.slots.items():
+        other_kind, other_slot = without.slots[key]
+        place = 0 if kind == "Real" else 1
+        assert kind == other_kind
+        np.testing.assert_array_equal(found[whole][place][:, slot], found[without][place][:, other_slot])
+
+
+# ---- failures
+
+
+@pytest.mark.usefixtures("odd")
+@pytest.mark.parametrize("component", ["Raising", "Overflowing"])
+def test_both_fail_alike_and_keep_the_same_rows(component: str) -> None:
+    scene = scenes.parse(f'steps_per_revolution = 3000\n[odd]\ncomponent = "{component}"\n', "odd")
+    told, kept = [], []
+    for compiled in (True, False):
+        rows = 0
+
+        def count(times: np.ndarray, *_: np.ndarray) -> None:
+            nonlocal rows
+            rows += len(times)
+
+        with Master(scene, compiled=compiled) as master:
+            master.initialize()
+            with pytest.raises(LoomfmuError) as raised:
+                master.run(1024, count, lambda _step: None)
+        told.append(str(raised.value))
+        kept.append(rows)
+    assert told[0] == told[1]
+    assert kept == [2002, 2002]
+
+
+def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
+    scene = _in_flavour(small(1440, revolutions=5000.0), "native")  # tens of seconds
+    rows = 0
+
+    def count(times: np.ndarray, *_: np.ndarray) -> None:
+        nonlocal rows
+        rows += len(times)
+
+    main = threading.main_thread().ident
+    assert main is not None
+    timer = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
+    before = time.perf_counter()
+    with pytest.raises(Interrupted), Master(scene, compiled=True) as master:
+        master.initialize()
+        timer.start()
+        master.run(1024, count, lambda _step: None)
+    timer.join()
+    assert 0 < rows < scene.steps
+    assert time.perf_counter() - before < 30.0  # a part is made in 50 ms: this is to see that it ends at all
+
+
+def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(steppers, "_library", lambda: None)
+    with Master(small(90)) as master:
+        master.initialize()
+        assert type(master._stepper) is steppers.PythonStepper
+    with (
+        pytest.raises(LoomfmuError, match="the compiled stepper is not to be had"),
+        Master(small(90), compiled=True) as master,
+    ):
+        master.initialize()
+
+
+def test_the_library_is_built_once_and_shared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path))
+    first = steppers._library.__wrapped__()
+    assert first is not None
+    made = first.stat().st_mtime_ns
+    assert steppers._library.__wrapped__() == first
+    assert first.stat().st_mtime_ns == made
+    assert [path.name for path in first.parent.iterdir()] == [first.name]  # nothing half-made is left

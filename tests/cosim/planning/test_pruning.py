@@ -1,0 +1,174 @@
+"""What a run leaves out: found backwards from what is asked, and told."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from direct_loom import small
+from live_fmus import fmu_cache
+
+import loomfmu
+from loomfmu.cosim.importing import fmus, pool
+from loomfmu.cosim.planning.pruning import Pruned, prune
+from loomfmu.cosim.planning.requested import judged_by, recorded
+from loomfmu.cosim.run import explained
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
+
+__all__ = ["fmu_cache"]
+
+DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
+MARGIN = """
+record = []
+steps_per_revolution = 360
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01/10/01"
+dampers = true
+{rest}
+[[claims]]
+kind = "lowest_margin"
+bound = 0.1
+"""
+
+
+def needed_for(scene: Scene) -> Pruned:
+    return prune(scene, recorded(scene))
+
+
+def margin(rest: str = "") -> Scene:
+    return scenes.parse(MARGIN.format(rest=rest), "margin")
+
+
+def test_a_scene_that_claims_the_belts_margin_alone_needs_two_fmus() -> None:
+    needed = needed_for(margin())
+    assert set(needed.scene.instances) == {"weft", "belt"}
+    assert needed.fetched == {
+        ("weft", "travel"), ("weft", "velocity"), ("weft", "acceleration"),
+        ("belt", "margin"), ("belt", "lowest_margin"),
+    }  # fmt: skip
+    assert set(needed.shafts) == {"shaft"}
+
+
+def test_what_is_not_needed_is_neither_built_nor_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pool.free_all()
+    fmus.of_component.cache_clear()
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
+    result = loomfmu.run(margin(), output=tmp_path / "margin.h5")
+    assert result.holds
+    built = sorted(path.name for path in (tmp_path / "cache" / "fmus").glob("*/*.fmu"))
+    assert built == ["BeltMonitor.fmu", "WeftInsertion.fmu"]
+    assert len(list((tmp_path / "cache" / "unpacked").iterdir())) == 2
+    pool.free_all()
+    fmus.of_component.cache_clear()
+
+
+def test_what_is_left_out_is_told_with_its_reason_and_what_it_saves() -> None:
+    scene = margin()
+    told = loomfmu.evaluate(scene).skipped
+    assert "shaft (MainShaft): its speed is constant, what follows it turns by itself" in told
+    assert "damper_3 (HealdDamper): nothing that is recorded or claimed depends on it" in told
+    assert any(line.startswith("belt: 10 of 12 outputs that nobody reads: free_length, ") for line in told)
+    # 12 FMUs and 360 steps against 2 and 360
+    assert told[-1] == (
+        "2 of 12 FMUs, 360 steps where equal ones would be 360:"
+        " 720 steps of FMUs instead of 4320, 6 times fewer"
+    )
+
+
+def test_less_gives_the_same_bits(tmp_path: Path) -> None:
+    text = DEMO.read_text()
+    whole = loomfmu.run(scenes.parse(text, "demo"), output=tmp_path / "whole.h5")
+    less = loomfmu.run(scenes.parse(f"record = []\n{text}", "less"), output=tmp_path / "less.h5")
+    assert [str(verdict) for verdict in less.claims] == [str(verdict) for verdict in whole.claims]
+    assert set(less.trace) < set(whole.trace)
+    for signal in less.trace:
+        np.testing.assert_array_equal(less.trace[signal], whole.trace[signal])
+
+
+def test_an_evaluation_gives_the_verdicts_of_a_run_and_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    evaluated = loomfmu.evaluate(DEMO, values=["heald_3.lift"])
+    assert list(tmp_path.iterdir()) == []
+    result = loomfmu.run(DEMO, output=tmp_path / "demo.h5")
+    assert evaluated.claims == result.claims
+    assert evaluated.holds
+    np.testing.assert_array_equal(evaluated.trace["heald_3.lift"], result.trace["heald_3.lift"])
+    assert evaluated.trace.parameter("heald_3.stroke") == result.trace.parameter("heald_3.stroke")
+    assert "damper_3.rate" not in evaluated.trace
+    with pytest.raises(loomfmu.LoomfmuError, match=r"no signal 'damper_3.rate' is recorded"):
+        evaluated.trace["damper_3.rate"]
+    with pytest.raises(
+        loomfmu.LoomfmuError, match=r"record: heald_3 has no output 'lifft'; did you mean 'lift'"
+    ):
+        loomfmu.evaluate(DEMO, values=["heald_3.lifft"])
+
+
+@pytest.mark.parametrize(
+    "rest",
+    [
+        '[shaft]\nramp_duration = "0.1 s"',
+        "[shaft]\nripple_amplitude = 0.01",
+        "[weft]\nfollow_shaft = false\n[belt]\nguide_clearance = 0.0004",
+        '[wires]\n"belt.yarn_tension" = false\n"belt.shaft_acceleration" = false\n',
+    ],
+)
+def test_a_shaft_stays_where_it_is_more_than_a_product(rest: str) -> None:
+    if "yarn_tension" in rest:
+        rest = rest.replace('"belt.yarn_tension" = false\n', "")
+    needed = needed_for(margin(rest))
+    assert "shaft" in needed.scene.instances
+    assert not needed.shafts
+
+
+def test_a_shaft_that_others_read_stays(tmp_path: Path) -> None:
+    rest = '[wires]\n"belt.guide_clearance" = "shaft.acceleration"\n'
+    with pytest.raises(
+        loomfmu.LoomfmuError, match=r"shaft.acceleration is in rad/s2, belt.guide_clearance in m"
+    ):
+        margin(rest)
+    rest = '[other]\ncomponent = "HealdFrame"\n[wires]\n"other.rotor_angle" = "shaft.angle"\n'
+    assert "shaft" in needed_for(scenes.parse(f'record = ["other.*"]\n{rest}', "other")).scene.instances
+
+
+def test_a_driven_input_goes_with_its_instance() -> None:
+    rest = '[inputs]\n"damper_1.warp_force" = [[0, "10 N"], [1, "20 N"]]\n'
+    scene = margin(rest)
+    assert "damper_1" in needed_for(scene).scene.instances  # what drives an input is recorded
+    needed = prune(scene, judged_by(scene))
+    assert "damper_1" not in needed.scene.instances
+    assert needed.scene.drives == []
+
+
+def test_loops_are_kept_whole() -> None:
+    scene = small(90, rest='[wires]\n"belt.yarn_tension" = "belt.inertia_force"\n')
+    needed = prune(scene, ["belt.margin"])
+    assert ("belt", "inertia_force") in needed.fetched
+    assert set(needed.scene.instances) == {"weft", "belt"}
+
+
+def test_nothing_asked_is_nothing_run() -> None:
+    evaluated = loomfmu.evaluate(scenes.parse("revolutions = 2\nsteps_per_revolution = 8\n[shaft]", "shaft"))
+    assert evaluated.skipped[-1].endswith("none left")
+    # the closed form of a constant speed: 400 rev/min
+    np.testing.assert_allclose(evaluated.trace["shaft.angle"], np.arange(17) * np.pi / 4, rtol=1e-15)
+    assert evaluated.trace["shaft.velocity"][-1] == evaluated.trace.parameter("shaft.speed")
+
+
+@pytest.mark.parametrize(
+    ("taken", "said"), [(50, "2 times fewer"), (100, "all of them"), (108, "8 % more"), (0, "none left")]
+)
+def test_what_a_grid_saves_or_costs_is_told(taken: int, said: str) -> None:
+    whole = SimpleNamespace(instances={"a": 1}, steps=100)
+    plan: Any = SimpleNamespace(
+        scene=whole, pruned=SimpleNamespace(scene=whole, skipped=()),
+        grid=SimpleNamespace(steps=taken, scouted=0, notes=()),
+    )  # fmt: skip
+    assert explained(plan)[-1].endswith(f", {said}")

@@ -1,0 +1,86 @@
+"""The order of stepping, for any wiring."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from loomfmu.cosim.scenes.graph import Wire, step_order
+
+NAMES = [f"i{number}" for number in range(8)]
+names = st.sampled_from(NAMES)
+wirings = st.lists(st.tuples(names, names), max_size=25, unique=True)
+forward = st.lists(
+    st.tuples(st.integers(0, 7), st.integers(0, 7)).filter(lambda pair: pair[0] < pair[1]), max_size=25
+)
+
+
+def wires(pairs: list[tuple[str, str]]) -> list[Wire]:
+    return [Wire((source, f"y{n}"), (sink, f"u{n}")) for n, (source, sink) in enumerate(pairs)]
+
+
+@given(forward, st.permutations(NAMES))
+def test_without_loops_every_source_comes_before_its_sinks(
+    pairs: list[tuple[int, int]], scene: list[str]
+) -> None:
+    wiring = wires([(NAMES[source], NAMES[sink]) for source, sink in pairs])
+    order, lagged = step_order(scene, wiring)
+    assert lagged == []
+    assert sorted(order) == NAMES
+    assert all(order.index(wire.source[0]) < order.index(wire.sink[0]) for wire in wiring)
+
+
+@given(wirings, st.permutations(NAMES))
+def test_with_loops_the_wires_that_lag_are_those_that_go_back(
+    pairs: list[tuple[str, str]], scene: list[str]
+) -> None:
+    wiring = wires(pairs)
+    order, lagged = step_order(scene, wiring)
+    assert sorted(order) == NAMES
+    back = [wire for wire in wiring if order.index(wire.source[0]) >= order.index(wire.sink[0])]
+    assert sorted(map(str, lagged)) == sorted(map(str, back))
+
+
+@given(wirings, st.permutations(NAMES))
+def test_cutting_the_wires_that_lag_leaves_no_loop(pairs: list[tuple[str, str]], scene: list[str]) -> None:
+    wiring = wires(pairs)
+    _order, lagged = step_order(scene, wiring)
+    _order, rest = step_order(scene, [wire for wire in wiring if wire not in lagged])
+    assert rest == []
+
+
+@given(st.permutations(NAMES))
+def test_what_is_not_wired_keeps_the_scenes_order(scene: list[str]) -> None:
+    assert step_order(scene, []) == (scene, [])
+
+
+def test_only_the_wire_that_closes_a_loop_lags() -> None:
+    chain = [Wire(("a", "y"), ("b", "u")), Wire(("b", "y"), ("c", "u")), Wire(("c", "y"), ("a", "u"))]
+    order, lagged = step_order(["a", "b", "c"], chain)
+    assert (order, [str(wire) for wire in lagged]) == (["a", "b", "c"], ["c.y -> a.u"])
+    own = Wire(("a", "y"), ("a", "u"))
+    assert step_order(["a"], [own]) == (["a"], [own])
+
+
+def test_a_loop_does_not_hold_up_what_does_not_depend_on_it() -> None:
+    wiring = [Wire(("a", "y"), ("b", "u")), Wire(("b", "y"), ("a", "u")), Wire(("d", "y"), ("c", "u"))]
+    order, lagged = step_order(["a", "b", "c", "d"], wiring)
+    assert order == ["d", "c", "a", "b"]
+    assert [str(wire) for wire in lagged] == ["b.y -> a.u"]
+
+
+@given(wirings, st.permutations(NAMES))
+def test_only_wires_within_a_loop_lag(pairs: list[tuple[str, str]], scene: list[str]) -> None:
+    wiring = wires(pairs)
+    _order, lagged = step_order(scene, wiring)
+    for wire in lagged:  # its source is fed, near or far, by its sink
+        reached, front = set(), {wire.sink[0]}
+        while front:
+            reached |= front
+            front = {each.sink[0] for each in wiring if each.source[0] in front} - reached
+        assert wire.source[0] in reached
+
+
+def test_what_a_loop_feeds_comes_after_it() -> None:
+    wiring = [Wire(("a", "y"), ("b", "u")), Wire(("b", "y"), ("a", "u")), Wire(("a", "y"), ("c", "u"))]
+    order, lagged = step_order(["c", "a", "b"], wiring)
+    assert order == ["a", "c", "b"]
+    assert [str(wire) for wire in lagged] == ["b.y -> a.u"]

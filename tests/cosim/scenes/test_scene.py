@@ -1,0 +1,514 @@
+"""What a scene says, and what becomes of it."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from direct_loom import small, traced
+from live_fmus import fmu_cache
+
+from loomfmu import LoomfmuError, units
+from loomfmu.cosim.planning.requested import checked_claims
+from loomfmu.cosim.run import run
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.graph import Wire
+from loomfmu.machines import parameters
+
+__all__ = ["fmu_cache"]
+
+LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01/10/01"\ndampers = true\n'
+RPM = 2 * math.pi / 60
+
+
+def wired(text: str) -> set[str]:
+    return {str(wire) for wire in scenes.parse(text).wires}
+
+
+def test_a_standard_loom_is_spelt_out_by_nobody() -> None:
+    scene = scenes.parse(LOOM)
+    frames = [f"{kind}_{number}" for kind in ("heald", "damper") for number in range(1, 5)]
+    assert list(scene.instances) == ["shaft", "weft", "belt", "dobby", *frames]
+    kinds = {name: instance.fmu.name for name, instance in scene.instances.items()}
+    assert kinds["heald_3"] == "HealdFrame"
+    assert kinds["damper_4"] == "HealdDamper"
+    wires = {str(wire) for wire in scene.wires}
+    for name in ("weft", "belt", "dobby"):
+        for signal in ("angle", "velocity", "acceleration"):
+            assert f"shaft.{signal} -> {name}.shaft_{signal}" in wires
+    assert "weft.travel -> belt.travel" in wires
+    assert "dobby.rotor_angle -> heald_2.rotor_angle" in wires
+    assert "heald_3.lift -> damper_3.lift" in wires
+    assert not any("heald_3" in wire and "damper_4" in wire for wire in wires)
+
+
+def test_mechanisms_on_the_shaft_follow_it_of_themselves() -> None:
+    scene = scenes.parse(LOOM)
+    for name, instance in scene.instances.items():
+        follows = name in ("weft", "belt", "dobby")
+        assert instance.values.get("follow_shaft", False) is follows
+        assert instance.values.get("inputs_at_step_end", False) is (name != "shaft")
+    alone = scenes.parse(LOOM + "[weft]\nfollow_shaft = false\n")
+    assert alone.instances["weft"].values["follow_shaft"] is False
+
+
+def test_published_machines_and_heads_set_what_they_know() -> None:
+    values = {name: instance.values for name, instance in scenes.parse(LOOM).instances.items()}
+    assert values["weft"]["output_length"] == 0.121
+    assert values["weft"]["moving_mass"] == values["belt"]["head_mass"] == 0.1105
+    assert values["belt"]["head_length"] == 0.55
+    other = scenes.parse(LOOM + '[belt]\nhead = "GS900 left"\nhead_length = "540 mm"\n').instances
+    assert other["belt"].values["head_mass"] == 0.1222
+    assert math.isclose(other["belt"].values["head_length"], 0.54, rel_tol=1e-15)  # one product
+    assert other["weft"].values["moving_mass"] == 0.1105
+
+
+def test_every_frame_has_its_string_of_pegs() -> None:
+    instances = scenes.parse(LOOM + '[heald_2]\npattern = "0010"\n').instances
+    assert (instances["heald_1"].values["pattern_length"], instances["heald_1"].values["pattern_1"]) == (2, 1)
+    assert (instances["heald_2"].values["pattern_length"], instances["heald_2"].values["pattern_1"]) == (4, 4)
+    long = scenes.parse(LOOM + f'[heald_1]\npattern = "{"1" * 17 + "0" * 3}"\n').instances["heald_1"].values
+    assert (long["pattern_length"], long["pattern_1"], long["pattern_2"]) == (20, 65535, 1)
+
+
+# ---- wires
+
+
+def test_a_wire_can_be_added_and_replaced() -> None:
+    before = wired(LOOM)
+    text = LOOM + '[wires]\n"belt.yarn_tension" = "damper_1.transmitted_force"\n'
+    assert wired(text) == before | {"damper_1.transmitted_force -> belt.yarn_tension"}
+    text = LOOM + '[wires]\n"damper_2.lift" = "heald_1.lift"\n'
+    assert wired(text) == before - {"heald_2.lift -> damper_2.lift"} | {"heald_1.lift -> damper_2.lift"}
+    nested = LOOM + "[wires.damper_2]\nlift = 'heald_1.lift'\n"
+    assert wired(nested) == wired(text)
+
+
+@pytest.mark.parametrize("cut", ['"belt.travel" = false', "belt.travel = false", "belt = {travel = false}"])
+def test_a_wire_can_be_cut(cut: str) -> None:
+    assert wired(f"{LOOM}[wires]\n{cut}\n") == wired(LOOM) - {"weft.travel -> belt.travel"}
+
+
+def test_cutting_what_is_not_wired_is_refused() -> None:
+    with pytest.raises(LoomfmuError, match=r"^wires: 'belt.travl' is not wired; did you mean 'belt.travel'"):
+        scenes.parse(LOOM + '[wires]\n"belt.travl" = false\n')
+
+
+def test_an_input_whose_wire_is_cut_takes_a_value(tmp_path: Path) -> None:
+    cut = "".join(f'"belt.{signal}" = false\n' for signal in ("travel", "velocity", "acceleration"))
+    text = LOOM + f'[belt]\ntravel = "900 mm"\nvelocity = 0.0\nacceleration = 100.0\n[wires]\n{cut}'
+    assert wired(text) == wired(LOOM) - {
+        f"weft.{signal} -> belt.{signal}" for signal in ("travel", "velocity", "acceleration")
+    }
+    scene = scenes.parse("revolutions = 0.1\nsteps_per_revolution = 90\n" + text)
+    with traced(scene, tmp_path) as trace:
+        assert set(trace["belt.inertia_force"]) == {0.1105 * 100.0}
+
+
+def test_a_cut_wire_leaves_the_start_value(tmp_path: Path) -> None:
+    rest = "[wires]\nbelt.travel = false\nbelt.velocity = false\nbelt.acceleration = false\n"
+    scene = small(90, 0.1, rest=rest)
+    start = scene.instances["belt"].fmu.ports["acceleration"].start
+    with traced(scene, tmp_path) as trace:
+        assert set(trace["belt.inertia_force"]) == {0.1105 * start}
+
+
+# ---- groups, own names, values
+
+
+def test_a_table_without_number_is_for_all_members_and_a_members_own_says_more() -> None:
+    text = LOOM + '[heald]\nstroke = "60 mm"\nframe_mass = 10.0\n[heald_2]\nstroke = "70 mm"\n'
+    for order in (text, LOOM + "\n".join(["[heald_2]", 'stroke = "70 mm"', *text.split("\n")[5:8]]) + "\n"):
+        values = {name: instance.values for name, instance in scenes.parse(order).instances.items()}
+        assert [round(values[f"heald_{n}"]["stroke"], 12) for n in (1, 2, 3, 4)] == [0.06, 0.07, 0.06, 0.06]
+        assert all(values[f"heald_{n}"]["frame_mass"] == 10.0 for n in (1, 2, 3, 4))
+
+
+@pytest.mark.parametrize("group_first", [True, False])
+def test_a_group_may_stand_before_its_members(group_first: bool) -> None:
+    group, members = '[heald]\nstroke = "60 mm"\n', '[heald_1]\npattern = "10"\n[heald_2]\npattern = "01"\n'
+    scene = scenes.parse(group + members if group_first else members + group)
+    assert sorted(scene.instances) == ["heald_1", "heald_2", "shaft"]
+    assert all(scene.instances[f"heald_{n}"].values["stroke"] == 0.06 for n in (1, 2))
+
+
+def test_one_frame_needs_no_number() -> None:
+    scene = scenes.parse('[dobby]\n[heald]\npattern = "10"\n[damper]\n')
+    assert "heald.lift -> damper.lift" in {str(wire) for wire in scene.wires}
+    assert "dobby.rotor_angle -> heald.rotor_angle" in {str(wire) for wire in scene.wires}
+
+
+def test_set_reaches_one_member_all_members_and_the_runs_own_keys() -> None:
+    given = {
+        "heald.stroke": "60mm",
+        "heald_2.stroke": "70 mm",
+        "shaft.speed": "685rpm",
+        "belt.guide_clearance": "0.5mm",
+        "revolutions": "2.5",
+        "steps_per_revolution": "360",
+    }
+    scene = scenes.parse("revolutions = 9\n" + LOOM + '[heald_1]\nstroke = "80 mm"\n', overrides=given)
+    values = {name: instance.values for name, instance in scene.instances.items()}
+    assert [round(values[f"heald_{n}"]["stroke"], 12) for n in (1, 2, 3)] == [0.06, 0.07, 0.06]
+    assert math.isclose(scene.speed, 685 * RPM, rel_tol=1e-15)
+    assert math.isclose(values["belt"]["guide_clearance"], 0.5e-3, rel_tol=1e-15)
+    assert (scene.periods, scene.steps_per_period, scene.steps) == (2.5, 360, 900)
+
+
+def test_numbers_are_si_and_texts_have_units() -> None:
+    for given in (71.733, "71.733", "71.733 rad/s"):
+        scene = scenes.parse("[shaft]", overrides={"shaft.speed": given})
+        assert scene.speed == 71.733
+    assert math.isclose(scenes.parse("[shaft]", overrides={"shaft.speed": "685 rpm"}).speed, 685 * RPM)
+    assert scenes.parse("[shaft]", overrides={"shaft.ripple_order": "3"}).instances["shaft"].values == {
+        "ripple_order": 3
+    }
+
+
+@pytest.mark.parametrize(
+    ("given", "law"),
+    [
+        ("'sloped_line'", 3),
+        ("'sloped-line'", 3),
+        ("'sloped line'", 3),
+        ("3", 3),
+        ("'3'", 3),
+        ("'uniform'", 1),
+    ],
+)
+def test_a_law_has_a_name_or_a_number(given: str, law: int) -> None:
+    value = scenes.parse(f"[dobby]\nlaw = {given}\n").instances["dobby"].values["law"]
+    assert value == law and type(value) is int
+
+
+@pytest.mark.parametrize(
+    ("given", "value"), [("true", True), ("false", False), ("'true'", True), ("'False'", False)]
+)
+def test_yes_or_no(given: str, value: bool) -> None:
+    scene = scenes.parse(f"[belt]\nprescribe_length_factor = {given}\n")
+    assert scene.instances["belt"].values["prescribe_length_factor"] is value
+
+
+def test_components_under_names_of_their_own() -> None:
+    text = """
+[left_head]
+component = "WeftInsertion"
+machine = "WL800-3600"
+[wires]
+"left_head.shaft_angle" = "shaft.angle"
+"left_head.shaft_velocity" = "shaft.velocity"
+"""
+    scene = scenes.parse(text)
+    left = scene.instances["left_head"]
+    assert left.fmu.name == "WeftInsertion"
+    assert left.values["planar_linkage"] is False
+    assert left.values["follow_shaft"] is True
+    # the standard wires of a component hold under any name
+    assert Wire(("shaft", "acceleration"), ("left_head", "shaft_acceleration")) in scene.wires
+
+
+# ---- what a loom has one of
+
+MIXED = "the loom mixes machines: weft has WL450-3600, belt has WL680-3600; machine = NAME sets all of them"
+
+
+@pytest.mark.parametrize("key", ["machine", "loom.machine"])
+def test_a_machine_is_set_for_all_that_have_one(key: str) -> None:
+    changed = scenes.parse(LOOM, overrides={key: "WL450-3600"})
+    written = scenes.parse(LOOM.replace("WL680-3600", "WL450-3600"))
+    for name in ("weft", "belt"):
+        assert changed.instances[name].values == written.instances[name].values
+        assert changed.instances[name].published["machine"] == "WL450-3600"
+    assert changed.notes == written.notes == ()
+
+
+@pytest.mark.parametrize("key", ["head", "loom.head"])
+def test_so_is_a_head(key: str) -> None:
+    values = scenes.parse(LOOM, overrides={key: "GS900 left"}).instances
+    assert values["weft"].values["moving_mass"] == values["belt"].values["head_mass"] == 0.1222
+
+
+def test_a_value_of_the_scene_prevails_over_the_machine_and_set_over_both() -> None:
+    text = LOOM + '[belt]\nidle_travel = "200 mm"\n'
+    belt = scenes.parse(text, overrides={"machine": "WL450-3600"}).instances["belt"].values
+    assert (belt["idle_travel"], belt["head_length"]) == (
+        0.2,
+        parameters("BeltMonitor", machine="WL450-3600")["head_length"],
+    )
+    for order in (
+        {"machine": "WL450-3600", "belt.idle_travel": 0.3},
+        {"belt.idle_travel": 0.3, "machine": "WL450-3600"},
+    ):
+        assert scenes.parse(text, overrides=order).instances["belt"].values["idle_travel"] == 0.3
+
+
+def test_a_loom_of_two_machines_is_named(tmp_path: Path) -> None:
+    half = {"weft.machine": "WL450-3600", "revolutions": 0.1}
+    assert scenes.parse(LOOM, overrides=half).notes == (MIXED,)
+    assert scenes.parse(LOOM + '[weft]\nmachine = "WL450-3600"\n').notes == (MIXED,)
+    result = run(scenes.parse(LOOM, overrides=half), output=tmp_path / "mixed.h5")
+    assert result.warnings == (MIXED,)
+    assert result.trace.attributes["notes"] == MIXED
+    whole = half | {"belt.machine": "WL450-3600"}
+    assert scenes.parse(LOOM, overrides=whole).notes == ()
+
+
+def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
+    of_680 = '[weft]\nmachine = "WL680-3600"\n[belt]\n'  # what the defaults are of
+    assert scenes.parse(of_680).notes == ()
+    assert scenes.parse(of_680.replace("680", "450")).notes == (
+        MIXED.replace("WL680-3600", "values of its own"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "said"),
+    [
+        (LOOM, {"machine": "WL45-3600"}, "there is no machine 'WL45-3600'; did you mean 'WL450-3600'?"),
+        (LOOM, {"machine": 5}, "weft.machine = 5 is not a name in quotes"),
+        (LOOM, {"loom.weave": "10"}, "loom.weave cannot be set; known: machine, head"),
+        (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft takes nothing from a machine"),
+        ("[shaft]", {"machine": "WL450-3600"}, "machine: the scene has no WeftInsertion or BeltMonitor"),
+    ],
+)  # fmt: skip
+def test_a_machine_that_cannot_be_set_is_refused(text: str, given: dict[str, object], said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.parse(text, overrides=given)
+    assert str(raised.value).startswith(said)
+
+
+# ---- an input has one source
+
+WIRED = (
+    "belt.travel cannot be set, it is wired to weft.travel; to set it, cut the wire: [wires]"
+    ' "belt.travel" = false'
+)
+TABLE = '[inputs]\n"belt.guide_clearance" = [[0, "0.3 mm"], [1, "1 mm"]]\n'
+
+
+def test_a_value_for_a_wired_input_is_refused_whoever_gives_it() -> None:
+    for text, given in ((LOOM, {"belt.travel": 3}), (LOOM + '[belt]\ntravel = "3 m"\n', {})):
+        with pytest.raises(LoomfmuError) as raised:
+            scenes.parse(text, overrides=given)
+        assert str(raised.value) == WIRED
+    cut = LOOM + '[wires]\n"belt.travel" = false\n'
+    assert scenes.parse(cut, overrides={"belt.travel": 3}).instances["belt"].values["travel"] == 3.0
+    with pytest.raises(LoomfmuError, match=r"inputs\.belt\.travel is wired already"):
+        scenes.parse(LOOM + '[inputs]\n"belt.travel" = [[0, 1.0]]\n')
+
+
+def test_so_is_a_value_for_a_driven_input() -> None:
+    for text, given in (
+        (LOOM + TABLE, {"belt.guide_clearance": "1 mm"}),
+        (LOOM + '[belt]\nguide_clearance = "1 mm"\n' + TABLE, {}),
+    ):
+        with pytest.raises(
+            LoomfmuError, match=r"belt.guide_clearance cannot be set, it is driven along a table"
+        ):
+            scenes.parse(text, overrides=given)
+
+
+# ---- numbers without unit
+
+DOUBT = 'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "note"),
+    [
+        (LOOM + "[shaft]\nspeed = 480\n", {}, f'shaft.speed = 480 {DOUBT}'),
+        (LOOM, {"shaft.speed": "480"}, f'shaft.speed = 480 {DOUBT}'),
+        (LOOM, {"belt.head_mass": 95},
+         'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant'),
+        (LOOM + '[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n', {},
+         f'inputs.weft.shaft_velocity = 480 {DOUBT}'),
+    ],
+)  # fmt: skip
+def test_a_number_that_was_meant_in_another_unit_is_doubted(
+    text: str, given: dict[str, object], note: str
+) -> None:
+    assert scenes.parse(text, overrides=given).notes == (note,)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"shaft.speed": "4583 rpm"}, {"shaft.speed": "480 rad/s"}, {"shaft.speed": 30.0},
+        {"shaft.speed": 120}, {"shaft.speed": -70.0}, {"belt.guide_clearance": 1e-3}, {"belt.head_mass": 0.2},
+        {"dobby.slow_point": 1.5},
+        {"damper.spring_stiffness": 1000.0}, {"damper.spring_stiffness": 0.0}, {"heald.stroke": 0.3},
+    ],
+)  # fmt: skip
+def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
+    assert scenes.parse(LOOM, overrides=given).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("claim", "note"),
+    [
+        ({"kind": "below", "signal": "belt.deflection", "bound": 2},
+         "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
+         ' write "2 mm" if that is meant'),
+        ({"kind": "dwell", "heald": "heald_1", "at_least": 85},
+         "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
+         ' write "85 deg" if that is meant'),
+        ({"kind": "rapier_in_open_shed", "head_height": 18},
+         "claim 'rapier_in_open_shed': head_height = 18 is read as 18 m = 18000 mm;"
+         ' write "18 mm" if that is meant'),
+    ],
+)  # fmt: skip
+def test_claims_with_numbers_meant_in_another_unit_are_doubted(claim: dict[str, Any], note: str) -> None:
+    scene = replace(scenes.parse(LOOM), claims=[claim])
+    assert checked_claims(scene).notes == (note,)
+    assert checked_claims(checked_claims(scene)).notes == (note,)  # told once
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        {"kind": "below", "signal": "belt.deflection", "bound": 0.002},
+        {"kind": "below", "signal": "belt.deflection", "bound": "2 m"},
+        {"kind": "dwell", "heald": "heald_1", "at_least": 1.5},
+        {"kind": "above", "signal": "belt.margin", "bound": 0, "window": [0, 6.283185307179586]},
+        {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
+    ],
+)
+def test_ordinary_claims_are_not_doubted(claim: dict[str, Any]) -> None:
+    assert checked_claims(replace(scenes.parse(LOOM), claims=[claim])).notes == ()
+
+
+def test_what_is_set_anew_is_doubted_anew() -> None:
+    assert scenes.parse(LOOM + "[shaft]\nspeed = 480\n", overrides={"shaft.speed": "480 rpm"}).notes == ()
+
+
+# ---- duration
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            'duration = "10 s"\nstep = "0.15 s"\n[weft]\n',
+            "duration = 10 s is 66.66667 steps of 0.15 s, not a whole number of steps;"
+            " these would fit: 9.9 s or 10.05 s",
+        ),
+        (
+            "revolutions = 2.51\nsteps_per_revolution = 90\n[weft]\n",
+            "revolutions = 2.51 is 225.9 steps of 1/90 revolution, not a whole number of steps;"
+            " these would fit: 2.5 or 2.511111111",
+        ),
+    ],
+)  # fmt: skip
+def test_a_duration_that_is_not_whole_steps_is_refused(text: str, said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.parse(text)
+    assert str(raised.value) == said
+    key, fitting = text.split(" ")[0], said.split(": ")[1].split(" or ")
+    for value in fitting:
+        assert scenes.parse(text, overrides={key: value}).steps in (66, 67, 225, 226)
+
+
+def test_decimal_steps_that_binary_rounds_are_whole() -> None:
+    for step in ("1 ms", "0.1 ms", 0.0007, 1 / 3):
+        given = {"duration": 2100 * units.parse(step, "s"), "step": step}
+        assert scenes.parse("[shaft]", overrides=given).steps == 2100
+
+
+@pytest.mark.parametrize(
+    "text", ["", 'title = "x"\n', "revolutions = 3\n", 'duration = "1 s"\nstep = "1 ms"\n']
+)
+def test_an_empty_scene_is_refused(text: str) -> None:
+    with pytest.raises(LoomfmuError, match=r"the scene is empty: add \[loom\]|there is no shaft"):
+        scenes.parse(text)
+
+
+# ---- the rest
+
+
+def test_records_by_pattern() -> None:
+    scene = scenes.parse('record = ["belt.*margin", "heald_?.lift", "weft.travel"]\n' + LOOM)
+    assert scene.record == [
+        "weft.travel",
+        "belt.margin",
+        "belt.lowest_margin",
+        *(f"heald_{number}.lift" for number in range(1, 5)),
+    ]
+    everything = scenes.parse(LOOM).record
+    assert "dobby.pick" in everything and "belt.at_risk" in everything
+    assert not any(signal.split(".")[1] == "shaft_angle" for signal in everything)  # inputs are not outputs
+
+
+def test_what_is_recorded_has_its_rates_with_it(tmp_path: Path) -> None:
+    text = 'revolutions = 0.1\nrecord = ["heald_1.lift"]\n' + LOOM
+    with traced(scenes.parse(text), tmp_path) as trace:
+        assert set(trace) == {
+            "shaft.angle", "shaft.velocity", "shaft.acceleration",
+            "heald_1.lift", "heald_1.velocity", "heald_1.acceleration",
+        }  # fmt: skip
+    with traced(scenes.parse("record = []\n" + LOOM), tmp_path) as trace:
+        assert set(trace) == {"shaft.angle", "shaft.velocity", "shaft.acceleration"}
+
+
+def test_defaults_of_a_scene_that_says_nothing() -> None:
+    scene = scenes.parse("[shaft]", "nothing")
+    assert (scene.title, scene.description, scene.name) == ("nothing", "", "nothing")
+    assert (scene.periods, scene.steps_per_period, scene.steps) == (1, 1440, 1440)
+    assert math.isclose(scene.speed, 400 * RPM, rel_tol=1e-15)
+    assert scene.claims == []
+
+
+def test_a_file_is_named_in_what_is_said_of_it(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text("[belt]\nmargin = 3\n")
+    with pytest.raises(LoomfmuError) as raised:
+        scenes.load(path)
+    assert str(raised.value) == f"{path}: belt.margin is an output of BeltMonitor and cannot be set"
+    path.write_bytes(b"title = '\xff'\n")
+    with pytest.raises(LoomfmuError, match=r"wrong\.toml: is not text in UTF-8"):
+        scenes.load(path)
+
+
+def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> None:
+    scene = small(90, 0.1)
+    result = run(scene, set={"shaft.speed": "700 rpm"}, output=tmp_path / "other.h5")
+    assert math.isclose(result.scene.speed, 700 * RPM)
+    assert math.isclose(scene.speed, 400 * RPM)
+    assert result.trace["shaft.velocity"][0] == result.scene.speed
+
+
+def test_a_mechanism_that_follows_no_shaft_beside_one_is_named() -> None:
+    cut = "\n".join(f'"weft.shaft_{name}" = false' for name in ("angle", "velocity", "acceleration"))
+    scene = scenes.parse(f'[loom]\nmachine = "WL680-3600"\n[wires]\n{cut}\n')
+    note = "weft turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+    assert note in scene.notes
+    assert scenes.parse('[loom]\nmachine = "WL680-3600"\n').notes == ()
+
+
+@pytest.mark.parametrize(("first", "warned"), [(2.9, False), (3, True), (20, True)])
+def test_a_table_that_begins_after_the_run_is_warned_of(first: float, warned: bool) -> None:
+    text = f"""revolutions = 3
+[loom]
+machine = "WL680-3600"
+[inputs]
+"belt.guide_clearance" = [[{first}, "0.3 mm"], [30, "1 mm"]]
+"""
+    said = f"inputs.belt.guide_clearance begins at {first:g}, after the end at 3: its first value holds all"
+    assert any(note.startswith(said) for note in scenes.parse(text).notes) == warned
+
+
+def test_a_mark_of_the_encoding_is_read_over_and_what_is_no_text_is_told(tmp_path: Path) -> None:
+    text = DEMO_TEXT
+    marked = tmp_path / "marked.toml"
+    marked.write_bytes(text.encode("utf-8-sig"))
+    assert scenes.load(marked).text == text
+    for name, content, said in (
+        ("wide.toml", text.encode("utf-16"), "is not text in UTF-8"),
+        ("run.h5", b"\x89HDF\r\n\x1a\n", "is not text in UTF-8; loomfmu show .*run.h5 tells of a trace"),
+    ):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(LoomfmuError, match=f"{name}: {said}$"):
+            scenes.load(tmp_path / name)
+
+
+DEMO_TEXT = 'title = "Fäden"\n[loom]\nmachine = "WL680-3600"\n'

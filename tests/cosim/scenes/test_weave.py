@@ -1,0 +1,90 @@
+"""Weaves from pegs and from WIF files."""
+
+import itertools
+from pathlib import Path
+
+import pytest
+
+from loomfmu.cosim.scenes import weave
+from loomfmu.errors import LoomfmuError
+
+WEAVES = Path(__file__).parents[3] / "sims" / "weaves"
+
+HEAD = (
+    "[WIF]\nVersion=1.1\n[WEAVING]\nRising Shed={rising}\nShafts={shafts}\nTreadles=2\n"
+    "[WEFT]\nThreads={picks}\n"
+)
+PLAIN = "[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n[THREADING]\n1=1\n2=2\n3=1\n"
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "weave.wif"
+    path.write_text(text)
+    return path
+
+
+def test_twill_from_tie_up_and_treadling():
+    read = weave.read_wif(WEAVES / "twill_2_2.wif")
+    assert read.pegs == ("10011001", "11001100", "01100110", "00110011")
+    assert [read.ends_of(frame) for frame in (1, 2, 3, 4)] == [2, 2, 2, 2]
+
+
+def test_satin_from_lift_plan():
+    read = weave.read_wif(WEAVES / "satin_5.wif")
+    assert read.pegs == ("10000", "00010", "01000", "00001", "00100")
+    # a satin: each end is raised once, and no two neighbours at neighbouring picks
+    places = [pegs.index("1") for pegs in read.pegs]
+    assert sorted(places) == list(range(5))
+    assert all((a - b) % 5 not in (1, 4) for a, b in itertools.pairwise(places))
+
+
+def test_a_sinking_shed_is_the_complement(tmp_path):
+    rising = weave.read_wif(write(tmp_path, HEAD.format(rising="true", shafts=2, picks=2) + PLAIN))
+    sinking = weave.read_wif(write(tmp_path, HEAD.format(rising="false", shafts=2, picks=2) + PLAIN))
+    assert rising.pegs == ("10", "01")
+    assert sinking.pegs == ("01", "10")
+    assert rising.threading == (1, 2, 1)
+
+
+def test_a_pick_may_use_two_treadles_or_none(tmp_path):
+    body = "[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1,2\n2=0\n"
+    read = weave.read_wif(write(tmp_path, HEAD.format(rising="true", shafts=2, picks=3) + body))
+    assert read.pegs == ("100", "100")
+
+
+def test_pegs_as_a_list_and_as_a_text():
+    assert weave.parse(["1010", "0101"], Path()).pegs == weave.parse("1010/0101", Path()).pegs
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("no ini at all", "not a WIF file"),
+        ("[WEAVING]\nShafts=2\n", "it has no section [WIF]"),
+        (HEAD.format(rising="true", shafts=0, picks=2) + PLAIN, "[WEAVING] Shafts = '0'"),
+        (HEAD.format(rising="true", shafts=2, picks="x") + PLAIN, "[WEFT] Threads = 'x'"),
+        (HEAD.format(rising="true", shafts=2, picks=2), "neither [LIFTPLAN] nor [TIEUP]"),
+        (HEAD.format(rising="true", shafts=1, picks=2) + PLAIN, "frame 2 is raised, but [WEAVING] S"),
+        (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=one\n", "[LIFTPLAN] has a line"),
+        (HEAD.format(rising="true", shafts=21, picks=2) + PLAIN, "has 21 frames; the dobby has 20"),
+        (HEAD.format(rising="true", shafts=2, picks=129) + PLAIN, "has 129 picks; the dobby holds 128"),
+    ],
+)
+def test_a_bad_wif_is_refused_in_one_line(tmp_path, text, message):
+    path = write(tmp_path, text)
+    with pytest.raises(LoomfmuError) as refused:
+        weave.read_wif(path)
+    assert message in str(refused.value)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("given", ["10/0x", "", [], 7, ["10", 5], "10//01"])
+def test_bad_pegs_are_refused(given):
+    with pytest.raises(LoomfmuError, match="weave"):
+        weave.parse(given, Path())
+
+
+def test_a_missing_wif_names_its_path():
+    with pytest.raises(LoomfmuError, match=r"nowhere.wif: cannot be read \(No such file"):
+        weave.parse("nowhere.wif", Path())

@@ -1,0 +1,309 @@
+"""System packages of other makers: nested systems, inline parameters, mappings, units, no text of ours."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from foreign_motors import motor2
+from live_fmus import fmu_cache
+from motor_scenes import MOTOR, WEFT, exact
+
+from loomfmu import LoomfmuError
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.run import Result, run
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.ssp import export as ssp
+from loomfmu.cosim.ssp.xml import NAMESPACES
+
+__all__ = ["fmu_cache"]
+
+DRIVE = """
+<ssd:System name="drive">
+  <ssd:Connectors><ssd:Connector name="phi" kind="output"/><ssd:Connector name="w" kind="output"/>
+  <ssd:Connector name="free" kind="input"/></ssd:Connectors>
+  <ssd:Elements><ssd:Component name="motor" source="resources/Motor.fmu">
+    <ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>
+      <ssv:ParameterSet version="1.0" name="inline"><ssv:Parameters>
+        <ssv:Parameter name="J"><ssv:Real value="7"/></ssv:Parameter>
+        <ssv:Parameter name="mode"><ssv:Enumeration value="no_way_back"/></ssv:Parameter>
+        <ssv:Parameter name="w_free"><ssv:Real value="572.957795130823" unit="rpm"/></ssv:Parameter>
+        {more}
+      </ssv:Parameters><ssv:Units><ssc:Unit name="rpm">
+        <ssc:BaseUnit rad="1" s="-1" factor="0.104719755119660"/></ssc:Unit></ssv:Units></ssv:ParameterSet>
+    </ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings>
+  </ssd:Component></ssd:Elements>
+  <ssd:Connections>
+    <ssd:Connection startElement="motor" startConnector="flange.phi" endConnector="phi">{transformed}
+    </ssd:Connection>
+    <ssd:Connection startConnector="w" endElement="motor" endConnector="flange.w"/>
+    <ssd:Connection startConnector="free" endElement="motor" endConnector="load.tau"/>
+  </ssd:Connections>
+</ssd:System>
+"""
+STRUCTURE = """<?xml version="1.0"?>
+<ssd:SystemStructureDescription version="1.0" name="elsewhere" {namespaces}>
+<ssd:System name="all">
+<ssd:Connectors><ssd:Connector name="load" kind="input"/></ssd:Connectors>
+<ssd:ParameterBindings>
+  <ssd:ParameterBinding source="resources/outer.ssv"/>
+  <ssd:ParameterBinding source="resources/mapped.ssv" prefix="set."><ssd:ParameterMapping>
+    <ssm:ParameterMapping version="1.0"><ssm:MappingEntry source="set.inertia" target="drive.motor.J"/>
+    </ssm:ParameterMapping></ssd:ParameterMapping></ssd:ParameterBinding>
+</ssd:ParameterBindings>
+<ssd:Elements>{drive}
+  <ssd:Component name="left head" source="resources/left%20head.fmu"/>{other}
+</ssd:Elements>
+<ssd:Connections>
+  <ssd:Connection startElement="drive" startConnector="phi"
+    endElement="left head" endConnector="shaft_angle"/>
+  <ssd:Connection startElement="left head" startConnector="shaft_velocity"
+    endElement="drive" endConnector="w"/>
+  <ssd:Connection startConnector="load" endElement="drive" endConnector="free"/>{connection}
+</ssd:Connections>
+</ssd:System>
+<ssd:DefaultExperiment {experiment}>{algorithm}</ssd:DefaultExperiment>
+</ssd:SystemStructureDescription>
+"""
+ALGORITHM = (
+    '<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform"><osp:Algorithm>'
+    '<osp:FixedStepAlgorithm baseStepSize="1e-3"/></osp:Algorithm></ssc:Annotation></ssd:Annotations>'
+)
+SETS = {
+    "outer": '<ssv:Parameter name="left head.follow_shaft"><ssv:Boolean value="1"/></ssv:Parameter>'
+    '<ssv:Parameter name="left head.inputs_at_step_end"><ssv:Boolean value="false"/></ssv:Parameter>'
+    '<ssv:Parameter name="left head.crank_length"><ssv:Real value="15" unit="cm"/></ssv:Parameter>',
+    "mapped": '<ssv:Parameter name="inertia"><ssv:Real value="0.5"/></ssv:Parameter>'
+    '<ssv:Parameter name="other"><ssv:Real value="3"/></ssv:Parameter>',
+}
+CENTIMETRE = '<ssv:Units><ssc:Unit name="cm"><ssc:BaseUnit m="1" factor="0.01"/></ssc:Unit></ssv:Units>'
+
+
+def package(directory: Path, **changed: str) -> Path:
+    """A motor in a system of its own that drives a rapier head."""
+    motor = motor2(directory).read_bytes()
+    spaces = " ".join(f'xmlns:{key}="{NAMESPACES[key]}"' for key in ("ssd", "ssc", "ssv", "ssm", "osp"))
+    parts = {
+        "namespaces": spaces, "other": "", "connection": "", "experiment": 'startTime="0" stopTime="0.2"',
+        "algorithm": ALGORITHM, "more": "", "transformed": "",
+    } | changed  # fmt: skip
+    parts["drive"] = DRIVE.format(**parts)
+    path = directory / "elsewhere.ssp"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("SystemStructure.ssd", STRUCTURE.format(**parts))
+        archive.writestr("resources/Motor.fmu", motor)
+        archive.writestr("resources/left head.fmu", fmus.of_component("WeftInsertion").path.read_bytes())
+        for name, text in SETS.items():
+            content = f"<ssv:Parameters>{text}</ssv:Parameters>{CENTIMETRE}"
+            start = f'<ssv:ParameterSet version="1.0" name="{name}" {spaces}>'
+            archive.writestr(f"resources/{name}.ssv", f"{start}{content}</ssv:ParameterSet>")
+    return path
+
+
+def ran(tmp_path: Path, overrides: dict[str, object] | None = None, **changed: str) -> Result:
+    return run(package(tmp_path, **changed), set=overrides, output=tmp_path / "elsewhere.h5")
+
+
+def test_it_runs_with_its_own_wires_parameters_and_step(tmp_path: Path) -> None:
+    result = ran(tmp_path)
+    assert (result.scene.title, result.scene.step, result.scene.steps) == ("elsewhere", 1e-3, 200)
+    assert list(result.scene.instances) == ["drive_motor", "left_head"]
+    assert {str(wire) for wire in result.scene.wires} == {
+        "drive_motor.flange_phi -> left_head.shaft_angle",
+        "drive_motor.flange_w -> left_head.shaft_velocity",
+    }
+    motor, head = (result.scene.instances[name].values for name in ("drive_motor", "left_head"))
+    # the outer system's word holds against the inner one's; 572.96 rpm are 60 rad/s to twelve digits
+    assert motor["J"] == 0.5 and motor["mode"] == 2
+    assert motor["w_free"] == pytest.approx(60.0, rel=1e-12)
+    assert head["crank_length"] == pytest.approx(0.15, rel=1e-15)
+    assert head["follow_shaft"] is True and head["inputs_at_step_end"] is True  # as our master has it
+    trace = result.trace
+    np.testing.assert_allclose(trace["drive_motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-9)
+    assert np.ptp(trace["left_head.travel"]) > 1.0
+    assert len(list(trace)) == 7 + 5  # all outputs
+    assert trace.attributes["scene"].startswith("<?xml")
+
+
+@pytest.mark.parametrize("units", [True, False])
+def test_a_scene_with_another_makers_fmu_goes_there_and_back(tmp_path: Path, units: bool) -> None:
+    motor2(tmp_path, units=units)
+    stated = {"flange_phi": "rad", "flange_w": "rad/s", "flange_a": "rad/s2", "J": "kg.m2"}
+    table = ", ".join(f'{name} = "{unit}"' for name, unit in stated.items())
+    own = f'J = 0.7\nmode = "no_way_back"\nunits = {{{table}}}\n'
+    scene = scenes.parse(MOTOR + own + WEFT, "motor", directory=tmp_path)
+    ssp.export(scene, tmp_path / "motor.ssp", "live")
+    before = run(scene, output=tmp_path / "before.h5").trace
+    after = run(tmp_path / "motor.ssp", output=tmp_path / "after.h5").trace
+    assert set(before) == set(after)
+    for signal in before:
+        np.testing.assert_array_equal(before[signal], after[signal])
+        assert before.unit(signal) == after.unit(signal)
+
+
+def test_duration_step_and_values_can_be_set(tmp_path: Path) -> None:
+    changed = {"duration": "0.1 s", "step": "0.5 ms", "drive_motor.J": 1.0, "left_head.follow_shaft": "false"}
+    result = ran(tmp_path, changed)
+    assert (result.scene.steps, result.scene.instances["drive_motor"].values["J"]) == (200, 1.0)
+    again = run(result.scene, set={"step": "1 ms"}, output=tmp_path / "again.h5")
+    assert again.scene.steps == 200 and again.scene.instances["drive_motor"].values["J"] == 0.5
+
+
+def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
+    more = "".join(
+        f'<ssv:Parameter name="{name}"><ssv:{kind} value="3"/></ssv:Parameter>'
+        for name, kind in (("gain", "Real"), ("label", "String"), ("flange.phi", "Real"))
+    )
+    assert ran(tmp_path, more=more).warnings == (
+        "drive_motor.gain of the package is no variable of Motor: it is left out",
+        "drive_motor.label of the package is a text: it is left out",
+        "drive_motor.flange.phi of the package is neither parameter nor input: it is left out",
+    )
+
+
+def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: Path) -> None:
+    stated = "".join(
+        f'<ssd:Connector name="{name}" kind="{kind}"><ssc:Real unit="{unit}"/></ssd:Connector>'
+        for name, kind, unit in (
+            ("flange.phi", "output", "rad"),
+            ("flange.w", "output", "rad/s"),
+            ("w_free", "parameter", "rad/s"),
+        )
+    )
+    path = package(tmp_path)
+    motor = motor2(tmp_path, units=False).read_bytes()
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["resources/Motor.fmu"] = motor
+    bare = rewritten(path, files)
+    with pytest.raises(LoomfmuError, match=r"w_free = 572\.957795130823 rpm, but the variable has no unit"):
+        run(bare, output=tmp_path / "x.h5")
+    follow_the_hints(bare, tmp_path)
+    start = b'source="resources/Motor.fmu">'
+    assert start in files["SystemStructure.ssd"]
+    connectors = f"<ssd:Connectors>{stated}</ssd:Connectors>".encode()
+    files["SystemStructure.ssd"] = files["SystemStructure.ssd"].replace(start, start + connectors)
+    result = run(rewritten(path, files), output=tmp_path / "x.h5")
+    assert result.trace.unit("drive_motor.flange_w") == "rad/s"
+    assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
+
+
+def follow_the_hints(path: Path, tmp_path: Path) -> None:
+    """Whatever unit is asked for can be given in the way that is said, one after the other."""
+    units = {"w_free": "rad/s", "flange_phi": "rad", "flange_w": "rad/s"}
+    asked = []
+    overrides: dict[str, str] = {}
+    while True:
+        try:
+            result = run(path, set=overrides, output=tmp_path / "x.h5")
+            break
+        except LoomfmuError as error:
+            key = str(error).rpartition("--set ")[2].removesuffix("=...")
+            asked.append(key)
+            assert asked.count(key) == 1
+            overrides[key] = units[key.rpartition(".")[2]]
+    assert asked == [f"drive_motor.units.{name}" for name in units]
+    assert result.trace.unit("drive_motor.flange_w") == "rad/s"
+    assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
+    with pytest.raises(LoomfmuError, match=r"drive_motor\.units: .* variable 'x'"):
+        run(path, set={"drive_motor.units.x": "m"}, output=tmp_path / "x.h5")
+
+
+def test_a_plain_number_is_one_for_a_variable_without_unit(tmp_path: Path) -> None:
+    more = '<ssv:Parameter name="tau_stall"><ssv:Real value="130" unit="-"/></ssv:Parameter>'
+    more += '<ssv:Parameter name="w_free"><ssv:Real value="50"/></ssv:Parameter>'
+    path = package(tmp_path, more=more)
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["resources/Motor.fmu"] = motor2(tmp_path, units=False).read_bytes()
+    stated = {
+        f"drive_motor.units.{name}": unit
+        for name, unit in (("w_free", "rad/s"), ("flange_phi", "rad"), ("flange_w", "rad/s"))
+    }
+    result = run(rewritten(path, files), set=stated, output=tmp_path / "x.h5")
+    assert result.scene.instances["drive_motor"].values["tau_stall"] == 130.0
+    assert result.scene.instances["drive_motor"].values["w_free"] == 50.0
+
+
+def rewritten(path: Path, files: dict[str, bytes]) -> Path:
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return path
+
+
+LINEAR = '<ssc:LinearTransformation factor="2"/>'
+MISTAKES = {
+    "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
+    "duration: a scene runs either by duration and step, or by revolutions and": {"algorithm": ""},
+    "there is no shaft whose speed sets the step: say duration": {"algorithm": "", "experiment": ""},
+    "connection drive.motor.flange.phi -> drive.phi transforms its value: that is not done": {
+        "transformed": LINEAR
+    },
+    "resources/none.fmu is not in the package": {
+        "other": '<ssd:Component name="x" source="resources/none.fmu"/>'
+    },
+    "../x.fmu is not in the package": {"other": '<ssd:Component name="x" source="../x.fmu"/>'},
+    "http://host/x.fmu is not in the package": {
+        "other": '<ssd:Component name="x" source="http://host/x.fmu"/>'
+    },
+    "Component has no source": {"other": '<ssd:Component name="x"/>'},
+    "bus is a SignalDictionaryReference: only FMUs and systems are run": {
+        "other": '<ssd:SignalDictionaryReference name="bus" dictionary="d"/>'
+    },
+    "x: a.ssp is no FMU but application/x-ssp-package": {
+        "other": '<ssd:Component name="x" source="a.ssp" type="application/x-ssp-package"/>'
+    },
+    "left_head.shaft_angle is connected to 2 outputs": {
+        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
+        ' endElement="left head" endConnector="shaft_angle"/>'
+    },
+    "wire left_head.travel -> left_head.shaft_acceleration: left_head.travel is in m, left_head.": {
+        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
+        ' endElement="left head" endConnector="shaft_acceleration"/>'
+    },
+    "connection to left_head: WeftInsertion has no variable 'travl'; did you mean 'travel'?": {
+        "connection": '<ssd:Connection startElement="left head" startConnector="travl"'
+        ' endElement="left head" endConnector="shaft_acceleration"/>'
+    },
+    "drive_motor.w_free = 1 kg, which does not fit rad/s": {
+        "more": '<ssv:Parameter name="w_free"><ssv:Real value="1" unit="kg"/></ssv:Parameter>'
+    },
+    "drive_motor.J = 'one' is not a number": {
+        "more": '<ssv:Parameter name="J"><ssv:Real value="one"/></ssv:Parameter>'
+    },
+    "drive_motor.J = -11 kg.m2 is outside [-10, inf] kg.m2": {
+        "more": '<ssv:Parameter name="J"><ssv:Real value="-11"/></ssv:Parameter>'
+    },
+}
+
+
+@pytest.mark.parametrize("said", MISTAKES)
+def test_what_cannot_be_run_is_told_in_one_line(tmp_path: Path, said: str) -> None:
+    with pytest.raises(LoomfmuError) as raised:
+        ran(tmp_path, **MISTAKES[said])
+    text = str(raised.value)
+    assert text.startswith(f"{tmp_path}/elsewhere.ssp: ") and said in text and "\n" not in text
+
+
+def test_nothing_is_written_outside_the_cache(tmp_path: Path) -> None:
+    path = package(tmp_path, other='<ssd:Component name="x" source="../../x.fmu"/>')
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("../../x.fmu", "anything")
+    with pytest.raises(LoomfmuError, match=r"\.\./\.\./x\.fmu is not in the package$"):
+        run(path, output=tmp_path / "x.h5")
+
+
+def test_a_system_without_components_is_told(tmp_path: Path) -> None:
+    spaces = f'xmlns:ssd="{NAMESPACES["ssd"]}"'
+    for system, said in (
+        ("", "describes no system"),
+        ('<ssd:System name="s"/>', "the system has no components"),
+    ):
+        content = f'<ssd:SystemStructureDescription version="1.0" name="n" {spaces}>{system}'
+        path = rewritten(
+            tmp_path / "bare.ssp",
+            {"SystemStructure.ssd": f"{content}</ssd:SystemStructureDescription>".encode()},
+        )
+        with pytest.raises(LoomfmuError, match=said):
+            run(path, output=tmp_path / "x.h5")
