@@ -7,7 +7,7 @@ import pytest
 from reference import MP, RPM, Jet, acos, atan2, cos, sin, sqrt
 
 from loomfmu.components.reed_beat_up import ReedBeatUp
-from loomfmu.physics.reed import crank_place, crank_rocker_without_quick_return, reed_dyad
+from loomfmu.design.reed import crank_place, crank_rocker_without_quick_return, reed_dyad
 
 SPEED = float(30 * RPM)  # of the published motion
 ANGLES = [2 * pi * k / 720 for k in range(720)]

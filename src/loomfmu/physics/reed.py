@@ -7,7 +7,7 @@ for carbon fiber multi-layer loom", Journal of Textile Research (2017), doi 10.1
 sections 2 and 3, equations (1) to (13). Most of its equations are lost; the forms here were derived anew.
 """
 
-from math import acos, asin, atan, atan2, cos, fabs, pi, sin, sqrt, tan
+from math import acos, asin, atan2, cos, fabs, pi, sin, sqrt
 
 
 def dead_centre(
@@ -64,10 +64,12 @@ def transmission_angle(distance: float, coupler: float, rocker: float) -> float:
 def smallest_transmission_angle(crank: float, coupler: float, rocker: float, frame: float) -> float:
     """Smallest transmission angle of a crank-rocker: where crank and frame lie in line, (11) and (12).
 
-    >>> from math import degrees, radians
-    >>> crank, coupler, frame, smallest = crank_rocker_without_quick_return(0.55, radians(13.610), 0.2618)
-    >>> round(degrees(smallest - smallest_transmission_angle(crank, coupler, 0.55, frame)), 9) + 0.0
-    0.0
+    Where the rocker takes the same time to and fro it is `acos(sin(psi/2) / sin(b))` by the source's (13):
+    62.754 deg for a swing psi of 13.610 deg and a frame angle b of 15 deg.
+
+    >>> from math import degrees
+    >>> round(degrees(smallest_transmission_angle(0.06516984, 0.14633384, 0.55, 0.56539056)), 3)
+    62.754
     """
     near = transmission_angle(frame - crank, coupler, rocker)
     far = transmission_angle(frame + crank, coupler, rocker)
@@ -149,119 +151,3 @@ def in_line_margin(middle: float, half_swing: float, arm: float, rod: float, hei
         if folded < clear:
             clear = folded
     return clear - half_swing
-
-
-def crank_rocker_without_quick_return(
-    rocker: float, swing: float, frame_angle: float
-) -> tuple[float, float, float, float]:
-    """Lengths of a crank-rocker whose rocker takes the same time to and fro, equations (9) and (13).
-
-    `l1 = l3 sin(psi/2)`, `l2 = l3 cos(psi/2) tan(b)`, `l4 = l3 cos(psi/2) / cos(b)`,
-    `cos(smallest) = sin(psi/2) / sin(b)`.
-
-    Args:
-        rocker: length l3 [m]
-        swing: of the rocker, psi [rad]
-        frame_angle: b between the frame and the middle of the swing, `swing / 2` to `pi / 2` [rad]
-
-    Returns:
-        crank l1, coupler l2, frame l4 [m], smallest transmission angle [rad]
-
-    >>> from math import radians
-    >>> round(1000 * crank_rocker_without_quick_return(0.55, radians(13.610), radians(15))[0], 2)  # 65.168
-    65.17
-    """
-    return (
-        rocker * sin(0.5 * swing),
-        rocker * cos(0.5 * swing) * tan(frame_angle),
-        rocker * cos(0.5 * swing) / cos(frame_angle),
-        acos(sin(0.5 * swing) / sin(frame_angle)),
-    )
-
-
-def frame_angle_for(swing: float, smallest: float) -> float:
-    """Frame angle b that gives a smallest transmission angle, `sin(b) = sin(psi/2) / cos(smallest)`, (13).
-
-    Args:
-        swing: of the rocker, psi [rad]
-        smallest: transmission angle, below `(pi - swing) / 2` [rad]
-
-    Returns:
-        b [rad]
-
-    Erratum: the source prints 8.906 and 29.354 deg for 40 and 76 deg, which takes a swing of 13.622 deg;
-    its own is 13.610 deg.
-
-    >>> from math import degrees, radians
-    >>> [round(degrees(frame_angle_for(radians(13.610), radians(smallest))), 2) for smallest in (40, 76)]
-    [8.9, 29.33]
-    """
-    return asin(sin(0.5 * swing) / cos(smallest))
-
-
-def crank_place(rocker: float, swing: float, slope: float, frame_angle: float) -> tuple[float, float]:
-    """Centre of the crank from the rocker's pivot: on the line of the chord of the swing, equation (10).
-
-    The crank stands behind the swing, away from the reed.
-
-    Args:
-        rocker, swing, frame_angle: as for `crank_rocker_without_quick_return`
-        slope: of the chord, dy/dx [1]
-
-    Returns:
-        x, y [m]
-
-    >>> x, y = crank_place(0.55, 0.23754, 0.1154, 0.2618)
-    >>> round(1000 * (y - 0.1154 * x), 2)  # the chord's line, y = 0.1154 x + 549.75 mm
-    549.75
-    """
-    direction = atan(slope)
-    distance = rocker * cos(0.5 * swing)
-    back = distance * tan(frame_angle)
-    return (
-        -distance * sin(direction) - back * cos(direction),
-        distance * cos(direction) - back * sin(direction),
-    )
-
-
-def reed_dyad(
-    front: float, back: float, swing: float, slope: float, pressure_angle: float
-) -> tuple[float, float, float]:
-    """Arm, rod and height that take the reed to two limits, with a given pressure angle at the front.
-
-    The rod is to be equally long at both limits, equation (2); with the chord of the swing given that is
-    one quadratic equation for the arm. The table of what the source prescribed is lost.
-
-    Args:
-        front, back: limits of the reed, from the rocker's pivot [m]
-        swing: of the rocker [rad]
-        slope: of the chord of the swing, dy/dx [1]
-        pressure_angle: slope of the rod at the front limit, of either sign [rad]
-
-    Returns:
-        arm, rod, height [m]; zeros if there is none with the reed ahead of the arm at both limits
-
-    >>> from math import radians
-    >>> dyad = reed_dyad(0.490, 0.330, radians(13.610), 0.1154, radians(-1.235))
-    >>> [round(1000 * length, 1) for length in dyad]
-    [679.8, 487.5, 669.3]
-    """
-    middle = atan(slope) + 0.5 * pi
-    front_x = cos(middle - 0.5 * swing)
-    back_x = cos(middle + 0.5 * swing)
-    rise = sin(middle - 0.5 * swing) - sin(middle + 0.5 * swing)
-    fall = tan(pressure_angle)
-    # (back - q back_x)^2 + (q rise + fall (front - q front_x))^2 = (1 + fall^2) (front - q front_x)^2
-    tilt = rise - fall * front_x
-    stretch = 1.0 + fall * fall
-    a = back_x * back_x + tilt * tilt - stretch * front_x * front_x
-    b = 2.0 * (stretch * front * front_x + fall * front * tilt - back * back_x)
-    c = back * back - front * front
-    inside = b * b - 4.0 * a * c
-    if front <= back or inside < 0.0 or b + sqrt(inside) <= 0.0:
-        return 0.0, 0.0, 0.0
-    arm = -2.0 * c / (b + sqrt(inside))
-    ahead = front - arm * front_x
-    if ahead <= 0.0 or back <= arm * back_x:
-        return 0.0, 0.0, 0.0
-    return arm, ahead * sqrt(stretch), arm * sin(middle - 0.5 * swing) + fall * ahead

@@ -2,8 +2,8 @@
 
 import math
 
+from ..design.reed import crank_rocker_without_quick_return, frame_angle_for
 from ..physics.detaching_roller import top_roller_torque
-from ..physics.reed import crank_rocker_without_quick_return, frame_angle_for
 from . import reed, roller
 from .sections import Row, Section, number
 

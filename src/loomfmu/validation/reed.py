@@ -3,7 +3,7 @@
 import math
 
 from ..components.reed_beat_up import ReedBeatUp
-from ..physics.reed import crank_place, crank_rocker_without_quick_return, frame_angle_for, reed_dyad
+from ..design.reed import crank_place, crank_rocker_without_quick_return, frame_angle_for, reed_dyad
 from .sections import Chapter, Pair, Row, Section, number
 
 ROCKER = 0.550
