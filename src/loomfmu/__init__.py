@@ -1,14 +1,27 @@
-"""The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged."""
+"""The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
+
+`run` co-simulates a scene and records it, `evaluate` does so in memory, `sweep` runs it with many values;
+`Trace` reads a recorded run, `judge` judges a claim on it. `design` solves the same physics for a design.
+"""
 
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .cosim.claims.claims import judge
-    from .cosim.run import Evaluation, Result, evaluate, run
-    from .errors import LoomfmuError
-    from .sweeps.run import Sweep, sweep
-    from .traces import Trace, Verdict
+    from . import design as design
+    from .cosim.claims.claims import judge as judge
+    from .cosim.run import Evaluation as Evaluation
+    from .cosim.run import Result as Result
+    from .cosim.run import evaluate as evaluate
+    from .cosim.run import run as run
+    from .errors import LoomfmuError as LoomfmuError
+    from .sweeps.run import Sweep as Sweep
+    from .sweeps.run import sweep as sweep
+    from .traces import Trace as Trace
+    from .traces import Verdict as Verdict
 
+    __version__: str
+
+# public name -> its module
 _HOMES = {
     "Evaluation": "cosim.run",
     "LoomfmuError": "errors",
@@ -16,24 +29,12 @@ _HOMES = {
     "Sweep": "sweeps.run",
     "Trace": "traces",
     "Verdict": "traces",
+    "design": "",
     "evaluate": "cosim.run",
     "judge": "cosim.claims.claims",
     "run": "cosim.run",
     "sweep": "sweeps.run",
 }
-
-__all__ = [
-    "Evaluation",
-    "LoomfmuError",
-    "Result",
-    "Sweep",
-    "Trace",
-    "Verdict",
-    "evaluate",
-    "judge",
-    "run",
-    "sweep",
-]
 
 
 def __getattr__(name: str) -> Any:
@@ -42,15 +43,16 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("loomfmu")
-    if name == "design":
-        raise AttributeError("loomfmu.design is not loaded yet: from loomfmu.design import loom, cam")
+    if name == "__all__":
+        return __dir__()
     if name not in _HOMES:
         raise AttributeError(f"module 'loomfmu' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    home = _HOMES[name]
+    return getattr(import_module(f".{home}", __name__), name) if home else import_module(f".{name}", __name__)
 
 
 def __dir__() -> list[str]:
     """The public names, loaded or not."""
-    return sorted({*globals(), *__all__, "__version__"})
+    return sorted([*_HOMES, "__version__"])
