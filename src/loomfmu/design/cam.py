@@ -30,7 +30,7 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
 
     Args:
         angles: of the main shaft, from 0 to 4 pi, increasing [rad]
-        heights: there, in any unit; the first and the last alike
+        heights: there, in any unit; the first and the last equal
 
     Raises:
         LoomfmuError: fewer than four points, or points that are not in order
@@ -47,7 +47,9 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
         heights = [float(row["warp_height_mm"]) for row in rows]
     x, y = listed("angles", angles, "rad"), listed("heights", heights, "m")
     if x.ndim != 1 or x.shape != y.shape or x.size < 4:
-        raise LoomfmuError(f"{x.size} angles and {y.size} heights: the spline asks for four or more of each")
+        raise LoomfmuError(
+            f"{x.size} angles and {y.size} heights: the spline needs as many of each, and at least four"
+        )
     if not np.all(np.diff(x) > 0.0) or abs(x[0]) > 1e-9 or abs(x[-1] - 2.0 * TURN) > 1e-9:
         raise LoomfmuError("the angles of the control points must rise from 0 to 720 deg of the main shaft")
     spline = CubicSpline(x, y, bc_type="not-a-knot")
@@ -56,7 +58,7 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
     if not span > 0.0 or abs(y[-1] - y[0]) > 1e-9 * span:
         raise LoomfmuError(
             f"the heights of the control points start at {y[0]:.7g} and end at {y[-1]:.7g}: both ends must be"
-            " alike, and the spline must rise"
+            " equal, and the spline must rise between them"
         )
 
     def law(angle: Floats) -> tuple[Floats, Floats, Floats]:
@@ -72,7 +74,7 @@ def sampled_law(lifts: ArrayLike) -> Law:
     Between them lies the periodic spline of fifth degree. The lowest sample has the share 0, the highest 1.
 
     Raises:
-        LoomfmuError: fewer than eight samples, or all alike
+        LoomfmuError: fewer than eight samples, or all equal
 
     >>> law = sampled_law([1 - np.cos(TURN * k / 36) for k in range(36)])
     >>> [round(float(value[0]), 6) for value in law(np.array([0.5 * pi]))]
@@ -82,7 +84,9 @@ def sampled_law(lifts: ArrayLike) -> Law:
 
     y = listed("lifts", lifts, "m")
     if y.ndim != 1 or y.size < 8 or not np.all(np.isfinite(y)) or np.ptp(y) == 0.0:
-        raise LoomfmuError(f"{y.size} samples of the lift: eight or more are asked for, not all alike")
+        raise LoomfmuError(
+            f"{y.size} samples of the lift: at least eight are needed, all finite and not all equal"
+        )
     shares = (y - y.min()) / np.ptp(y)
     closed = np.append(shares, shares[0])
     spline = make_interp_spline(np.linspace(0.0, TURN, closed.size), closed, k=5, bc_type="periodic")
@@ -122,9 +126,7 @@ class Cam:
 
     def radius(self, angle: Floats) -> tuple[Floats, Floats, Floats]:
         """Radius of the curve that carries the law, and its derivatives."""
-        share, slope, bend = self.law(angle)
-        span = self.highest_radius - self.lowest_radius
-        return self.lowest_radius + span * share, span * slope, span * bend
+        return _radius(self.law, self.lowest_radius, self.highest_radius, angle)
 
     def radial_excess(self) -> Floats:
         """How far a curve offset along the cam's radius, as in Appendix 2, lies outside the true offset [m].
@@ -163,47 +165,50 @@ def design_cam(
     >>> round(1000 * float(np.hypot(*cam.path.T).max()), 1)  # 107 and 19
     126.0
     """
-    lowest_radius, highest_radius = (
-        read("lowest_radius", lowest_radius),
-        read("highest_radius", highest_radius),
-    )
-    roller_radius, points = read("roller_radius", roller_radius), whole("points", points, 36)
-    if not lowest_radius < highest_radius:
+    low, high = read("lowest_radius", lowest_radius), read("highest_radius", highest_radius)
+    roller, points = read("roller_radius", roller_radius), whole("points", points, 36)
+    if not low < high:
         raise LoomfmuError(
-            f"lowest_radius = {1e3 * lowest_radius:.7g} mm is not below highest_radius ="
-            f" {1e3 * highest_radius:.7g} mm"
+            f"lowest_radius = {1e3 * low:.7g} mm is not below highest_radius = {1e3 * high:.7g} mm"
         )
     law = law or spline_law()
     angle = np.linspace(0.0, TURN, points + 1)
-    share, slope, bend = law(angle)
-    span = highest_radius - lowest_radius
-    r, r1, r2 = lowest_radius + span * share, span * slope, span * bend
-    speed = np.hypot(r, r1)
-    curvature = (r * r + 2.0 * r1 * r1 - r * r2) / speed**3
+    r, r1, r2 = _radius(law, low, high, angle)
+    curvature, carrier, normal = _curve(angle, r, r1, r2)
     outwards = -1.0 if law_on_roller else 1.0
-    _refuse_undercut(angle, curvature, np.arctan2(r1, r), roller_radius, outwards)
-    radial = np.column_stack([np.cos(angle), np.sin(angle)])
-    across = np.column_stack([-np.sin(angle), np.cos(angle)])
-    normal = (r[:, None] * radial - r1[:, None] * across) / speed[:, None]
-    carrier = r[:, None] * radial
-    offset = carrier + outwards * roller_radius * normal
+    _refuse_undercut(angle, curvature, np.arctan2(r1, r), roller, outwards)
+    offset = carrier + outwards * roller * normal
     path = carrier if law_on_roller else offset
     turned = normal[:, 0] * path[:, 1] - normal[:, 1] * path[:, 0]
     with np.errstate(divide="ignore"):
         carrier_curvature_radius = 1.0 / curvature
     return Cam(
-        law=law, lowest_radius=lowest_radius, highest_radius=highest_radius, roller_radius=roller_radius,
-        law_on_roller=law_on_roller, angle=angle,
-        profile=offset if law_on_roller else carrier, path=path,
-        curvature_radius=carrier_curvature_radius - (roller_radius if law_on_roller else 0.0),
+        law=law, lowest_radius=low, highest_radius=high, roller_radius=roller, law_on_roller=law_on_roller,
+        angle=angle, profile=offset if law_on_roller else carrier, path=path,
+        curvature_radius=carrier_curvature_radius - (roller if law_on_roller else 0.0),
         pressure_angle=np.arctan2(turned, np.sum(normal * path, axis=1)),
     )  # fmt: skip
+
+
+def _radius(law: Law, low: float, high: float, angle: Floats) -> tuple[Floats, Floats, Floats]:
+    """Radius of the curve that carries the law, and its derivatives by the angle."""
+    share, slope, bend = law(angle)
+    return low + (high - low) * share, (high - low) * slope, (high - low) * bend
+
+
+def _curve(angle: Floats, r: Floats, r1: Floats, r2: Floats) -> tuple[Floats, Floats, Floats]:
+    """Curvature, points and outward normals of the curve with that radius and its derivatives."""
+    length = np.hypot(r, r1)
+    radial = np.column_stack([np.cos(angle), np.sin(angle)])
+    across = np.column_stack([-np.sin(angle), np.cos(angle)])
+    normal = (r[:, None] * radial - r1[:, None] * across) / length[:, None]
+    return (r * r + 2.0 * r1 * r1 - r * r2) / length**3, r[:, None] * radial, normal
 
 
 def _refuse_undercut(
     angle: Floats, curvature: Floats, tilt: Floats, roller_radius: float, outwards: float
 ) -> None:
-    """Complain where the offset curve would turn back: the roller cuts into the profile, or does not fit.
+    """Refuse an offset curve that turns back: the roller would cut into the profile, or not fit it.
 
     Outwards a hollow may not be tighter than the roller, inwards a crest. The same holds for the corner
     where the turn closes, unless it is too slight to matter.
@@ -221,8 +226,8 @@ def _refuse_undercut(
     if undercut:
         raise LoomfmuError(
             f"the cam is undercut at cam angle {degrees(place):.4g} deg: the {kind} there has a radius of"
-            f" curvature of {1e3 * radius:.4g} mm, the roller one of {1e3 * roller_radius:.4g} mm; take a"
-            " smaller roller or larger radii of the cam"
+            f" curvature of {1e3 * radius:.4g} mm, the roller a radius of {1e3 * roller_radius:.4g} mm; use a"
+            " smaller roller or a larger cam"
         )
 
 

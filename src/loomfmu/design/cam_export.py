@@ -63,7 +63,7 @@ def write_dxf(cam: Cam, path: Path, overwrite: bool = False) -> None:
     try:
         from ezdxf.filemanagement import new
     except ImportError:
-        raise LoomfmuError("a DXF file asks for the package ezdxf: pip install ezdxf") from None
+        raise LoomfmuError('a DXF file needs the package ezdxf: pip install "loomfmu[cam]"') from None
     drawing = new("R2010", units=4)  # mm
     space = drawing.modelspace()
     for layer, curve in (("PROFILE", cam.profile), ("CUTTER", cam.path)):
@@ -103,29 +103,15 @@ def gcode(
     'G21 G90 G64 G17 G40 G49'
     """
     passes, depth = whole("passes", passes, 1), read("cut", cut)
-    start, moves = cutter_moves(cam, arcs=arcs, tolerance=tolerance)
-    return "\n".join(
-        [
-            f"(cutter radius {1e3 * cam.roller_radius:.3f}, cam radii {1e3 * cam.lowest_radius:.3f} to"
-            f" {1e3 * cam.highest_radius:.3f})",
-            "G21 G90 G64 G17 G40 G49",
-            f"F{feed:g}",
-            "T1 M6",
-            "M3 M8",
-            f"S{spindle:g}",
-            f"G0 X{start[0]:.4f} Y{start[1]:.4f}",
-            "#1=0",
-            f"M98 P1 L{passes}",
-            "G0 Z5",
-            "M30",
-            "O1",
-            "G1 Z#1",
-            *(str(move) for move in moves),
-            f"#1=[#1-{1e3 * depth:g}]",
-            "M99",
-            "",
-        ]
-    )
+    (x, y), moves = cutter_moves(cam, arcs=arcs, tolerance=tolerance)
+    radii = f"{1e3 * cam.lowest_radius:.3f} to {1e3 * cam.highest_radius:.3f}"
+    lines = [
+        f"(cutter radius {1e3 * cam.roller_radius:.3f}, cam radii {radii})",
+        "G21 G90 G64 G17 G40 G49", f"F{feed:g}", "T1 M6", "M3 M8", f"S{spindle:g}",
+        f"G0 X{x:.4f} Y{y:.4f}", "#1=0", f"M98 P1 L{passes}", "G0 Z5", "M30",
+        "O1", "G1 Z#1", *(str(move) for move in moves), f"#1=[#1-{1e3 * depth:g}]", "M99", "",
+    ]  # fmt: skip
+    return "\n".join(lines)
 
 
 def cutter_moves(

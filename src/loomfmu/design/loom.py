@@ -1,4 +1,4 @@
-"""Figures of a whole loom: safe speed, what a wanted speed asks for, productivity.
+"""Figures of a whole loom: safe speed, what a given speed requires, productivity.
 
 The same physics as in the FMUs, solved for a design. Results are in SI; quantities are given as numbers in SI
 or as texts with a unit, such as "0.5 mm", within the limits that they have in a scene.
@@ -57,17 +57,15 @@ def safe_speed(
         stiffness: bending stiffness of the belt [N m2]
 
     Raises:
-        LoomfmuError: an unknown name, a quantity out of its limits, or a weft tension that buckles the belt
-            by itself
+        LoomfmuError: an unknown name, a quantity outside its limits, or a weft tension that alone buckles
+            the belt
 
     >>> round(safe_speed("WL680-3600").speed / RPM, 1)
     681.8
     """
-    from scipy.optimize import minimize_scalar
-
     if clearance is not None and length_factor is not None:
         raise LoomfmuError(
-            "clearance and length_factor are both given: the factor follows from the clearance"
+            "give either clearance or length_factor, not both: the factor follows from the clearance"
         )
     gap = read("clearance", NEW_BELT if clearance is None else clearance)
     tension = read("tension", tension)
@@ -83,23 +81,22 @@ def safe_speed(
         position, _first, second = travel(angle)
         return belt.speed_limit(position - guide, second, factor, stiffness, weight, tension)
 
-    # the limit is infinite at both edges and has one minimum between: bracket it on a grid first
-    angles = [start + (end - start) * (k + 0.5) / 64 for k in range(64)]
-    best = min(angles, key=limit)
-    step = (end - start) / 64
-    found = minimize_scalar(
-        limit, bounds=(best - step, best + step), method="bounded", options={"xatol": 1e-12}
-    )
-    if found.fun <= 0.0:
+    angle, speed = _lowest(limit, start, end)
+    if speed <= 0.0:
         raise LoomfmuError(f"{machine}: a weft tension of {tension:.6g} N buckles the belt at any speed")
-    length = travel(found.x)[0] - guide
-    return SafeSpeed(
-        speed=float(found.fun),
-        angle=float(found.x),
-        critical_force=belt.critical_force(length, factor, stiffness),
-        window=(start, end),
-        free_length=travel(end)[0] - guide,
-    )
+    force = belt.critical_force(travel(angle)[0] - guide, factor, stiffness)
+    return SafeSpeed(speed, angle, force, (start, end), travel(end)[0] - guide)
+
+
+def _lowest(limit: Callable[[float], float], start: float, end: float) -> tuple[float, float]:
+    """Place and value of the one minimum between two poles: a grid brackets it first."""
+    from scipy.optimize import minimize_scalar
+
+    step = (end - start) / 64
+    best = min((start + (k + 0.5) * step for k in range(64)), key=limit)
+    near = (best - step, best + step)
+    found = minimize_scalar(limit, bounds=near, method="bounded", options={"xatol": 1e-12})
+    return float(found.x), float(found.fun)
 
 
 def window(machine: str) -> tuple[float, float]:
@@ -127,13 +124,13 @@ def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, 
     return float(where["head_length"]) + float(where["idle_travel"]), travel
 
 
-# ---- what a wanted speed asks for
+# ---- what a given speed requires
 
 
 def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Largest guide clearance with which the belt is safe at a speed [m].
 
-    Raises LoomfmuError where none is small enough, with the speeds that can be had, or where any will do.
+    Raises LoomfmuError where none is small enough, naming the speeds within reach, or where any will do.
     """
     _refuse(others, "clearance", "length_factor")
     return _solve(
@@ -160,10 +157,10 @@ def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
 
 
 def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:
-    """Refuse a value for what is sought, for what stands instead of it, and for what `safe_speed` lacks."""
+    """Refuse a value for the quantity that is solved for, and for what `safe_speed` does not have."""
     for name in given:
         if name in (sought, instead):
-            raise LoomfmuError(f"{name} cannot be given: the {sought} is sought")
+            raise LoomfmuError(f"{name} cannot be given: the {sought} is what is solved for")
         if name not in QUANTITIES:
             raise LoomfmuError(f"{name} is unknown{suggestion(name, QUANTITIES)}")
 
@@ -182,8 +179,8 @@ def _solve(
         )
     if speed > max(ends):
         raise LoomfmuError(
-            f"no {what} gives {show('speed', speed)}: from {show(name, low)} to {show(name, high)} the safe"
-            f" speed goes from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"
+            f"no {what} gives {show('speed', speed)}: between {show(name, low)} and {show(name, high)} the"
+            f" safe speed ranges from {ends[0] / RPM:.6g} to {ends[1] / RPM:.6g} rev/min"
         )
     return float(brentq(lambda value: reached(value) - speed, low, high, xtol=1e-12 * high, rtol=1e-12))
 
