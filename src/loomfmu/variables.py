@@ -1,6 +1,7 @@
 """How a component declares its variables: once, and everything else is derived from it.
 
-A component is a dataclass whose fields are made by `parameter`, `input_`, `output` and `state`.
+A component is a dataclass whose fields are made by `parameter`, `input_`, `output` and `state`, or by
+`loomfmu.arrays.array` of these.
 The model description, the FMU's state, the attributes of the traces, the variable tables of the
 documentation, the checks of limits and the C struct all come from `variables_of(component)`.
 """
@@ -9,6 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
+from itertools import groupby
 from typing import Any, ClassVar
 
 from . import units
@@ -23,7 +25,8 @@ class Variable:
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
-    instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds.
+    instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds;
+    `element` is its place in an array, such as `table[35]` for `table_36`.
     """
 
     name: str
@@ -45,6 +48,12 @@ class Variable:
     source: str | None = None
     lowest_of: str | None = None
     highest_of: str | None = None
+    element: str = ""
+
+    @property
+    def member(self) -> str:
+        """How a component's source and its C call it."""
+        return self.element or self.name
 
     @property
     def settable(self) -> bool:
@@ -275,3 +284,9 @@ class Component:
 def variables_of(component: type[Component]) -> tuple[Variable, ...]:
     """All variables of a component in the order of their declaration; the index is the value reference."""
     return tuple(_variable(declared) for declared in fields(component))
+
+
+def arrays_of(component: type[Component]) -> dict[str, tuple[Variable, ...]]:
+    """The arrays of a component, each with its variables."""
+    elements = [variable for variable in variables_of(component) if variable.element]
+    return {name: tuple(same) for name, same in groupby(elements, lambda v: v.element.partition("[")[0])}

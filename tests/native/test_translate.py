@@ -56,6 +56,25 @@ def test_arithmetic_is_pythons(gcc, tmp_path):
                 assert found == pytest.approx(wanted, rel=1e-15), (variable.name, x, y, count)
 
 
+def test_arrays_are_read_and_set_as_in_python(gcc, tmp_path):
+    python, c = toys.Arrays(), compiled(toys.Arrays, tmp_path)()
+    for index in range(-3, 3):
+        python.index = c.index = index
+        assert python.step(0.25, 0.5) == c.step(0.25, 0.5) == 0
+        for variable in variables_of(toys.Arrays):
+            assert getattr(c, variable.name) == getattr(python, variable.name), (variable.name, index)
+
+
+@pytest.mark.parametrize("index", [-(2**63), -(2**60), -4, 3, 4, 2**60, 2**63 - 1])
+def test_beside_an_array_nothing_is_read(gcc, tmp_path, index):
+    python, c = toys.Arrays(), compiled(toys.Arrays, tmp_path)()
+    python.index = c.index = index
+    with pytest.raises(IndexError):
+        python.step(0.0, 0.0)
+    assert c.step(0.0, 0.0) == 0
+    assert math.isnan(c.real) and c.whole == 2**60 and c.truth is False
+
+
 @pytest.mark.parametrize("component", [toys.CallsInWhile, toys.ReadsItsResult, toys.Loops])
 def test_what_c_does_in_another_way_is_done_as_in_python(gcc, tmp_path, component):
     python, c = component(), compiled(component, tmp_path)()
@@ -89,7 +108,9 @@ def test_whole_numbers_of_any_double_are_defined(helpers):
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_it_holds_no_globals_and_all_variables_in_their_order(tools, name):
     translated = translate(COMPONENTS[name])
-    members = re.findall(r"^    \w+ (\w+);", translated.header, re.MULTILINE)
+    found = re.findall(r"^    \w+ (\w+)(?:\[(\d+)\])?;", translated.header, re.MULTILINE)
+    arrays = {array: [f"{array}_{place + 1}" for place in range(int(size))] for array, size in found if size}
+    members = [name for member, _size in found for name in arrays.get(member, [member])]
     assert members == [v.name for v in variables_of(COMPONENTS[name])]
     for line in translated.code.splitlines():
         if line and line[0] not in " {}/" and not line.startswith(("#", " *")):
@@ -139,6 +160,17 @@ REFUSED = {
     "for y in (1, 2):\n            pass": "a for that does not run over range()",
     "while x < 1.0:\n            x = 2.0\n        else:\n            x = 1.0": "an else of a loop",
     "y = z = x": "an assignment to several names",
+    "y = self.value[0]": "self.value is not an array of the component",
+    "y = self.pair[2]": "self.pair has 2 elements",
+    "y = self.pair[-3]": "self.pair has 2 elements",
+    "y = self.pair[x]": "x is float where int is needed",
+    "y = self.pair": "self.pair is an array: read self.pair[index] or pass *self.pair",
+    "y = self.pair_1": "self.pair_1 is not a variable of the component",
+    "self.pair[0] = x": "self.pair[0] cannot be assigned to",
+    "self.pair = x": "x is not several values",
+    "self.pair = (x, x, x)": "3 values for 2 names",
+    "y = self.square(*self.pair)": "self.square takes 1 arguments",
+    "y = self.square(*x)": "x is not an array of the component",
     "def g(y: float) -> float:\n            return y": "FunctionDef is not in the subset",
 }
 
@@ -148,6 +180,7 @@ def test_what_is_not_in_the_subset(tmp_path, monkeypatch, line, reason):
     text = f'''
 from dataclasses import dataclass
 from math import sqrt
+from loomfmu.arrays import array
 from loomfmu.variables import Component, output
 
 @dataclass(slots=True)
@@ -155,6 +188,11 @@ class Odd(Component):
     """Odd."""
 
     value: float = output("1", "A value")
+    pair: tuple[float, ...] = array(output("1", "One of two") for _ in range(2))
+
+    def square(self, x: float) -> float:
+        """Square."""
+        return x * x
 
     def initialize(self, time: float) -> int:
         """Start."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import ceil, exp, floor, pi, sqrt
 
+from loomfmu.arrays import array
 from loomfmu.variables import Component, input_, output, parameter, state
 
 TWO = 2
@@ -13,6 +14,11 @@ def shared(x: float, count: int) -> tuple[float, float]:
     """Two results, and a comment that says */ and /* in the middle."""
     # a line that says */ too
     return x * count, x / TWO
+
+
+def weighted(x: float, a: float, b: float, c: float, d: float, e: float) -> float:
+    """Five numbers, told apart."""
+    return a + x * (b + x * (c + x * (d + x * e)))
 
 
 def mixed(x: float, y: float) -> float:
@@ -69,6 +75,35 @@ class UsesList(Component):
         """Step."""
         values = [time, step_size]
         self.value = values[0]
+        return 0
+
+
+@dataclass(slots=True)
+class Arrays(Component):
+    """Arrays: an element by its number, all of them as arguments, and all of them set at once."""
+
+    index: int = parameter("1", 0, "Which element")
+    weight: tuple[float, ...] = array(parameter("1", start, "A weight") for start in (0.1, 0.7, 1.9))
+    bits: tuple[int, ...] = array(parameter("1", start, "Some bits") for start in (3, 5, 9))
+    double: tuple[bool, ...] = array(parameter("1", start, "A truth") for start in (True, False, True))
+    mean: tuple[float, ...] = array(state("1", "A mean") for _ in range(2))
+    real: float = output("1", "A weight")
+    whole: int = output("1", "Some bits", start=0, variability="discrete")
+    truth: bool = output("1", "A truth", start=False, variability="discrete")
+    total: float = output("1", "All of it")
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Step."""
+        self.real = self.weight[self.index]
+        self.whole = self.bits[self.index]
+        self.truth = self.double[self.index]
+        self.mean = shared(self.mean[-1] + self.weight[2], self.bits[0])
+        self.mean = self.mean[1], self.mean[0]
+        self.total = weighted(time, *self.weight, *self.mean)
         return 0
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import pi, sin
 from typing import ClassVar
 
+from ..arrays import array
 from ..physics.heald import lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
 from ..variables import NOTHING, Component, Problem, Terminal, indicator, input_, output, parameter
@@ -42,14 +43,13 @@ class HealdFrame(Component):
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)
-    pattern_1: int = parameter("1", 1, "Picks 0 to 15, least bit first", minimum=0, maximum=65535)
-    pattern_2: int = parameter("1", 0, "Picks 16 to 31", minimum=0, maximum=65535)
-    pattern_3: int = parameter("1", 0, "Picks 32 to 47", minimum=0, maximum=65535)
-    pattern_4: int = parameter("1", 0, "Picks 48 to 63", minimum=0, maximum=65535)
-    pattern_5: int = parameter("1", 0, "Picks 64 to 79", minimum=0, maximum=65535)
-    pattern_6: int = parameter("1", 0, "Picks 80 to 95", minimum=0, maximum=65535)
-    pattern_7: int = parameter("1", 0, "Picks 96 to 111", minimum=0, maximum=65535)
-    pattern_8: int = parameter("1", 0, "Picks 112 to 127", minimum=0, maximum=65535)
+    pattern: tuple[int, ...] = array(
+        parameter(
+            "1", int(first == 0), f"Picks {first} to {first + 15}{', least bit first' if first == 0 else ''}",
+            minimum=0, maximum=65535,
+        )
+        for first in range(0, 128, 16)
+    )  # fmt: skip
     inputs_at_step_end: bool = parameter(
         "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
     )
@@ -94,22 +94,7 @@ class HealdFrame(Component):
     def requested(self, pick: int) -> int:
         """Position that the pattern asks for at a pick: 1 raised, 0 lowered."""
         index = pick % self.pattern_length
-        word = self.pattern_1
-        if index >= 112:
-            word = self.pattern_8
-        elif index >= 96:
-            word = self.pattern_7
-        elif index >= 80:
-            word = self.pattern_6
-        elif index >= 64:
-            word = self.pattern_5
-        elif index >= 48:
-            word = self.pattern_4
-        elif index >= 32:
-            word = self.pattern_3
-        elif index >= 16:
-            word = self.pattern_2
-        return peg(word, index % 16)
+        return peg(self.pattern[index // 16], index % 16)
 
     def by_crank(self, turned: float, velocity: float, falling: bool) -> tuple[float, float, float]:
         """Share of the stroke above the lower end, by the crank: a frame falls as it rose, the other way."""

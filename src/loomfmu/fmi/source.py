@@ -10,7 +10,7 @@ import textwrap
 from types import FunctionType
 from typing import Any
 
-from ..variables import Component, variables_of
+from ..variables import Component, Variable, arrays_of, variables_of
 
 HEADER = '"""{name}, written by loomfmu from its component and the physics it uses; do not edit."""\n'
 
@@ -80,10 +80,26 @@ def _class(component: type[Component], methods: dict[str, FunctionType]) -> str:
     lines = [f"class {component.__name__}:", f'    """{component.__doc__}"""', ""]
     lines += ["    def __init__(self) -> None:"]
     lines += [f"        self.{variable.name} = {variable.start!r}" for variable in variables_of(component)]
+    lines += [_array(name, variables) for name, variables in arrays_of(component).items()]
     body = "\n".join(lines) + "\n"
     for method in methods.values():
         body += "\n" + textwrap.indent(textwrap.dedent(inspect.getsource(method)), "    ")
     return body
+
+
+ARRAY = """
+    @property
+    def {name}(self):
+        return {values}
+
+    @{name}.setter
+    def {name}(self, values):
+        {values} = values"""
+
+
+def _array(name: str, variables: tuple[Variable, ...]) -> str:
+    """An array of the class: a tuple of its variables."""
+    return ARRAY.format(name=name, values=", ".join(f"self.{variable.name}" for variable in variables))
 
 
 def functions(component: type[Component]) -> dict[str, FunctionType]:

@@ -64,7 +64,7 @@ def extremes() -> Section:
     """Peaks of the spline."""
     of, span, w = drive(), frame_span(), 500.0 * math.pi / 30.0
     speed, acceleration = span * of.highest_speed, span * of.highest_acceleration
-    above = math.degrees(of.angle_above(of.cam_height_1 + HEIGHT))
+    above = math.degrees(of.angle_above(of.cam_height[0] + HEIGHT))
     return Section(
         "Section 4.2, Figures 4.5 to 4.8: the spline through the control points",
         ("quantity", ""),
@@ -80,7 +80,7 @@ def extremes() -> Section:
             Row(("highest acceleration at 500 rev/min, m/s2", number(acceleration * w * w, 2))),
             Row(("dwell within 1.5 % of the travel, deg", number(math.degrees(of.dwell_angle), 2))),
             Row(("jump of the acceleration where two picks join, at 1 rad/s, mm/s2",
-                 number(1e3 * FRAME * abs(of.cam_bend_6 - of.cam_bend_1), 2))),
+                 number(1e3 * FRAME * abs(of.cam_bend[5] - of.cam_bend[0]), 2))),
         ),
         remarks=(
             "The figures that show these curves are lost; only the 140 deg stand in the text.",

@@ -29,7 +29,8 @@ def sections() -> tuple[Section, ...]:
 
 def of_cam() -> tuple[Row, ...]:
     """Spline cam."""
-    drive = DobbyDrive(law=SPLINE_CAM, cam_height_5=0.657)
+    drive = DobbyDrive(law=SPLINE_CAM)
+    drive.cam_height = (*drive.cam_height[:4], 0.657, drive.cam_height[5])
     drive.initialize(0.0)
     span = 1e3 * cam.frame_span()
     radii = 1e3 * np.hypot(*published_path().T)

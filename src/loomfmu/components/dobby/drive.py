@@ -132,9 +132,7 @@ class DobbyDrive(RotorLaws):
             if self.law == SLOTTED_LEVERS:
                 _angle, self.highest_speed, _second = self.rotor(pi)
             else:
-                _lowest, self.highest_speed = gear_speed_extremes(
-                    self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
-                )
+                _lowest, self.highest_speed = gear_speed_extremes(*self.gear_harmonic)
             self.highest_acceleration = self.largest(False)
             self.highest_jerk = self.largest(True)
         else:
@@ -150,9 +148,7 @@ class DobbyDrive(RotorLaws):
                 x, self.lever_radius, self.driven_radius, self.eccentricity
             )
         else:
-            _angle, _first, second, third = noncircular_gears(
-                place, self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
-            )
+            _angle, _first, second, third = noncircular_gears(place, *self.gear_harmonic)
         return fabs(third) if jerk else fabs(second)
 
     def largest(self, jerk: bool) -> float:

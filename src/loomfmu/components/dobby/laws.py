@@ -55,9 +55,7 @@ class RotorLaws(LawParameters):
             if self.eccentricity >= self.lever_radius or self.eccentricity >= self.driven_radius:
                 return 1
         elif self.law == NONCIRCULAR_GEARS:
-            self.lowest_speed, _highest = gear_speed_extremes(
-                self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
-            )
+            self.lowest_speed, _highest = gear_speed_extremes(*self.gear_harmonic)
             if self.lowest_speed <= 0.0:
                 return 2
         elif self.law == TABLE:
@@ -71,26 +69,14 @@ class RotorLaws(LawParameters):
 
     def check_cam(self) -> int:
         """Whether the cam's points make a law; its spline and highest point."""
-        before, _height, _bend = self.cam_knot(0)
-        last, _height, _bend = self.cam_knot(5)
-        if before != 0.0 or fabs(last - 4.0 * pi) > 1e-9:
+        if self.cam_angle[0] != 0.0 or fabs(self.cam_angle[5] - 4.0 * pi) > 1e-9:
             return 4
-        for index in range(1, 6):
-            angle, _height, _bend = self.cam_knot(index)
-            if angle - before < 1.745e-4:
+        for index in range(5):
+            if self.cam_angle[index + 1] - self.cam_angle[index] < 1.745e-4:
                 return 4
-            before = angle
-        (
-            self.cam_bend_1, self.cam_bend_2, self.cam_bend_3,
-            self.cam_bend_4, self.cam_bend_5, self.cam_bend_6,
-        ) = not_a_knot(
-            self.cam_angle_1, self.cam_angle_2, self.cam_angle_3,
-            self.cam_angle_4, self.cam_angle_5, self.cam_angle_6,
-            self.cam_height_1, self.cam_height_2, self.cam_height_3,
-            self.cam_height_4, self.cam_height_5, self.cam_height_6,
-        )  # fmt: skip
+        self.cam_bend = not_a_knot(*self.cam_angle, *self.cam_height)
         self.find_top()
-        if fabs(self.cam_height_6 - self.cam_height_1) > 1e-9 or self.cam_span < 1e-9:
+        if fabs(self.cam_height[5] - self.cam_height[0]) > 1e-9 or self.cam_span < 1e-9:
             return 5
         return 0
 
@@ -111,14 +97,14 @@ class RotorLaws(LawParameters):
                 if place == 1:
                     distance = second
                 height, _slope, _bend, _third = self.piece(distance)
-                if height - self.cam_height_1 > self.cam_span:
-                    self.cam_span = height - self.cam_height_1
+                if height - self.cam_height[0] > self.cam_span:
+                    self.cam_span = height - self.cam_height[0]
                     self.cam_top = self.segment_start + distance
 
     def deviation(self, index: int) -> float:
         """By how much a point of the table is ahead of an even turn; counted from 0, round and round."""
         point = index % self.table_points
-        return self.table_point(point) - 2.0 * pi * point / self.table_points
+        return self.table[point] - 2.0 * pi * point / self.table_points
 
     def table_bend(self, index: int) -> float:
         """Second derivative of the table's spline at a point, counted from 0."""
@@ -136,9 +122,12 @@ class RotorLaws(LawParameters):
         """Make a segment of the spline the present one."""
         if index != self.segment:
             if self.law == SPLINE_CAM:
-                self.segment_start, self.segment_left, self.segment_left_bend = self.cam_knot(index)
-                end, self.segment_right, self.segment_right_bend = self.cam_knot(index + 1)
-                self.segment_length = end - self.segment_start
+                self.segment_start = self.cam_angle[index]
+                self.segment_length = self.cam_angle[index + 1] - self.segment_start
+                self.segment_left = self.cam_height[index]
+                self.segment_right = self.cam_height[index + 1]
+                self.segment_left_bend = self.cam_bend[index]
+                self.segment_right_bend = self.cam_bend[index + 1]
             else:
                 self.segment_length = 2.0 * pi / self.table_points
                 self.segment_start = self.segment_length * index
@@ -187,9 +176,7 @@ class RotorLaws(LawParameters):
             )
             return angle, first, second
         if self.law == NONCIRCULAR_GEARS:
-            angle, first, second, _third = noncircular_gears(
-                x, self.gear_harmonic_1, self.gear_harmonic_2, self.gear_harmonic_3, self.gear_harmonic_4
-            )
+            angle, first, second, _third = noncircular_gears(x, *self.gear_harmonic)
             return angle, first, second
         if self.law == TABLE:
             index = floor(x * self.table_points / (2.0 * pi))
@@ -204,12 +191,11 @@ class RotorLaws(LawParameters):
         """Height of the cam over its start, as a share of the largest, and its derivatives, 0 to 4 pi."""
         index = 0
         for knot in range(1, 5):
-            angle, _height, _bend = self.cam_knot(knot)
-            if x >= angle:
+            if x >= self.cam_angle[knot]:
                 index = knot
         self.load(index)
         height, slope, bend, _third = self.piece(x - self.segment_start)
-        return (height - self.cam_height_1) / self.cam_span, slope / self.cam_span, bend / self.cam_span
+        return (height - self.cam_height[0]) / self.cam_span, slope / self.cam_span, bend / self.cam_span
 
     def dwell(self, tolerance: float) -> float:
         """Shaft angle during which a changing frame stays within a share of its stroke of its end.
@@ -217,7 +203,7 @@ class RotorLaws(LawParameters):
         For the rotor laws around the slow point; for the spline cam around its top, in two picks.
         """
         if self.law == SPLINE_CAM:
-            return self.angle_above(self.cam_height_1 + (1.0 - tolerance) * self.cam_span)
+            return self.angle_above(self.cam_height[0] + (1.0 - tolerance) * self.cam_span)
         if self.law == SLOTTED_LEVERS or self.law == NONCIRCULAR_GEARS or self.law == TABLE:
             reach = 4.0 * asin(sqrt(tolerance))
             late = self.place_of(reach)
@@ -244,7 +230,7 @@ class RotorLaws(LawParameters):
         high = 2.0 * pi
         if self.law == TABLE:
             for index in range(1, self.table_points):
-                if self.table_point(index) <= target:
+                if self.table[index] <= target:
                     low = 2.0 * pi * index / self.table_points
             high = low + 2.0 * pi / self.table_points
         x = 0.5 * (low + high)

@@ -88,7 +88,8 @@ class Scope:
 
     functions: dict[str, Signature]
     methods: dict[str, Signature]
-    variables: dict[str, str]  # of the component, with their types
+    variables: dict[str, str]  # of the component, as C calls them, with their types
+    arrays: dict[str, tuple[str, ...]]  # of the component, with the names of their elements
     constants: dict[str, float | int]
     from_math: frozenset[str]
     changes: dict[str, frozenset[str]]  # the variables that each method changes, those that it calls included
@@ -153,11 +154,26 @@ class Expressions:
     def call(self, node: ast.Call) -> tuple[str, Results]:
         """A call of one of our functions or methods: its text and the types of its results."""
         signature = self._signature(node)
-        if len(node.args) != len(signature.arguments):
+        values = [each for given in node.args for each in self.spread(given)]
+        if len(values) != len(signature.arguments):
             raise Untranslatable(node, f"{ast.unparse(node.func)} takes {len(signature.arguments)} arguments")
-        pairs = zip(node.args, signature.arguments, strict=True)
+        pairs = zip(values, signature.arguments, strict=True)
         arguments = ["self"] * signature.method + [self.as_type(given, kind).text for given, kind in pairs]
         return f"{signature.name}({', '.join(arguments)})", signature.results
+
+    def spread(self, given: ast.expr) -> list[ast.expr]:
+        """An argument, or the elements of the array that `*` makes several of."""
+        return self.elements(given.value) if isinstance(given, ast.Starred) else [given]
+
+    def elements(self, array: ast.expr) -> list[ast.expr]:
+        """The elements of an array of the component."""
+        if of_self(array) not in self.scope.arrays:
+            raise Untranslatable(array, f"{ast.unparse(array)} is not an array of the component")
+        itself = ast.Name("self", ast.Load())
+        return [
+            ast.copy_location(ast.Attribute(itself, name, ast.Load()), array)
+            for name in self.scope.arrays[of_self(array)]
+        ]
 
     def is_ours(self, node: ast.AST) -> bool:
         """Whether an expression calls one of our functions or methods."""
@@ -194,9 +210,24 @@ class Expressions:
 
     def _attribute(self, node: ast.Attribute) -> Code:
         name = of_self(node)
+        if name in self.scope.arrays:
+            raise Untranslatable(
+                node, f"self.{name} is an array: read self.{name}[index] or pass *self.{name}"
+            )
         if name not in self.scope.variables:
             raise Untranslatable(node, f"{ast.unparse(node)} is not a variable of the component")
         return Code(f"self->{c_name(name)}", self.scope.variables[name])
+
+    def _subscript(self, node: ast.Subscript) -> Code:
+        """An element of an array; C, too, counts a negative index from the end and never reads beside it."""
+        elements = [self.of(each) for each in self.elements(node.value)]
+        index, kind = self.as_type(node.slice, WHOLE), elements[0].type
+        if index.number is None:
+            name = f"self->{c_name(of_self(node.value))}"
+            return Code(f"python_item_{NAMES[kind]}({name}, {len(elements)}, {index.text})", kind)
+        if not -len(elements) <= index.number < len(elements):
+            raise Untranslatable(node, f"{ast.unparse(node.value)} has {len(elements)} elements")
+        return elements[int(index.number)]
 
     def _unaryop(self, node: ast.UnaryOp) -> Code:
         if isinstance(node.op, ast.Not):
@@ -323,5 +354,6 @@ KEYWORDS = frozenset(
 
 
 def c_name(name: str) -> str:
-    """A name that C takes: its keywords get an underscore."""
-    return f"{name}_" if name in KEYWORDS else name
+    """A name that C takes, its index included: its keywords get an underscore."""
+    word, bracket, index = name.partition("[")
+    return f"{word}_{bracket}{index}" if word in KEYWORDS else name

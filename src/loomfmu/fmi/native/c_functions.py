@@ -194,8 +194,10 @@ class FunctionWriter:
         if len(node.targets) > 1:
             raise Untranslatable(node, "an assignment to several names")
         (target,) = node.targets
-        if isinstance(target, ast.Tuple):
-            yield from self._unpacked(target, node.value, indent)
+        if of_self(target) in self.scope.arrays:
+            yield from self._unpacked(self.expressions.elements(target), node.value, indent)
+        elif isinstance(target, ast.Tuple):
+            yield from self._unpacked(target.elts, node.value, indent)
         else:
             yield from self._assigned(target, node.value, indent)
 
@@ -219,7 +221,7 @@ class FunctionWriter:
             raise Untranslatable(target, f"{target.id} is {NAMES[known]} and becomes {NAMES[kind]}")
         return c_name(target.id), known
 
-    def _unpacked(self, target: ast.Tuple, value: ast.expr, indent: str) -> Iterator[str]:
+    def _unpacked(self, targets: list[ast.expr], value: ast.expr, indent: str) -> Iterator[str]:
         """Several values, all of them computed before the first is put in its place."""
         inner = f"{indent}    "
         if isinstance(value, ast.Tuple):
@@ -237,11 +239,11 @@ class FunctionWriter:
             self.blocks += 1
             prefix = f"found_{self.blocks}."
             lines = [f"{inner}const {result_type(kinds, self.component)} {prefix[:-1]} = {text};"]
-        if len(kinds) != len(target.elts):
-            raise Untranslatable(value, f"{len(kinds)} values for {len(target.elts)} names")
+        if len(kinds) != len(targets):
+            raise Untranslatable(value, f"{len(kinds)} values for {len(targets)} names")
         yield f"{indent}{{"
         yield from lines
-        for number, (place, kind) in enumerate(zip(target.elts, kinds, strict=True)):
+        for number, (place, kind) in enumerate(zip(targets, kinds, strict=True)):
             name, wanted = self._place(place, kind)
             given = f"{prefix}value_{number}"
             if name:

@@ -89,7 +89,7 @@ def _row(variable: Variable, names: list[str]) -> str:
         KINDS[variable.type],
         variable.causality.upper(),
         variable.variability.upper(),
-        f"offsetof(Component, {c_name(variable.name)})",
+        f"offsetof(Component, {c_name(variable.member)})",
         low,
         high,
         _text(variable.display),

@@ -9,10 +9,11 @@ import io
 import math
 import tokenize
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 from ...errors import LoomfmuError
-from ...variables import Component, Variable, variables_of
+from ...variables import Component, Variable, arrays_of, variables_of
 from .. import source
 from .c_expressions import TYPES, Scope, Signature, Untranslatable, c_name, literal
 from .c_functions import FunctionWriter, comment, result_struct, signature
@@ -59,11 +60,12 @@ def _translated(component: type[Component]) -> Translation:
 
 def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]) -> str:
     name = component.__name__
-    functions, methods = _functions(tree)
+    functions, methods = _functions(component, tree)
     scope = Scope(
         functions=_signatures(functions, f"{name}_", False),
         methods=_signatures(methods, f"{name}__", True),
-        variables={variable.name: TYPES[variable.type.__name__] for variable in variables_of(component)},
+        variables={variable.member: TYPES[variable.type.__name__] for variable in variables_of(component)},
+        arrays={name: tuple(each.member for each in same) for name, same in arrays_of(component).items()},
         constants=_constants(tree),
         from_math=frozenset(_imported(tree)),
         changes={method: frozenset(_changed(method, methods, set())) for method in methods},
@@ -79,14 +81,17 @@ def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]
     return "\n\n".join(part for part in (structs, prototypes, definitions) if part)
 
 
-def _functions(tree: ast.Module) -> tuple[dict[str, ast.FunctionDef], dict[str, ast.FunctionDef]]:
+def _functions(
+    component: type[Component], tree: ast.Module
+) -> tuple[dict[str, ast.FunctionDef], dict[str, ast.FunctionDef]]:
     """The functions of a flattened module, and the methods of its class."""
     (own,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
     functions, methods = (
         {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
         for body in (tree.body, own.body)
     )
-    return functions, methods
+    arrays = arrays_of(component)  # properties in Python, members in C
+    return functions, {name: node for name, node in methods.items() if name not in arrays}
 
 
 def _signatures(functions: dict[str, ast.FunctionDef], prefix: str, method: bool) -> dict[str, Signature]:
@@ -162,21 +167,25 @@ def _header(component: type[Component]) -> str:
     """The struct of the variables, each with its unit and description."""
     lines = ["#ifndef COMPONENT_H", "#define COMPONENT_H", "", "#include <stdbool.h>", "#include <stdint.h>"]
     lines += ["", f"struct {component.__name__} {{"]
-    lines += [_member(variable) for variable in variables_of(component)]
+    members = groupby(variables_of(component), lambda variable: variable.member.partition("[")[0])
+    lines += [_member(name, list(same)) for name, same in members]
     return "\n".join([*lines, "};", "", "#endif", ""])
 
 
-def _member(variable: Variable) -> str:
-    unit = "" if variable.unit == "1" else f" [{variable.unit}]"
-    (about,) = comment(variable.description + unit, "")
-    return f"    {TYPES[variable.type.__name__]} {c_name(variable.name)}; {about}"
+def _member(name: str, variables: list[Variable]) -> str:
+    """A variable, or an array of them."""
+    first, last = variables[0], variables[-1]
+    size = f"[{len(variables)}]" if first.element else ""
+    unit = "" if first.unit == "1" else f" [{first.unit}]"
+    (about,) = comment(" .. ".join(dict.fromkeys((first.description, last.description))) + unit, "")
+    return f"    {TYPES[first.type.__name__]} {c_name(name)}{size}; {about}"
 
 
 def _start(component: type[Component]) -> str:
     """The function that gives every variable its start value."""
     name = component.__name__
     lines = [
-        f"    self->{c_name(each.name)} = {literal(each.start).text};" for each in variables_of(component)
+        f"    self->{c_name(each.member)} = {literal(each.start).text};" for each in variables_of(component)
     ]
     return "\n".join([f"static void {name}__init__(struct {name} *self)", "{", *lines, "}", ""])
 

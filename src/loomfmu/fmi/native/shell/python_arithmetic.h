@@ -3,6 +3,7 @@
 #define PYTHON_ARITHMETIC_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Where Python's unlimited integers end here: room is left for what is added to them. */
@@ -68,5 +69,17 @@ static inline double python_floor_division_float(double value, double divisor)
     whole = floor(quotient);
     return quotient - whole > 0.5 ? whole + 1.0 : whole;
 }
+
+/* An element of an array, a negative index counted from its end. Where Python raises nothing is read: NaN, which
+ * is refused in an output, the largest integer or false stands for it. */
+#define PYTHON_ITEM(name, type, absent) \
+    static inline type python_item_##name(const type *array, int64_t count, int64_t index) \
+    { \
+        const int64_t place = index < 0 ? index + count : index; \
+        return place >= 0 && place < count ? array[place] : absent; \
+    }
+PYTHON_ITEM(float, double, NAN)
+PYTHON_ITEM(int, int64_t, PYTHON_LARGEST)
+PYTHON_ITEM(bool, bool, false)
 
 #endif
