@@ -1,20 +1,39 @@
 """Expressions of the Python that translates to C, as C99 with their types.
 
-What is not written down here does not translate: the grammar is closed. Python's `float` is `double` here,
-its `int` is `int64_t`; whole numbers widen to real ones where Python would let them.
+What is not written down here does not translate: the grammar is closed. Whole numbers widen to real ones
+where Python would let them.
 """
 
 import ast
-import math
-from dataclasses import dataclass, field
 
-REAL, WHOLE, TRUTH = "double", "int64_t", "bool"
-TYPES = {"float": REAL, "int": WHOLE, "bool": TRUTH}
-NAMES = {c: python for python, c in TYPES.items()}
-Results = tuple[str, ...]  # types of what a function returns: none, one or several
-
-# C's levels of binding, loosest first
-TERNARY, OR, AND, BITS, EQUAL, ORDER, SHIFT, SUM, PRODUCT, UNARY, ATOM = range(11)
+from .c_code import (
+    AND,
+    ATOM,
+    BITS,
+    EQUAL,
+    NAMES,
+    OR,
+    ORDER,
+    PRODUCT,
+    REAL,
+    SHIFT,
+    SUM,
+    TERNARY,
+    TRUTH,
+    TYPES,
+    UNARY,
+    WHOLE,
+    Code,
+    Results,
+    Scope,
+    Signature,
+    Untranslatable,
+    c_name,
+    literal,
+    of_self,
+    widened,
+    within,
+)  # fmt: skip
 
 ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", SUM),
@@ -52,78 +71,6 @@ REAL_FUNCTIONS = {
 }  # fmt: skip
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
-
-
-class Untranslatable(Exception):
-    """A node that has no counterpart in C, and the reason."""
-
-    def __init__(self, node: ast.AST, reason: str):
-        super().__init__(reason)
-        self.node = node
-
-
-@dataclass(frozen=True)
-class Code:
-    """An expression in C: text, type, how tightly it binds, and its value if it is a plain number."""
-
-    text: str
-    type: str
-    level: int = ATOM
-    number: float | int | None = None
-
-
-@dataclass(frozen=True)
-class Signature:
-    """A function as C calls it: its name, the types of its arguments and of its results."""
-
-    name: str
-    arguments: tuple[str, ...]
-    results: Results
-    method: bool = False
-
-
-@dataclass
-class Scope:
-    """What the names of a function mean: its locals, the component's variables, functions and constants."""
-
-    functions: dict[str, Signature]
-    methods: dict[str, Signature]
-    variables: dict[str, str]  # of the component, as C calls them, with their types
-    arrays: dict[str, tuple[str, ...]]  # of the component, with the names of their elements
-    constants: dict[str, float | int]
-    from_math: frozenset[str]
-    changes: dict[str, frozenset[str]]  # the variables that each method changes, those that it calls included
-    locals: dict[str, str] = field(default_factory=dict)
-
-
-def literal(value: float | int | bool) -> Code:
-    """A number or a truth value as C writes it."""
-    if isinstance(value, bool):
-        return Code(str(value).lower(), TRUTH)
-    if isinstance(value, int):
-        text = str(value) if abs(value) < 2**31 else f"INT64_C({value})"
-        return Code(text, WHOLE, UNARY if value < 0 else ATOM, value)
-    if not math.isfinite(value):
-        text = "NAN" if math.isnan(value) else "INFINITY" if value > 0 else "-INFINITY"
-    else:
-        text = repr(value)
-    return Code(text, REAL, UNARY if text.startswith("-") else ATOM, value)
-
-
-def within(code: Code, level: int) -> str:
-    """The text of an operand, in parentheses if it binds more loosely than that."""
-    return code.text if code.level >= level else f"({code.text})"
-
-
-def widened(code: Code, kind: str, node: ast.AST) -> Code:
-    """An expression as another type: what Python takes for equal, and nothing else."""
-    if code.type == kind:
-        return code
-    if kind == REAL and code.number is not None:
-        return literal(float(code.number))
-    if (code.type, kind) in ((WHOLE, REAL), (TRUTH, REAL), (TRUTH, WHOLE)):
-        return Code(f"({kind}){within(code, ATOM)}", kind, UNARY)
-    raise Untranslatable(node, f"{ast.unparse(node)} is {NAMES[code.type]} where {NAMES[kind]} is needed")
 
 
 class Expressions:
@@ -334,26 +281,3 @@ class Expressions:
 def _joined(symbol: str, level: int, parts: list[Code]) -> Code:
     """Conditions joined by one operator; those of the other one stand in parentheses."""
     return Code(f" {symbol} ".join(within(part, EQUAL) for part in parts), TRUTH, level)
-
-
-def of_self(node: ast.AST) -> str:
-    """The name of an attribute of `self`, or nothing."""
-    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
-        return node.attr
-    return ""
-
-
-KEYWORDS = frozenset(
-    (
-        "auto", "bool", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-        "enum", "extern", "false", "float", "for", "goto", "if", "inline", "int", "long", "main", "register",
-        "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "true", "typedef",
-        "union", "unsigned", "void", "volatile", "while",
-    )
-)  # fmt: skip
-
-
-def c_name(name: str) -> str:
-    """A name that C takes, its index included: its keywords get an underscore."""
-    word, bracket, index = name.partition("[")
-    return f"{word}_{bracket}{index}" if word in KEYWORDS else name

@@ -4,61 +4,20 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from .c_expressions import (
+from .c_code import (
     NAMES,
     TYPES,
-    Expressions,
     Results,
     Scope,
     Signature,
     Untranslatable,
     c_name,
+    comment,
     of_self,
+    result_type,
     widened,
-)
-
-
-def signature(function: ast.FunctionDef, name: str, method: bool) -> Signature:
-    """How C calls a function. Raises Untranslatable for what C has no counterpart of."""
-    given = function.args
-    if function.decorator_list:
-        raise Untranslatable(function, "a decorator is not in the subset")
-    if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs or given.defaults:
-        raise Untranslatable(function, "only plain arguments are in the subset")
-    arguments = given.args[1:] if method else given.args
-    return Signature(
-        name, tuple(_type(each.annotation, function) for each in arguments), _results(function), method
-    )
-
-
-def _type(annotation: ast.expr | None, function: ast.FunctionDef) -> str:
-    name = ast.unparse(annotation) if annotation is not None else "no type"
-    if name not in TYPES:
-        raise Untranslatable(annotation or function, f"{name} is not float, int or bool")
-    return TYPES[name]
-
-
-def _results(function: ast.FunctionDef) -> Results:
-    given = function.returns
-    if isinstance(given, ast.Constant) and given.value is None:
-        return ()
-    if isinstance(given, ast.Subscript) and ast.unparse(given.value) == "tuple":
-        several = given.slice.elts if isinstance(given.slice, ast.Tuple) else [given.slice]
-        return tuple(_type(each, function) for each in several)
-    return (_type(given, function),)
-
-
-def result_type(results: Results, component: str) -> str:
-    """The C type of what a function returns; several values come in a struct."""
-    if len(results) < 2:
-        return results[0] if results else "void"
-    return f"struct {component}_{''.join(NAMES[kind][0] for kind in results)}"
-
-
-def result_struct(results: Results, component: str) -> str:
-    """The declaration of a struct of several values."""
-    members = " ".join(f"{kind} value_{place};" for place, kind in enumerate(results))
-    return f"{result_type(results, component)} {{ {members} }};"
+)  # fmt: skip
+from .c_expressions import Expressions
 
 
 class FunctionWriter:
@@ -303,14 +262,6 @@ def _step(called: ast.Call) -> int:
     if not isinstance(step, int) or step == 0:
         raise Untranslatable(called, "the step of a range() is a whole number other than 0")
     return step
-
-
-def comment(text: str, indent: str) -> list[str]:
-    """A text as a comment of C that cannot end early."""
-    lines = [line.rstrip() for line in text.replace("*/", "* /").replace("/*", "/ *").splitlines()]
-    if len(lines) == 1:
-        return [f"{indent}/* {lines[0]} */"]
-    return [f"{indent}/* {lines[0]}", *(f"{indent} * {line}".rstrip() for line in lines[1:]), f"{indent} */"]
 
 
 def _names_read(function: ast.FunctionDef) -> set[str]:

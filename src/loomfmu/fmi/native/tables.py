@@ -7,7 +7,7 @@ from ... import units
 from ...variables import NOTHING, Component, Variable, variables_of
 from ..description.model_description import FIRST_REFERENCE
 from ..live.live_slave import CATEGORIES, DISCARD, ERROR, WARNING
-from .c_expressions import c_name
+from .c_code import c_name
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 

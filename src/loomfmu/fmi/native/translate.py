@@ -15,8 +15,18 @@ from pathlib import Path
 from ...errors import LoomfmuError
 from ...variables import Component, Variable, arrays_of, variables_of
 from .. import source
-from .c_expressions import TYPES, Scope, Signature, Untranslatable, c_name, literal
-from .c_functions import FunctionWriter, comment, result_struct, signature
+from .c_code import (
+    TYPES,
+    Scope,
+    Signature,
+    Untranslatable,
+    c_name,
+    comment,
+    literal,
+    result_struct,
+    signature,
+)
+from .c_functions import FunctionWriter
 
 ENTRIES = ("initialize", "step")  # what the shell calls
 
