@@ -179,6 +179,13 @@ def parameter(
     )  # fmt: skip
 
 
+def at_step_end() -> Any:
+    """The parameter `inputs_at_step_end`: false where inputs hold at the start of the step to come."""
+    return parameter(
+        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+    )
+
+
 def input_(
     unit: str,
     start: float | int | bool,

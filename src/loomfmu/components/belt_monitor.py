@@ -273,6 +273,14 @@ class BeltMonitor(ShaftDriven):
             return lowest
         low = 0.25 * (place - 1) if place > 0 else 0.0
         high = 0.25 * (place + 1) if place < 4 else 1.0
+        nearest = self.lowest_within(limit, rate, a0, a1, a2, a3, step, low, high, nearest)
+        return nearest if nearest < lowest else lowest
+
+    def lowest_within(
+        self, limit: bool, rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
+        low: float, high: float, nearest: float,
+    ) -> float:  # fmt: skip
+        """Lowest speed limit or margin between two shares of the way, if below `nearest`."""
         golden = 0.6180339887498949
         left = high - golden * (high - low)
         right = low + golden * (high - low)
@@ -295,7 +303,7 @@ class BeltMonitor(ShaftDriven):
             nearest = at_left
         if at_right < nearest:
             nearest = at_right
-        return nearest if nearest < lowest else lowest
+        return nearest
 
     def judge(self, duration: float) -> None:
         """Bring the lowest margin and speed limit up to the present sample."""

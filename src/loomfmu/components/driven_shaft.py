@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..physics.driven_shaft import driven_motion, summed
-from ..variables import Component, Terminal, input_, output, parameter, state
+from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
 from .terminals import SHAFT
 
 
@@ -35,9 +35,7 @@ class DrivenShaft(Component):
         minimum=-1e6, maximum=1e6,
     )  # fmt: skip
     start_at_speed: bool = parameter("1", True, "Start at speed; otherwise the motor starts from rest")
-    inputs_at_step_end: bool = parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
-    )
+    inputs_at_step_end: bool = at_step_end()
     torque_1: float = input_(
         "N.m", 0.0, "Torque that a first mechanism asks of the shaft; positive brakes it", nominal=10.0,
         minimum=-1e12, maximum=1e12, source="weft.shaft_torque",

@@ -7,7 +7,7 @@ from typing import ClassVar
 from ..physics.damper import propagate, stop_damping_ratio
 from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
 from ..physics.numerics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
-from ..variables import Component, Problem, Terminal, input_, output, parameter, state
+from ..variables import Component, Problem, Terminal, at_step_end, input_, output, parameter, state
 from .terminals import FRAME
 
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
@@ -71,9 +71,7 @@ class HealdDamper(Component):
     start_rate: float = parameter(
         "m/s", 0.0, "Rate of the displacement at the start", minimum=-1e3, maximum=1e3
     )
-    inputs_at_step_end: bool = parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
-    )
+    inputs_at_step_end: bool = at_step_end()
     lift: float = input_(
         "m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
     )

@@ -7,7 +7,18 @@ from typing import ClassVar
 from ..arrays import array
 from ..physics.heald import lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import NOTHING, Component, Problem, Terminal, indicator, input_, output, parameter
+from ..variables import (
+    NOTHING,
+    Component,
+    Problem,
+    Terminal,
+    at_step_end,
+    indicator,
+    input_,
+    output,
+    parameter,
+)
+from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
 
 
@@ -19,12 +30,7 @@ class HealdFrame(Component):
     it changes if peg k + 1 differs, and holds if not. The pattern repeats after `pattern_length` picks.
     """
 
-    problems: ClassVar[tuple[Problem, ...]] = (
-        Problem(
-            "the rotor is more than 2e9 rad from its zero, where its angle is known to no better than"
-            " 2e-7 rad; start nearer to time and angle 0"
-        ),
-    )
+    problems: ClassVar[tuple[Problem, ...]] = (turned_too_far("rotor"),)
     keeps: ClassVar[str] = NOTHING
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
@@ -50,9 +56,7 @@ class HealdFrame(Component):
         )
         for first in range(0, 128, 16)
     )  # fmt: skip
-    inputs_at_step_end: bool = parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
-    )
+    inputs_at_step_end: bool = at_step_end()
     follow_lift: bool = parameter(
         "1", False, "Follow the dobby's lift_fraction, as for a spline cam, instead of the crank on the rotor"
     )

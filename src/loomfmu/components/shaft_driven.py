@@ -4,13 +4,19 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..physics.shaft import carried
-from ..variables import Component, Problem, Terminal, input_, parameter
+from ..variables import Component, Problem, Terminal, at_step_end, input_, parameter
 from .terminals import SHAFT
 
-TOO_FAR = Problem(
-    "the shaft is more than 2e9 rad from its zero, where its angle is known to no better than 2e-7 rad; start"
-    " nearer to time and angle 0"
-)
+
+def turned_too_far(what: str) -> Problem:
+    """What is reported of an angle that is `too_far`."""
+    return Problem(
+        f"the {what} is more than 2e9 rad from its zero, where its angle is known to no better than 2e-7 rad;"
+        " start nearer to time and angle 0"
+    )
+
+
+TOO_FAR = turned_too_far("shaft")
 
 
 @dataclass(slots=True)
@@ -32,9 +38,7 @@ class ShaftDriven(Component):
     follow_shaft: bool = parameter(
         "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of the own speed"
     )
-    inputs_at_step_end: bool = parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
-    )
+    inputs_at_step_end: bool = at_step_end()
     shaft_angle: float = input_(
         "rad", 0.0, "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0,
         rate="shaft_velocity", minimum=-1e9, maximum=1e9,

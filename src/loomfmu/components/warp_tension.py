@@ -14,7 +14,7 @@ from ..physics.warp import (
     thread_locate,
     turns_once,
 )
-from ..variables import Component, Terminal, input_, output, parameter, state
+from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
 from .terminals import FRAME
 
 
@@ -57,9 +57,7 @@ class WarpTension(Component):
     relaxation_rate: float = parameter(
         "1/s", 10.0, "Relaxation rate r of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0
     )
-    inputs_at_step_end: bool = parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
-    )
+    inputs_at_step_end: bool = at_step_end()
     lift: float = input_(
         "m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
     )

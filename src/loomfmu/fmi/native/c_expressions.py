@@ -33,7 +33,7 @@ from .c_code import (
     of_self,
     widened,
     within,
-)  # fmt: skip
+)
 
 ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", SUM),

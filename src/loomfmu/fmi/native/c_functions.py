@@ -16,7 +16,7 @@ from .c_code import (
     of_self,
     result_type,
     widened,
-)  # fmt: skip
+)
 from .c_expressions import Expressions
 
 
