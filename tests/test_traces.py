@@ -9,7 +9,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import textwrap
 import time
 from importlib import metadata
 from pathlib import Path
@@ -571,7 +570,7 @@ def test_after_a_kill_every_whole_block_can_be_read(tmp_path: Path) -> None:
         assert kept.verdicts == []
         check_kept(tmp_path, kept)
     damage.check(tmp_path / "out" / "long.h5.partial")
-    with h5py.File(tmp_path / "out" / "long.h5.partial", swmr=True) as plain:  # as the README has it
+    with h5py.File(tmp_path / "out" / "long.h5.partial", swmr=True) as plain:  # as docs/traces.md has it
         assert len(plain["belt/margin"]) >= seen
 
 
@@ -684,8 +683,8 @@ def test_a_large_trace_is_told_before_the_run(
 def test_the_example_of_many_traces_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
 ) -> None:
-    readme = (Path(__file__).parents[1] / "README.md").read_text()
-    block = re.search(r"\n(    import pathlib, xarray\n.*?)\n\n\S", readme, re.DOTALL)
+    page = (Path(__file__).parents[1] / "docs" / "traces.md").read_text()
+    block = re.search(r"^(import pathlib, xarray\n.*?)^```$", page, re.DOTALL | re.MULTILINE)
     assert block is not None
     monkeypatch.chdir(tmp_path)
     Path("loom.toml").write_text(LONG.replace("3000", "1"))
@@ -694,7 +693,7 @@ def test_the_example_of_many_traces_at_once(
         path = f"results/safe_speed/traces/row_{speed:.0f}.h5"
         loomfmu.run("loom.toml", set={"shaft.speed": f"{speed} rpm"}, output=path)
     found: dict[str, Any] = {}
-    exec(textwrap.dedent(block[1]), found)
+    exec(block[1], found)
     runs, table = found["runs"], found["table"]
     assert runs["margin"].dims == ("run", "sample")
     np.testing.assert_allclose(runs["speed"] * 30 / np.pi, speeds, rtol=1e-15)

@@ -1,0 +1,103 @@
+"""What README and docs/ show is true: links lead somewhere, commands are understood, snippets run."""
+
+import ast
+import re
+import shlex
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from live_fmus import fmu_cache
+
+from loomfmu import cli
+from loomfmu.cosim import scene
+from loomfmu.sweeps import plan
+
+__all__ = ["fmu_cache"]
+
+HOUSE = Path(__file__).parents[1]
+README = HOUSE / "README.md"
+PAGES = [
+    README,
+    HOUSE / "CONTRIBUTING.md",
+    HOUSE / "fmus" / "README.md",
+    *sorted((HOUSE / "docs").glob("*.md")),
+    *sorted((HOUSE / "fmus").glob("*/README.md")),
+]
+NAMES = [page.relative_to(HOUSE).as_posix() for page in PAGES]
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """The fenced blocks of a page in a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def anchors(page: Path) -> set[str]:
+    """The places of a page that a link can name, as GitHub makes them of its headings."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def commands(page: Path) -> list[list[str]]:
+    """The arguments of each `loomfmu` command that a page shows in a block, fenced or indented."""
+    fenced = re.findall(r"^(loomfmu .*)$", "".join(blocks(page, "sh")), re.MULTILINE)
+    lines = [*fenced, *re.findall(r"^ {4}(loomfmu .*)$", page.read_text(), re.MULTILINE)]
+    return [shlex.split(line, comments=True)[1:] for line in lines]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if target.startswith(("http://", "https://")):
+            continue
+        name, _, anchor = target.partition("#")
+        linked = (page.parent / name).resolve() if name else page
+        assert linked.exists(), target
+        assert not anchor or anchor in anchors(linked), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_commands_are_understood(page: Path) -> None:
+    for arguments in commands(page):
+        cli._parser().parse_args(arguments)  # exits where it does not understand
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_snippets_can_be_read(page: Path) -> None:
+    for text in blocks(page, "python"):
+        ast.parse(text)
+    for text in blocks(page, "toml"):
+        tomllib.loads(text)
+
+
+def test_scenes_and_sweeps_that_are_shown_are_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["init", "--all"]) == 0
+    for page in (README, HOUSE / "docs" / "scenes.md"):
+        scene.parse(blocks(page, "toml")[0])
+    Path("sweep.toml").write_text(blocks(HOUSE / "docs" / "sweeps.md", "toml")[0])
+    assert plan.load("sweep.toml").title == "Safe speed by machine and wear"
+    claims = blocks(HOUSE / "docs" / "claims.md", "toml")[0]
+    demo = Path("wl680_3600.toml").read_text()
+    assert len(scene.parse(f"{demo}\n{claims}").claims) == 8
+
+
+def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None) -> None:
+    monkeypatch.chdir(tmp_path)
+    expected = {"shaft.speed=700rpm": 1, "belt.guide_clearance=0.5mm": 1}  # a claim fails there
+    for arguments in commands(README):
+        if arguments[0] in ("build", "export", "sweep"):  # long; their own tests run them
+            continue
+        status = next((code for value, code in expected.items() if value in arguments), 0)
+        assert cli.main(arguments) == status, arguments
+    Path("my_loom.toml").write_text(blocks(README, "toml")[0])
+    assert cli.main(["run", "my_loom.toml"]) == 0
+    assert cli.main(["run", "wl680_3600.toml"]) == 0
+    shown: dict[str, Any] = {}
+    for page in (README, HOUSE / "docs" / "python.md"):
+        for text in blocks(page, "python"):
+            exec(text, shown)
+    assert f"{shown['loom'].safe_speed('WL680-3600', clearance='0.5 mm').speed:.2f}" == "63.47"
+    assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
