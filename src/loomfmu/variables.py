@@ -180,9 +180,9 @@ def parameter(
 
 
 def at_step_end() -> Any:
-    """The parameter `inputs_at_step_end`: false where inputs hold at the start of the step to come."""
+    """The parameter `inputs_at_step_end`: false where inputs are values at the start of the step."""
     return parameter(
-        "1", False, "Inputs hold at the end of the step to come (a master that works in dependency order)"
+        "1", False, "Inputs are values at the end of the step (from a master that steps sources before sinks)"
     )
 
 

@@ -50,17 +50,17 @@ class BeltMonitor(ShaftDriven):
         "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6
     )
     head_mass: float = parameter(
-        "kg", 0.1105, "Mass of the rapier head with the rigid section of the belt", display="g",
+        "kg", 0.1105, "Mass of rapier head and rigid section of the belt", display="g",
         minimum=1e-6, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     head_length: float = parameter(
-        "m", 0.550, "Length of the head with the rigid section", display="mm", minimum=0.0, maximum=10.0
+        "m", 0.550, "Length of head and rigid section", display="mm", minimum=0.0, maximum=10.0
     )
     idle_travel: float = parameter(
         "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0
     )
     prescribe_length_factor: bool = parameter(
-        "1", False, "Use prescribed_length_factor instead of the one that follows from guide_clearance"
+        "1", False, "Use prescribed_length_factor instead of deriving it from guide_clearance"
     )
     prescribed_length_factor: float = parameter(
         "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
@@ -76,14 +76,14 @@ class BeltMonitor(ShaftDriven):
         "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
     yarn_tension: float = input_(
-        "N", 0.0, "Weft tension, which presses the belt", display="cN", minimum=-1e6, maximum=1e6
+        "N", 0.0, "Weft tension, which compresses the belt", display="cN", minimum=-1e6, maximum=1e6
     )
     guide_clearance: float = input_(
-        "m", 0.3e-3, "Clearance of the belt in its guide, growing with wear", display="mm",
+        "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",
         minimum=0.0, maximum=0.05, nominal=1e-3,
     )  # fmt: skip
     free_length: float = output(
-        "m", "Length of the belt outside guide and head; negative inside", display="mm",
+        "m", "Length of the belt between guide and head; negative while inside the guide", display="mm",
         nominal=1.0, depends=("travel", "velocity", "acceleration"),
     )  # fmt: skip
     inertia_force: float = output(
@@ -94,14 +94,14 @@ class BeltMonitor(ShaftDriven):
         depends=("acceleration", "yarn_tension"),
     )  # fmt: skip
     critical_force: float = output(
-        "N", "Critical load of the free section; that of 1 mm while the belt is inside its guide",
+        "N", "Critical load of the free section; inside the guide, that of a section of 1 mm",
         nominal=100.0, depends=("travel", "velocity", "acceleration", "guide_clearance"),
     )  # fmt: skip
     length_factor: float = output("1", "Column length factor in use", depends=("guide_clearance",))
     margin: float = output("1", "Margin against buckling, 1 - compression / critical load")
     lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve", lowest_of="margin")
     speed_limit: float = output(
-        "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min for none",
+        "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min if it cannot",
         display="rev/min", nominal=100.0,
     )  # fmt: skip
     lowest_speed_limit: float = output(
@@ -112,16 +112,16 @@ class BeltMonitor(ShaftDriven):
         "m", "Largest deflection of the buckled belt, exact elastica", display="mm", nominal=5e-3
     )
     at_risk: bool = output(
-        "1", "The belt is outside its guide and under compression", start=False, variability="discrete"
+        "1", "The belt is outside its guide and in compression", start=False, variability="discrete"
     )
     buckled: bool = output(
-        "1", "The belt has buckled at some time so far", start=False, variability="discrete",
+        "1", "The belt has buckled at least once", start=False, variability="discrete",
         lowest_of="margin",
     )  # fmt: skip
 
     acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
     bend_rate: float = state("m/s", "Rate of the second derivative by shaft angle between the samples")
-    sampled_clearance: float = state("m", "Clearance for which length_factor holds")
+    sampled_clearance: float = state("m", "Clearance for which length_factor was computed")
     sampled_time: float = state("s", "Time of the last sample of the inputs")
     sampled_travel: float = state("m", "Travel at the last sample")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
@@ -131,15 +131,15 @@ class BeltMonitor(ShaftDriven):
     sampled_angle: float = state("rad", "Shaft angle at the last sample")
     sampled_slope: float = state("m", "Travel by shaft angle at the last sample, first derivative")
     sampled_bend: float = state("m", "Travel by shaft angle at the last sample, second derivative")
-    sampled_turning: bool = state("1", "Whether the shaft turned at the last sample", start=False)
+    sampled_turning: bool = state("1", "The shaft was turning at the last sample", start=False)
     bump_by_time: float = state("m", "Bump of the rate by time over the last step")
-    bump_time: float = state("s", "Duration of the last step, if it was joined")
+    bump_time: float = state("s", "Duration of the last step, if it was interpolated")
     bump_by_angle: float = state("m", "Bump of the rate by shaft angle over the last step")
-    bump_angle: float = state("rad", "Shaft angle of the last step, if it was joined")
-    joined_angle: float = state("rad", "Shaft angle of the present sample")
-    joined_slope: float = state("m", "First derivative by shaft angle at the present sample")
-    joined_bend: float = state("m", "Second derivative by shaft angle at the present sample")
-    joined_turning: bool = state("1", "Whether the shaft turns at the present sample", start=False)
+    bump_angle: float = state("rad", "Shaft angle of the last step, if it was interpolated")
+    joined_angle: float = state("rad", "Shaft angle of the current sample")
+    joined_slope: float = state("m", "First derivative by shaft angle at the current sample")
+    joined_bend: float = state("m", "Second derivative by shaft angle at the current sample")
+    joined_turning: bool = state("1", "The shaft is turning at the current sample", start=False)
 
     def initialize(self, time: float) -> int:
         """Take the first sample and forget all extremes."""

@@ -20,11 +20,11 @@ class BeltWrap(Component):
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
     )
     wrap_angle: float = parameter(
-        "rad", 3.141592653589793, "Angle of the belt on the wheel, for the record: without influence",
+        "rad", 3.141592653589793, "Angle of the belt on the wheel, for information only: no effect",
         display="deg", minimum=0.0, maximum=6.283185307179586,
     )  # fmt: skip
     block_clearance: float = input_(
-        "m", 0.3e-3, "Clearance between block and belt, growing with wear", display="mm",
+        "m", 0.3e-3, "Clearance between block and belt; grows with wear", display="mm",
         minimum=1e-6, maximum=0.01, nominal=1e-3,
     )  # fmt: skip
     lever_arm: float = output(
@@ -34,7 +34,7 @@ class BeltWrap(Component):
         "N", "Load of each block on the belt", nominal=10.0, depends=("block_clearance",)
     )
     bending_moment: float = output(
-        "N.m", "Moment that bends the belt to the wheel", variability="discrete", depends=()
+        "N.m", "Moment that bends the belt onto the wheel", variability="discrete", depends=()
     )
 
     def initialize(self, time: float) -> int:

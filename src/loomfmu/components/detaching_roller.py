@@ -49,25 +49,25 @@ class DetachingRoller(ShaftDriven):
         "m", 0.01225, "Radius of a top roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
     )
     roller_inertia: float = parameter(
-        "kg.m2", 135.64e-6, "Inertia of a detaching roller, one unit's share", minimum=0.0, maximum=1.0,
+        "kg.m2", 135.64e-6, "Inertia of a detaching roller, for one unit", minimum=0.0, maximum=1.0,
         nominal=1e-4,
     )  # fmt: skip
     top_inertia: float = parameter(
         "kg.m2", 33.98e-6, "Inertia of a top roller", minimum=0.0, maximum=1.0, nominal=1e-5
     )
     nip_load: float = parameter(
-        "N", 300.0, "Load of a top roller on its roller", minimum=0.0, maximum=1e5, nominal=100.0
+        "N", 300.0, "Load of a top roller on its detaching roller", minimum=0.0, maximum=1e5, nominal=100.0
     )
     friction: float = parameter(
         "1", 0.33, "Static friction between fibres and roller", minimum=0.0, maximum=2.0
     )
-    units: int = parameter("1", 8, "Units of the machine side by side", minimum=1, maximum=1000)
+    units: int = parameter("1", 8, "Number of units side by side in the machine", minimum=1, maximum=1000)
     acceleration: float = input_(
-        "rad/s2", 8699.498672957831, "Acceleration of the rollers, used while use_table is false",
+        "rad/s2", 8699.498672957831, "Acceleration of the rollers, used if use_table is false",
         minimum=-1e12, maximum=1e12, nominal=10000.0,
     )  # fmt: skip
     fibre_share: float = input_(
-        "1", 1.0, "Fibres in the nip over the most of them, used while use_table is false",
+        "1", 1.0, "Fibres in the nip as a share of the maximum, used if use_table is false",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     division: float = output(

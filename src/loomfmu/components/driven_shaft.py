@@ -10,7 +10,7 @@ from .terminals import SHAFT
 
 @dataclass(slots=True)
 class DrivenShaft(Component):
-    """The loom's main shaft with its inertia: driven by a motor, braked by what the mechanisms ask of it.
+    """The loom's main shaft with its inertia: driven by a motor, braked by the mechanisms.
 
     Exact for torques that run on straight lines between their samples, or that are held over a step. The
     mechanisms' own masses are no part of the inertia: they act through the torques.
@@ -23,7 +23,7 @@ class DrivenShaft(Component):
         minimum=-1000.0, maximum=1000.0, nominal=50.0,
     )  # fmt: skip
     torque_slope: float = parameter(
-        "N.m.s/rad", 40.0, "Slope of the motor's torque line: torque for each rad/s below speed (assumed)",
+        "N.m.s/rad", 40.0, "Slope of the motor's torque line: torque per rad/s below speed (assumed)",
         minimum=0.0, maximum=1e9, nominal=10.0,
     )  # fmt: skip
     inertia: float = parameter(
@@ -34,22 +34,22 @@ class DrivenShaft(Component):
         "rad", 0.0, "Shaft angle at the start; 0 is the rapiers' outer dead centre", display="deg",
         minimum=-1e6, maximum=1e6,
     )  # fmt: skip
-    start_at_speed: bool = parameter("1", True, "Start at speed; otherwise the motor starts from rest")
+    start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
     inputs_at_step_end: bool = at_step_end()
     torque_1: float = input_(
-        "N.m", 0.0, "Torque that a first mechanism asks of the shaft; positive brakes it", nominal=10.0,
+        "N.m", 0.0, "Load torque of a first mechanism; positive brakes the shaft", nominal=10.0,
         minimum=-1e12, maximum=1e12, source="weft.shaft_torque",
     )  # fmt: skip
     torque_2: float = input_(
-        "N.m", 0.0, "Torque that a second mechanism asks of the shaft", nominal=10.0,
+        "N.m", 0.0, "Load torque of a second mechanism", nominal=10.0,
         minimum=-1e12, maximum=1e12, source="reed.shaft_torque",
     )  # fmt: skip
     torque_3: float = input_(
-        "N.m", 0.0, "Torque that a third mechanism asks of the shaft", nominal=10.0,
+        "N.m", 0.0, "Load torque of a third mechanism", nominal=10.0,
         minimum=-1e12, maximum=1e12,
     )  # fmt: skip
     torque_4: float = input_(
-        "N.m", 0.0, "Torque that a fourth mechanism asks of the shaft", nominal=10.0,
+        "N.m", 0.0, "Load torque of a fourth mechanism", nominal=10.0,
         minimum=-1e12, maximum=1e12,
     )  # fmt: skip
     angle: float = output(
@@ -57,10 +57,10 @@ class DrivenShaft(Component):
     )
     velocity: float = output("rad/s", "Shaft velocity", display="rev/min", nominal=50.0, rate="acceleration")
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
-    motor_torque: float = output("N.m", "Torque of the motor on the shaft", nominal=10.0)
-    load_torque: float = output("N.m", "Torque of all mechanisms on the shaft, braking it", nominal=10.0)
-    angle_rest: float = state("rad", "What the rounding of the angle has left over")
-    velocity_rest: float = state("rad/s", "What the rounding of the velocity has left over")
+    motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
+    load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)
+    angle_rest: float = state("rad", "Rounding error of the angle, carried on")
+    velocity_rest: float = state("rad/s", "Rounding error of the velocity, carried on")
 
     def initialize(self, time: float) -> int:
         """Place the shaft at its start, at speed or at rest."""

@@ -50,19 +50,19 @@ class HealdDamper(Component):
         nominal=1e4,
     )  # fmt: skip
     damping_ratio: float = parameter(
-        "1", 0.05, "Damping of the suspension, share of the critical (assumed: none is published)",
+        "1", 0.05, "Damping ratio of the suspension, relative to critical (assumed: none published)",
         minimum=0.0, maximum=100.0,
     )  # fmt: skip
     free_travel: float = parameter(
-        "m", 0.015, "Free way of the carrier to either side", display="mm", minimum=0.0, maximum=1.0,
+        "m", 0.015, "Free travel of the carrier to either side", display="mm", minimum=0.0, maximum=1.0,
         nominal=0.01,
     )  # fmt: skip
     stop_stiffness: float = parameter(
-        "N/m", 2e6, "Stiffness of a stop (assumed: none is published)", display="N/mm", minimum=1.0,
+        "N/m", 2e6, "Stiffness of a stop (assumed: none published)", display="N/mm", minimum=1.0,
         maximum=1e12, nominal=1e6,
     )  # fmt: skip
     stop_restitution: float = parameter(
-        "1", 0.5, "Share of its speed with which a stop throws the carrier back (assumed)",
+        "1", 0.5, "Coefficient of restitution of a stop (assumed)",
         minimum=0.15, maximum=1.0,
     )  # fmt: skip
     start_displacement: float = parameter(
@@ -101,17 +101,17 @@ class HealdDamper(Component):
     )
     acceleration_ratio: float = output(
         "1",
-        "Largest acceleration of the carrier over the largest of the frame, so far; 0 while the frame rests",
+        "Largest acceleration of the carrier so far relative to the frame's; 0 while the frame rests",
         nominal=10.0,
     )
     damping: float = state("N.s/m", "Damping of the suspension")
     stop_damping: float = state("N.s/m", "Damping of a stop")
-    contact: int = state("1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 let go by it", start=0)
+    contact: int = state("1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0)
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_force: float = state("N", "Warp load at the last sample")
-    largest_lift: float = state("m", "Largest size of the lift so far, by which its rounding is judged")
+    largest_lift: float = state("m", "Largest absolute lift so far, the measure of its rounding")
     peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far")
     peak_frame: float = state("m/s2", "Largest acceleration of the frame so far")
 

@@ -24,7 +24,7 @@ from .terminals import FRAME, ROTOR
 
 @dataclass(slots=True)
 class HealdFrame(Component):
-    """Heald frame: at each slow point of the rotor it changes or holds, as its pattern asks.
+    """Heald frame: changes or holds at each slow point of the rotor, following its pattern.
 
     At the slow point of pick k the frame rests where peg k wants it: raised for 1, lowered for 0. Then
     it changes if peg k + 1 differs, and holds if not. The pattern repeats after `pattern_length` picks.
@@ -45,7 +45,7 @@ class HealdFrame(Component):
     )
     frame_mass: float = parameter("kg", 15.0, "Mass of the frame", minimum=0.0, maximum=1e3, nominal=10.0)
     warp_ratio: float = parameter(
-        "1", 0.16666666666666666, "Warp height at the rapier's station for a lift of the frame",
+        "1", 0.16666666666666666, "Warp height at the rapier as a share of the lift",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)
@@ -88,10 +88,10 @@ class HealdFrame(Component):
     velocity: float = output("m/s", "Velocity of the frame", rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0)
     warp_height: float = output(
-        "m", "Height of the warp above the closed shed, at the rapier's station", display="mm", nominal=0.01
+        "m", "Height of the warp above the closed shed, at the rapier", display="mm", nominal=0.01
     )
     inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0)
-    moving: bool = output("1", "The frame changes between these slow points", start=False,
+    moving: bool = output("1", "The frame changes position between the current slow points", start=False,
                           variability="discrete")  # fmt: skip
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 

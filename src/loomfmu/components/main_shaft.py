@@ -21,7 +21,7 @@ class MainShaft(Component):
     unsteady: ClassVar[tuple[str, ...]] = ("ramp_duration", "ripple_amplitude")
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up; a revolution is a pick",
+        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up; one revolution is one pick",
         display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
     )  # fmt: skip
     start_angle: float = parameter(
@@ -29,12 +29,12 @@ class MainShaft(Component):
         minimum=-1e6, maximum=1e6,
     )  # fmt: skip
     ramp_duration: float = parameter(
-        "s", 0.0, "Duration of the start-up from rest at time 0; 0 for none", minimum=0.0, maximum=1e4
+        "s", 0.0, "Duration of the start-up from rest at time 0; 0 for no start-up", minimum=0.0, maximum=1e4
     )
     ripple_amplitude: float = parameter(
-        "1", 0.0, "Share of the speed by which it ripples", minimum=0.0, maximum=0.95
+        "1", 0.0, "Amplitude of the speed ripple, as a share of speed", minimum=0.0, maximum=0.95
     )
-    ripple_order: int = parameter("1", 2, "Ripples in one revolution", minimum=1, maximum=100)
+    ripple_order: int = parameter("1", 2, "Ripples per revolution", minimum=1, maximum=100)
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
     )

@@ -40,7 +40,7 @@ class PatternLock(ShaftDriven):
         "m", 0.030, "Width of the pawl", display="mm", minimum=1e-4, maximum=10.0, nominal=0.01
     )
     rest_share: float = parameter(
-        "1", 0.15, "Share of the pawl's width that does not enter the slot", minimum=0.0, maximum=1.0
+        "1", 0.15, "Share of the pawl's width that stays outside the slot", minimum=0.0, maximum=1.0
     )
     engagement_start: float = parameter(
         "rad", 2.4870941840919194, "Shaft angle at which the engagement begins", display="deg",
@@ -61,10 +61,10 @@ class PatternLock(ShaftDriven):
         "m", 0.050, "Lever arm of the spring", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
     available_angle: float = parameter(
-        "rad", 1.5707963267948966, "Shaft angle of the rotor's dwell, within which the pawl is to be over",
+        "rad", 1.5707963267948966, "Shaft angle of the rotor's dwell, in which the pawl must change over",
         display="deg", minimum=0.0, maximum=6.283185307179586,
     )  # fmt: skip
-    frame_count: int = parameter("1", 20, "Frames of the dobby, with a pawl each", minimum=0, maximum=1000)
+    frame_count: int = parameter("1", 20, "Frames of the dobby, one pawl each", minimum=0, maximum=1000)
     friction_coefficient: float = parameter(
         "1", 0.1, "Friction of a pawl on its disc", minimum=0.0, maximum=10.0
     )
@@ -72,26 +72,26 @@ class PatternLock(ShaftDriven):
         "m", 0.0875, "Radius at which a pawl rubs", display="mm", minimum=0.0, maximum=10.0, nominal=0.1
     )
     rotor_ratio: float = parameter(
-        "1", 1.4, "Largest speed of the rotor over that of the shaft", minimum=0.0, maximum=100.0
+        "1", 1.4, "Largest speed of the rotor relative to the shaft's", minimum=0.0, maximum=100.0
     )
     gear_ratio: float = parameter(
-        "1", 3.0, "Speed of the rotor over that of the disc", minimum=1e-3, maximum=1e3
+        "1", 3.0, "Speed of the rotor relative to the disc's", minimum=1e-3, maximum=1e3
     )
-    turn: float = output("rad", "Turn of the pawl", display="deg", nominal=0.1, rate="turn_velocity")
-    turn_velocity: float = output("rad/s", "Rate of the turn", nominal=10.0, rate="turn_acceleration")
-    turn_acceleration: float = output("rad/s2", "Second rate of the turn", nominal=1000.0)
-    inertia_torque: float = output("N.m", "Torque that the pawl's inertia asks of its spring")
-    torque_margin: float = output("1", "Share of the spring's torque that the pawl's inertia leaves")
+    turn: float = output("rad", "Angle of the pawl", display="deg", nominal=0.1, rate="turn_velocity")
+    turn_velocity: float = output("rad/s", "Velocity of the pawl", nominal=10.0, rate="turn_acceleration")
+    turn_acceleration: float = output("rad/s2", "Acceleration of the pawl", nominal=1000.0)
+    inertia_torque: float = output("N.m", "Torque the spring needs to overcome the pawl's inertia")
+    torque_margin: float = output("1", "Share of the spring's torque left over by the pawl's inertia")
     release_time: float = output(
-        "s", "Time in which the spring throws the pawl over", display="ms", variability="discrete",
+        "s", "Time the spring takes to throw the pawl over", display="ms", variability="discrete",
         nominal=0.01, depends=(),
     )  # fmt: skip
     available_time: float = output(
-        "s", "Time that the dwell leaves at the present speed; 1e6 s for a standing shaft", display="ms",
+        "s", "Time available in the dwell at the current speed; 1e6 s for a shaft at rest", display="ms",
         nominal=0.01, depends=("shaft_velocity", "shaft_acceleration"),
     )  # fmt: skip
     in_time: bool = output(
-        "1", "At the present speed the pawl is over in time and its spring strong enough", start=False,
+        "1", "At this speed the pawl changes over in time and its spring is strong enough", start=False,
         variability="discrete", depends=("shaft_velocity", "shaft_acceleration"),
     )  # fmt: skip
     torque_speed_limit: float = output(
@@ -99,7 +99,7 @@ class PatternLock(ShaftDriven):
         variability="discrete", nominal=100.0, depends=(),
     )  # fmt: skip
     release_speed_limit: float = output(
-        "rad/s", "Shaft speed up to which the pawl is over in time", display="rev/min",
+        "rad/s", "Shaft speed up to which the pawl changes over in time", display="rev/min",
         variability="discrete", nominal=100.0, depends=(),
     )  # fmt: skip
     speed_limit: float = output(
@@ -111,9 +111,9 @@ class PatternLock(ShaftDriven):
         depends=("shaft_velocity", "shaft_acceleration"),
     )  # fmt: skip
     inertia: float = state("kg.m2", "Moment of inertia of the pawl")
-    whole_turn: float = state("rad", "Turn of the pawl from one disc to the other")
+    whole_turn: float = state("rad", "Angle that the pawl turns from one disc to the other")
     in_time_event: float = indicator(
-        "rad/s", "Margin of the shaft below speed_limit, beyond which in_time changes"
+        "rad/s", "Margin of the shaft speed below speed_limit; in_time changes where it passes zero"
     )
 
     def initialize(self, time: float) -> int:

@@ -46,27 +46,27 @@ class ReedBeatUp(ShaftDriven):
         "m", 0.065168, "Length of the crank", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
     coupler_length: float = parameter(
-        "m", 0.146334, "Length of the coupler from crank to rocker", display="mm",
+        "m", 0.146334, "Length of the coupler between crank and rocker", display="mm",
         minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     rocker_length: float = parameter(
-        "m", 0.550, "Length of the rocker up to the coupler", display="mm",
+        "m", 0.550, "Length of the rocker from its pivot to the coupler", display="mm",
         minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     crank_x: float = parameter(
-        "m", -0.207977, "Place of the crank's centre from the rocker's pivot, towards the fell",
+        "m", -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell",
         display="mm", minimum=-10.0, maximum=10.0,
     )  # fmt: skip
     crank_y: float = parameter(
-        "m", 0.525749, "Place of the crank's centre from the rocker's pivot, upwards",
+        "m", 0.525749, "Position of the crank's centre from the rocker's pivot, upwards",
         display="mm", minimum=-10.0, maximum=10.0,
     )  # fmt: skip
-    assembly: int = parameter("1", -1, "Way of closing the four-bar: 1 or -1", minimum=-1, maximum=1)
+    assembly: int = parameter("1", -1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
     crank_direction: int = parameter(
-        "1", 1, "Sense in which the crank turns: 1 from x to y, or -1", minimum=-1, maximum=1
+        "1", 1, "Direction in which the crank turns: 1 from x to y, or -1", minimum=-1, maximum=1
     )
     arm_length: float = parameter(
-        "m", 0.67984, "Length of the rocker's arm up to the reed's rod", display="mm",
+        "m", 0.67984, "Length of the rocker's arm from its pivot to the reed's rod", display="mm",
         minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     arm_angle: float = parameter(
@@ -85,7 +85,7 @@ class ReedBeatUp(ShaftDriven):
         minimum=-7.0, maximum=7.0,
     )  # fmt: skip
     reed_mass: float = parameter(
-        "kg", 1.0, "Mass that moves with the reed (none published: the torque is that of one kilogram)",
+        "kg", 1.0, "Mass that moves with the reed (none published: the torque is per kilogram)",
         minimum=0.0, maximum=1e4,
     )  # fmt: skip
     rocker_inertia: float = parameter(
@@ -99,12 +99,12 @@ class ReedBeatUp(ShaftDriven):
     acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
     transmission_angle: float = output(
         "rad",
-        "Transmission angle of the crank-rocker, 90 deg at best",
+        "Transmission angle of the crank-rocker; 90 deg is best",
         display="deg",
         nominal=1.5,
     )
     smallest_transmission_angle: float = output(
-        "rad", "Smallest transmission angle of the revolution", display="deg", variability="discrete",
+        "rad", "Smallest transmission angle in a revolution", display="deg", variability="discrete",
         nominal=1.5, depends=(),
     )  # fmt: skip
     pressure_angle: float = output(
@@ -123,17 +123,17 @@ class ReedBeatUp(ShaftDriven):
     )
     stroke: float = output(
         "m",
-        "Way of the reed between its limits",
+        "Travel of the reed between its limits",
         display="mm",
         variability="discrete",
         nominal=0.1,
         depends=(),
     )
-    shaft_torque: float = output("N.m", "Torque that the moving masses ask of the shaft", nominal=10.0)
+    shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
     beat_up_crank: float = state("rad", "Crank angle at the beat-up")
-    closure: float = state("m", "By how much the crank-rocker closes over a whole turn")
-    reach: float = state("m", "By how much the rod reaches the reed's line over the swing")
-    clearance: float = state("rad", "How far the swing stays clear of arm and rod in line")
+    closure: float = state("m", "Margin by which the crank-rocker closes over a whole turn")
+    reach: float = state("m", "Margin by which the rod reaches the reed's line over the swing")
+    clearance: float = state("rad", "Margin by which arm and rod stay out of line over the swing")
 
     def rocker(self, crank: float, crank_first: float) -> tuple[float, float, float]:
         """Angle of the rocker at a crank angle, with its derivatives by the shaft angle."""

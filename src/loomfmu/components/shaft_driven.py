@@ -28,15 +28,15 @@ class ShaftDriven(Component):
     )
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "Constant shaft speed, used while follow_shaft is false",
+        "rad/s", 41.88790204786391, "Constant shaft speed, used if follow_shaft is false",
         display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
     )  # fmt: skip
     start_angle: float = parameter(
-        "rad", 0.0, "Shaft angle at time 0, used while follow_shaft is false", display="deg",
+        "rad", 0.0, "Shaft angle at time 0, used if follow_shaft is false", display="deg",
         minimum=-1e6, maximum=1e6,
     )  # fmt: skip
     follow_shaft: bool = parameter(
-        "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of the own speed"
+        "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of turning at speed"
     )
     inputs_at_step_end: bool = at_step_end()
     shaft_angle: float = input_(

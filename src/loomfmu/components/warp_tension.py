@@ -30,20 +30,20 @@ class WarpTension(Component):
 
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
 
-    thread_count: int = parameter("1", 1260, "Threads in the frame", minimum=1, maximum=1000000)
+    thread_count: int = parameter("1", 1260, "Number of threads in the frame", minimum=1, maximum=1000000)
     stroke: float = parameter(
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
     )
     shed_offset: float = parameter(
-        "m", 0.0018, "Height of the eyes above the line of the warp when the frame is half-way (assumed)",
+        "m", 0.0018, "Height of the heald eyes above the warp line with the frame half-way (assumed)",
         display="mm", minimum=-1.0, maximum=1.0, nominal=0.001,
     )  # fmt: skip
     front_length: float = parameter(
-        "m", 0.25, "Way from the cloth's fell to the healds (assumed)", display="mm",
+        "m", 0.25, "Length of warp from the cloth's fell to the healds (assumed)", display="mm",
         minimum=1e-3, maximum=100.0,
     )  # fmt: skip
     back_length: float = parameter(
-        "m", 0.5, "Way from the healds to the back rest (assumed)", display="mm", minimum=1e-3, maximum=100.0
+        "m", 0.5, "Length of warp, healds to back rest (assumed)", display="mm", minimum=1e-3, maximum=100.0
     )
     pretension: float = parameter(
         "N", 0.15, "Tension of a thread at rest in the closed shed", display="cN", minimum=0.0, maximum=1e3
@@ -75,10 +75,10 @@ class WarpTension(Component):
     lowest_tension: float = output(
         "N", "Lowest tension so far, on the continuous curve", display="cN", nominal=0.5
     )
-    mean_tension: float = output("N", "Mean of the tension over the time so far", display="cN", nominal=0.5)
-    frame_load: float = output("N", "Load of the warp on the heald carrier, upwards", nominal=100.0)
+    mean_tension: float = output("N", "Mean tension so far", display="cN", nominal=0.5)
+    frame_load: float = output("N", "Load of the warp on the heald carrier, positive upwards", nominal=100.0)
     slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
-    elapsed: float = state("s", "Time that the extremes and the mean are taken over")
+    elapsed: float = state("s", "Time covered by the extremes and the mean")
     pending: float = state("s", "Time from the last sample of the inputs to the next")
     sampled_extension: float = state("m", "Extension at the last sample")
     sampled_rate: float = state("m/s", "Rate of the extension at the last sample")

@@ -50,7 +50,7 @@ class WeftInsertion(ShaftDriven):
         "rad", 0.17121679962064373, "Angle between the rocker's arms BC and DC", display="deg",
         minimum=-7.0, maximum=7.0,
     )  # fmt: skip
-    planar_linkage: bool = parameter("1", True, "Whether a planar four-bar C-D-K-G follows the rocker")
+    planar_linkage: bool = parameter("1", True, "A planar four-bar C-D-K-G follows the rocker")
     crank_length: float = parameter(
         "m", 0.150, "Length DC", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
@@ -60,15 +60,21 @@ class WeftInsertion(ShaftDriven):
     output_length: float = parameter(
         "m", 0.121, "Length KG", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
-    pivot_x: float = parameter("m", 0.243, "Place of G from C, x", display="mm", minimum=-10.0, maximum=10.0)
-    pivot_y: float = parameter("m", 0.258, "Place of G from C, y", display="mm", minimum=-10.0, maximum=10.0)
-    assembly: int = parameter("1", 1, "Way of closing the four-bar: 1 or -1", minimum=-1, maximum=1)
-    gear_ratio: float = parameter("1", 9.625, "Sector gear to rapier wheel", minimum=1e-3, maximum=1e3)
+    pivot_x: float = parameter(
+        "m", 0.243, "Position of G from C, x", display="mm", minimum=-10.0, maximum=10.0
+    )
+    pivot_y: float = parameter(
+        "m", 0.258, "Position of G from C, y", display="mm", minimum=-10.0, maximum=10.0
+    )
+    assembly: int = parameter("1", 1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
+    gear_ratio: float = parameter(
+        "1", 9.625, "Gear ratio from sector gear to rapier wheel", minimum=1e-3, maximum=1e3
+    )
     wheel_diameter: float = parameter(
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
     )
     moving_mass: float = parameter(
-        "kg", 0.1105, "Mass moved with the head, reflected to the shaft", display="g",
+        "kg", 0.1105, "Mass that moves with the head, counted in shaft_torque", display="g",
         minimum=0.0, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     wheel_inertia: float = parameter(
@@ -81,10 +87,10 @@ class WeftInsertion(ShaftDriven):
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
     stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
-    shaft_torque: float = output("N.m", "Torque that the moving masses ask of the shaft", nominal=10.0)
-    travel_per_angle: float = state("m", "Travel for one radian of the sector gear, with its sign")
+    shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
+    travel_per_angle: float = state("m", "Travel per radian of the sector gear, signed")
     sector_start: float = state("rad", "Angle of the sector gear at shaft angle 0")
-    closure: float = state("m", "By how much the four-bar closes over the rocker's swing")
+    closure: float = state("m", "Margin by which the four-bar closes over the rocker's swing")
 
     def sector(self, theta: float) -> tuple[float, float, float]:
         """Angle of the sector gear at a shaft angle, with its derivatives."""

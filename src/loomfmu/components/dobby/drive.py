@@ -53,26 +53,26 @@ class DobbyDrive(RotorLaws):
     lift_rate: float = output("1/s", "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration")
     lift_acceleration: float = output("1/s2", "Second rate of lift_fraction", nominal=1000.0)
     dwell_angle: float = output(
-        "rad", "Shaft angle during which a changing frame stays within dwell_tolerance of its end",
+        "rad", "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
         display="deg", variability="discrete", nominal=1.5, depends=(),
     )  # fmt: skip
     clear_shed_angle: float = output(
-        "rad", "Shaft angle during which a changing frame stays within clear_fraction of its end",
+        "rad", "Shaft angle for which a changing frame stays within clear_fraction of its end",
         display="deg", variability="discrete", nominal=1.5, depends=(),
     )  # fmt: skip
     highest_speed: float = output(
-        "1", "Largest rotor speed over the shaft's; of spline_cam, largest slope of lift_fraction",
+        "1", "Largest rotor speed relative to the shaft's; for spline_cam, largest slope of lift_fraction",
         variability="discrete", depends=(),
     )  # fmt: skip
     highest_acceleration: float = output(
-        "1", "Largest rotor acceleration at a shaft speed of 1 rad/s; of spline_cam, that of lift_fraction",
+        "1", "Largest rotor acceleration at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
         variability="discrete", depends=(),
     )  # fmt: skip
     highest_jerk: float = output(
-        "1", "Largest rotor jerk at a shaft speed of 1 rad/s; of spline_cam, that of lift_fraction",
+        "1", "Largest rotor jerk at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
         variability="discrete", depends=(),
     )  # fmt: skip
-    pick: int = output("1", "Pick that the shaft is in", start=0, variability="discrete")
+    pick: int = output("1", "Current pick of the shaft", start=0, variability="discrete")
     pick_event: float = indicator("1", "Passes zero where pick changes")
 
     def initialize(self, time: float) -> int:

@@ -20,19 +20,19 @@ class LawParameters(ShaftDriven):
         ),
     )  # fmt: skip
     speed_reduction: float = parameter(
-        "1", 0.5, "Share of the rotor speed taken off at the slow point, zeta (harmonic_ends, sloped_...)",
+        "1", 0.5, "Share by which the rotor slows down at the slow point, zeta (harmonic_ends, sloped_...)",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     slow_point: float = parameter(
         "rad", 3.141592653589793,
-        "Shaft angle of the slow point, the middle of the open-shed dwell; spline_cam starts to rise there",
+        "Shaft angle of the slow point, the middle of the open-shed dwell; start of the rise for spline_cam",
         display="deg", minimum=-6.283185307179586, maximum=6.283185307179586,
     )  # fmt: skip
     dwell_tolerance: float = parameter(
         "1", 0.015, "Share of the stroke within which a frame counts as dwelling", minimum=1e-9, maximum=0.5
     )
     clear_fraction: float = parameter(
-        "1", 0.08325, "Share of the stroke within which the warp counts as clear of the weft's way",
+        "1", 0.08325, "Share of the stroke within which the warp counts as clear of the weft",
         minimum=1e-9, maximum=0.5,
     )  # fmt: skip
     lever_radius: float = parameter(
@@ -48,10 +48,12 @@ class LawParameters(ShaftDriven):
         minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     gear_harmonic: tuple[float, ...] = array(
-        parameter("1", share, f"Share of the speed that varies {times}", minimum=-10.0, maximum=10.0)
-        for share, times in (
-            (-0.27, "once in a turn (noncircular_gears; assumed)"), (-0.13, "twice in a turn"),
-            (-0.05, "three times in a turn"), (-0.025, "four times in a turn"),
+        parameter("1", share, f"Amplitude of the {which}", minimum=-10.0, maximum=10.0)
+        for share, which in (
+            (-0.27, "1st harmonic of the rotor speed (noncircular_gears; assumed)"),
+            (-0.13, "2nd harmonic of the rotor speed"),
+            (-0.05, "3rd harmonic of the rotor speed"),
+            (-0.025, "4th harmonic of the rotor speed"),
         )
     )  # fmt: skip
     cam_angle: tuple[float, ...] = array(
@@ -63,13 +65,13 @@ class LawParameters(ShaftDriven):
     )  # fmt: skip
     cam_height: tuple[float, ...] = array(
         parameter(
-            "m", height, f"Height at control point {number}: of the warp in the air stream, Table 4.2",
+            "m", height, f"Height at control point {number}, of the warp in the air stream (Table 4.2)",
             display="mm", minimum=-1.0, maximum=1.0, nominal=0.01,
         )
         for number, height in enumerate((0.0, 0.002, 0.015, 0.0145, 0.0015, 0.0), start=1)
     )  # fmt: skip
     table_points: int = parameter(
-        "1", 36, "Points of the table, evenly spaced over a turn from the slow point", minimum=4, maximum=36
+        "1", 36, "Number of points, evenly spaced over a turn from the slow point", minimum=4, maximum=36
     )
     table: tuple[float, ...] = array(  # by default that of an even turn
         parameter(
@@ -84,11 +86,11 @@ class LawParameters(ShaftDriven):
     )
     cam_top: float = state("rad", "Shaft angle from the start of the rise to the highest point of the cam")
     cam_span: float = state("m", "Largest height of the cam's spline above its start")
-    lowest_speed: float = state("1", "Lowest rotor speed of a law that could turn back, over the shaft's")
-    segment: int = state("1", "Present segment of the spline, counted from 0; -1 for none", start=-1)
-    segment_start: float = state("rad", "Where the present segment starts")
-    segment_length: float = state("rad", "Length of the present segment")
-    segment_left: float = state("1", "Value at the start of the present segment")
-    segment_right: float = state("1", "Value at the end of the present segment")
-    segment_left_bend: float = state("1", "Second derivative at the start of the present segment")
-    segment_right_bend: float = state("1", "Second derivative at the end of the present segment")
+    lowest_speed: float = state("1", "Lowest rotor speed over the shaft's, for laws that could reverse")
+    segment: int = state("1", "Current segment of the spline, counted from 0; -1 for none", start=-1)
+    segment_start: float = state("rad", "Start of the current segment")
+    segment_length: float = state("rad", "Length of the current segment")
+    segment_left: float = state("1", "Value at the start of the current segment")
+    segment_right: float = state("1", "Value at the end of the current segment")
+    segment_left_bend: float = state("1", "Second derivative at the start of the current segment")
+    segment_right_bend: float = state("1", "Second derivative at the end of the current segment")
