@@ -11,7 +11,7 @@ import pytest
 from live_fmus import fmu_cache
 
 from loomfmu import cli
-from loomfmu.cosim import scene
+from loomfmu.cosim.scenes import scene
 from loomfmu.sweeps import plan
 
 __all__ = ["fmu_cache"]

@@ -346,7 +346,7 @@ def test_sdf_reads_it(result: loomfmu.Result, file: h5py.File) -> None:
     margin = belt["free_length"]
     np.testing.assert_array_equal(margin.data, file["belt/free_length"][:])
     assert (margin.unit, margin.display_unit, margin.is_scale) == ("m", "mm", False)
-    assert margin.comment.startswith("Length of the belt outside")
+    assert margin.comment.startswith("Length of the belt between")
     assert margin.scales[0].unit == "s"
     np.testing.assert_array_equal(margin.scales[0].data, file["time"][:])
 
