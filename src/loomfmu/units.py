@@ -63,6 +63,7 @@ UNITS = {
     "gf": Unit(kg=1, m=1, s=-2, factor=1e-3 * STANDARD_GRAVITY),
     "N/m": Unit(kg=1, s=-2),
     "N/mm": Unit(kg=1, s=-2, factor=1e3),
+    "N/s": Unit(kg=1, m=1, s=-3),
     "N.s/m": Unit(kg=1, s=-1),
     "N.m": Unit(kg=1, m=2, s=-2),
     "N.m2": Unit(kg=1, m=3, s=-2),

@@ -169,6 +169,25 @@ def joined_value(
     return value, a0 + u * (a1 + u * (a2 + u * a3))
 
 
+def turns_of_cubic(a1: float, a2: float, a3: float) -> tuple[float, float]:
+    """Where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` turns; -1 where it does not.
+
+    >>> turns_of_cubic(4.0, -4.0, 0.0), turns_of_cubic(1.0, 0.0, 1.0)
+    ((-1.0, 0.5), (-1.0, -1.0))
+    """
+    first = -1.0
+    second = -1.0
+    inside = a2 * a2 - 3.0 * a1 * a3
+    if inside >= 0.0:
+        # both roots of the derivative without cancellation
+        q = a2 + sqrt(inside) if a2 >= 0.0 else a2 - sqrt(inside)
+        if a3 != 0.0:
+            first = -q / (3.0 * a3)
+        if q != 0.0:
+            second = -a1 / q
+    return first, second
+
+
 def largest_between(a0: float, a1: float, a2: float, a3: float) -> float:
     """Largest absolute value of `a0 + a1 u + a2 u^2 + a3 u^3` for u from 0 to 1.
 
@@ -179,19 +198,13 @@ def largest_between(a0: float, a1: float, a2: float, a3: float) -> float:
     end = fabs(a0 + a1 + a2 + a3)
     if end > largest:
         largest = end
-    inside = a2 * a2 - 3.0 * a1 * a3
-    if inside < 0.0:
-        return largest
-    # both roots of the derivative without cancellation
-    q = a2 + sqrt(inside) if a2 >= 0.0 else a2 - sqrt(inside)
-    for root in range(2):
-        u = -1.0
-        if root == 0 and a3 != 0.0:
-            u = -q / (3.0 * a3)
-        if root == 1 and q != 0.0:
-            u = -a1 / q
-        if 0.0 < u < 1.0:
-            value = fabs(a0 + u * (a1 + u * (a2 + u * a3)))
-            if value > largest:
-                largest = value
+    first, second = turns_of_cubic(a1, a2, a3)
+    if 0.0 < first < 1.0:
+        value = fabs(a0 + first * (a1 + first * (a2 + first * a3)))
+        if value > largest:
+            largest = value
+    if 0.0 < second < 1.0:
+        value = fabs(a0 + second * (a1 + second * (a2 + second * a3)))
+        if value > largest:
+            largest = value
     return largest
