@@ -113,4 +113,4 @@ def odd(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         monkeypatch.setitem(fmus.COMPONENTS, component.__name__, component)
     monkeypatch.setattr(builder, "folder", lambda component: home)
     yield
-    fmus.of_component.cache_clear()
+    fmus._known.clear()

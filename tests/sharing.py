@@ -35,5 +35,5 @@ def native_fmus() -> dict[str, fmus.Fmu]:
     cache = cache_directory()
     cache.mkdir(parents=True, exist_ok=True)
     with FileLock(cache / "native.lock"), ThreadPoolExecutor(max_workers=4) as pool:
-        list(pool.map(lambda name: fmus.file_of(name, "native", (host_platform(),)), COMPONENTS))
+        list(pool.map(lambda each: fmus.file_of(each, "native", (host_platform(),)), COMPONENTS.values()))
     return {name: fmus.of_component(name, "native") for name in COMPONENTS}

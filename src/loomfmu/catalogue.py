@@ -12,6 +12,7 @@ from .components import COMPONENTS
 from .errors import LoomfmuError, suggestion
 from .fmi.description.documentation import limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
+from .own import load
 from .variables import Component, Variable, variables_of
 
 STARTERS = (
@@ -49,6 +50,21 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
     return list(targets.values())
 
 
+def components(names: Sequence[str]) -> list[type[Component]]:
+    """The components of these names, or of files such as cam.py:PickingCam; all of ours if there are none.
+
+    Raises LoomfmuError for a name that is not known, and for two components that bear one name.
+    """
+    found: dict[str, type[Component]] = {}
+    for name in names or COMPONENTS:
+        if not load.is_file(name) and name not in COMPONENTS:
+            raise LoomfmuError(f"there is no FMU {name!r}{suggestion(name, COMPONENTS)}")
+        each = load.component(name) if load.is_file(name) else COMPONENTS[name]
+        if found.setdefault(each.__name__, each) is not each:
+            raise LoomfmuError(f"{name}: there are two components {each.__name__}, and one file for both")
+    return list(found.values())
+
+
 def overview() -> Iterator[str]:
     """Lines that name every FMU with its inputs and outputs, then machines, heads and example scenes."""
     for name, component in COMPONENTS.items():
@@ -67,8 +83,9 @@ def details(name: str, width: int = 80) -> Iterator[str]:
 
     Raises LoomfmuError for an unknown name.
     """
-    if name in COMPONENTS:
-        return _variables(name, COMPONENTS[name], width)
+    if name in COMPONENTS or load.is_file(name):
+        (component,) = components([name])
+        return _variables(component.__name__, component, width)
     if name in MACHINES:
         return _values(name, machine=name)
     if name in HEADS:

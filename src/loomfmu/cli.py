@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import printed, units
-from .errors import LoomfmuError, suggestion
+from .errors import LoomfmuError
 
 if TYPE_CHECKING:
     from .traces import Verdict
@@ -72,7 +72,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_sweep(commands)
 
     build = commands.add_parser("build", help="build FMUs")
-    build.add_argument("names", nargs="*", metavar="NAME", help="all by default")
+    build.add_argument(
+        "names", nargs="*", metavar="NAME", help="an FMU, or FILE.py[:CLASS] of your own; all FMUs by default"
+    )
     build.add_argument(
         "--output",
         type=Path,
@@ -90,7 +92,9 @@ def _parser() -> argparse.ArgumentParser:
     build.set_defaults(command=_build)
 
     listing = commands.add_parser("list", help="list what there is, or describe one FMU or machine")
-    listing.add_argument("name", nargs="?", metavar="NAME", help="an FMU, a machine or a rapier head")
+    listing.add_argument(
+        "name", nargs="?", metavar="NAME", help="an FMU, FILE.py[:CLASS], a machine or a rapier head"
+    )
     listing.set_defaults(command=_list)
 
     init = commands.add_parser(
@@ -101,6 +105,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     init.add_argument("--all", action="store_true", help="write every example scene")
     init.set_defaults(command=_init)
+
+    new = commands.add_parser("new", help="write a folder for a mechanism of your own, which runs at once")
+    new.add_argument("name", metavar="NAME", help="of its class, such as PickingCam")
+    new.add_argument(
+        "--output", type=Path, default=Path(), metavar="DIR", help="where to put the folder, here by default"
+    )
+    new.set_defaults(command=_new)
 
     show = commands.add_parser("show", help="summarise a trace")
     show.add_argument("trace", metavar="FILE.h5")
@@ -229,23 +240,21 @@ def _sweep(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
-    from .components import COMPONENTS
+    from . import catalogue
     from .fmi import builder
     from .fmi.native import builder as native_builder
 
-    for name in options.names:
-        if name not in COMPONENTS:
-            raise LoomfmuError(f"there is no FMU {name!r}{suggestion(name, COMPONENTS)}")
+    built = catalogue.components(options.names)
     if not options.native and (options.platform or options.fmi != 2):
         raise LoomfmuError("--platform and --fmi are for native FMUs: add --native")
     chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
     platforms = native_builder.check_platforms(tuple(chosen))
-    for name in options.names or COMPONENTS:
+    for component in built:
         if options.native:
             output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
-            print(native_builder.build_native(name, output, platforms, options.fmi, options.force))
+            print(native_builder.build_native(component, output, platforms, options.fmi, options.force))
         else:
-            print(builder.build(name, options.output or Path("build/fmus"), options.force))
+            print(builder.build(component, options.output or Path("build/fmus"), options.force))
     return 0
 
 
@@ -265,6 +274,15 @@ def _init(options: argparse.Namespace) -> int:
     print(*written, sep="\n")
     print('\na sweep with its picture takes two extras: pip install "loomfmu[sweep,plot]"')
     print(f"next: loomfmu run {written[0] if not options.all else options.directory / catalogue.STARTERS[0]}")
+    return 0
+
+
+def _new(options: argparse.Namespace) -> int:
+    from .new import new
+
+    written = new(options.name, options.output)
+    print(*written, sep="\n")
+    print(f"\nnext: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
     return 0
 
 

@@ -261,6 +261,9 @@ class Component:
     keeps: ClassVar[str] = MOTION
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()
+    # the longest turn of the shaft [rad] whose ends show how its outputs change: inf for what is as smooth as
+    # a published loom; where nothing is said, none is short enough, and every step of the scene counts
+    longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
 

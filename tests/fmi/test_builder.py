@@ -136,9 +136,11 @@ def test_the_readme_in_the_repository_is_up_to_date(name: str) -> None:
     assert documentation.with_table(text, COMPONENTS[name]) == text, "run `make docs`"
 
 
-def test_a_readme_without_the_marks_is_refused() -> None:
-    with pytest.raises(ValueError, match="the README of MainShaft lacks the marks"):
-        documentation.with_table("# MainShaft\n", components.MainShaft)
+def test_a_readme_without_a_table_gets_one_at_its_end() -> None:
+    text = documentation.with_table("# MainShaft\n", components.MainShaft)
+    assert text.startswith("# MainShaft\n\n## Variables\n\n<!--")
+    assert text.count("| `speed` |") == 1
+    assert documentation.with_table(text, components.MainShaft) == text
 
 
 # ---- builds repeat

@@ -1,7 +1,7 @@
 """BeltMonitor: the stability of the rapier belt outside its guide."""
 
 from dataclasses import dataclass
-from math import fabs, pi
+from math import fabs, inf, pi
 from typing import ClassVar
 
 from ..physics.belt import NO_LIMIT, critical_force, elastica_deflection, length_factor, margin, speed_limit
@@ -40,6 +40,7 @@ class BeltMonitor(ShaftDriven):
         TOO_FAR,
     )
     keeps: ClassVar[str] = EXTREMES
+    longest_turn: ClassVar[float] = inf
     windows: ClassVar[tuple[str, ...]] = ("free_length", "axial_force")
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *ShaftDriven.terminals,

@@ -1,6 +1,7 @@
 """BeltWrap: what holds the rapier belt on its wheel."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
@@ -12,6 +13,7 @@ class BeltWrap(Component):
     """Belt wrapped on the rapier wheel: load of the blocks that press it there."""
 
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
 
     bending_stiffness: float = parameter(
         "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6

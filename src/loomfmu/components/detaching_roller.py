@@ -1,7 +1,7 @@
 """DetachingRoller: the torques that drive the detaching rollers of a cotton comber."""
 
 from dataclasses import dataclass
-from math import sin
+from math import inf, sin
 from typing import ClassVar
 
 from ..physics.detaching_roller import (
@@ -29,6 +29,7 @@ class DetachingRoller(ShaftDriven):
     """
 
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "the top roller's inertia takes more than the friction of the nip can hold at roller_acceleration"

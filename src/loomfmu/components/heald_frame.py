@@ -1,7 +1,7 @@
 """HealdFrame: a heald frame that follows its pattern."""
 
 from dataclasses import dataclass
-from math import pi, sin
+from math import inf, pi, sin
 from typing import ClassVar
 
 from ..arrays import array
@@ -32,6 +32,7 @@ class HealdFrame(Component):
 
     problems: ClassVar[tuple[Problem, ...]] = (turned_too_far("rotor"),)
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",

@@ -18,6 +18,7 @@ class MainShaft(Component):
 
     terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     unsteady: ClassVar[tuple[str, ...]] = ("ramp_duration", "ripple_amplitude")
 
     speed: float = parameter(

@@ -1,7 +1,7 @@
 """PatternLock: the sprung pawl that changes a coupling of the dobby."""
 
 from dataclasses import dataclass
-from math import fabs, floor, pi
+from math import fabs, floor, inf, pi
 from typing import ClassVar
 
 from ..physics.pattern_lock import (
@@ -28,6 +28,7 @@ class PatternLock(ShaftDriven):
     """
 
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
 
     pawl_mass: float = parameter(

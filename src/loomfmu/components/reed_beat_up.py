@@ -1,7 +1,7 @@
 """ReedBeatUp: from the main shaft to the reed."""
 
 from dataclasses import dataclass
-from math import cos, fabs, pi, sin, sqrt
+from math import cos, fabs, inf, pi, sin, sqrt
 from typing import ClassVar
 
 from ..physics.linkage import four_bar, four_bar_margin, wrapped
@@ -23,6 +23,7 @@ class ReedBeatUp(ShaftDriven):
     """Reed beat-up: a crank-rocker, a rod and a reed on a line; one beat-up in a revolution."""
 
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "the crank does not turn over: crank_length = {crank_length}, coupler_length = {coupler_length},"

@@ -1,7 +1,7 @@
 """WeftInsertion: from the main shaft to the travel of the rapier head."""
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import ClassVar
 
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
@@ -30,6 +30,7 @@ class WeftInsertion(ShaftDriven):
         TOO_FAR,
     )
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *ShaftDriven.terminals,
         HEAD.of("travel", "velocity", "acceleration"),

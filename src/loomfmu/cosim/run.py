@@ -13,7 +13,7 @@ from ..traces import PARTIAL, TRACE, Recording, Trace, TraceWriter, partial_of
 from ..traces.disk import check_room, largest, size_text
 from .claims.claims import judge
 from .claims.verdict import Verdict
-from .importing.fmus import FLAVOURS, of_component
+from .importing.fmus import FLAVOURS
 from .importing.slave import Ended
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
@@ -235,9 +235,7 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
     if scene.package is not None:
         raise LoomfmuError(f"{scene.package}: a system package brings its own FMUs; its flavour is settled")
     instances = {
-        name: replace(instance, fmu=of_component(instance.fmu.name, flavour))
-        if instance.fmu.built
-        else instance
+        name: replace(instance, fmu=instance.fmu.in_flavour(flavour))
         for name, instance in scene.instances.items()
     }
     return replace(scene, instances=instances)

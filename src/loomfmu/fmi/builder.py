@@ -1,6 +1,7 @@
 """Builds live FMUs: the same bytes from the same source."""
 
 import hashlib
+import inspect
 import io
 import re
 import uuid
@@ -22,6 +23,7 @@ from .live import live_slave, live_wrapper
 from .source import flatten
 
 FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
+TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png")}  # that lie with a component
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
 
@@ -32,20 +34,24 @@ def version() -> str:
 
 
 def folder(component: type[Component]) -> Path:
-    """Where README, icon and reference of an FMU lie: in the package, or beside it in a checkout."""
-    name = re.sub(r"(?<!^)(?=[A-Z])", "_", component.__name__).lower()
+    """Where README, icon and reference of an FMU lie: beside a file of one's own, else with the package."""
     package = Path(__file__).parents[1]
+    home = Path(inspect.getfile(component)).parent
+    if not home.is_relative_to(package / "components"):
+        return home
+    name = re.sub(r"(?<!^)(?=[A-Z])", "_", component.__name__).lower()
     installed = package / "fmus" / name
     return installed if installed.is_dir() else package.parents[1] / "fmus" / name
 
 
-def build(name: str, directory: Path, overwrite: bool = False) -> Path:
+def build(component: str | type[Component], directory: Path, overwrite: bool = False) -> Path:
     """Build one FMU into a directory and return its path. `overwrite` replaces what is not an FMU of ours.
 
-    Raises KeyError for an unknown name and LoomfmuError for a file that cannot be written.
+    `component` is a class, or the name of one of ours. Raises KeyError for an unknown name and LoomfmuError
+    for a file that cannot be written.
     """
-    component = COMPONENTS[name]
-    target = file_in(directory, name, overwrite)
+    component = COMPONENTS[component] if isinstance(component, str) else component
+    target = file_in(directory, component.__name__, overwrite)
     return write_file(target, archive(component), FMU, overwrite=overwrite)
 
 
@@ -74,7 +80,7 @@ def zipped(contents: dict[str, bytes]) -> bytes:
 
 
 def write_readmes() -> None:
-    """Bring the tables of variables in all READMEs up to date."""
+    """Bring the tables of variables in all READMEs up to date; a README that has none gets it at its end."""
     for component in COMPONENTS.values():
         readme = folder(component) / "README.md"
         text = documentation.with_table(readme.read_text(encoding="utf-8"), component)
@@ -93,13 +99,21 @@ def guid(component: type[Component]) -> str:
 
 def described(component: type[Component], note: str = "") -> dict[str, bytes]:
     """The files that describe a component in every flavour; the note ends the documentation."""
-    readme = documentation.with_table(
-        (folder(component) / "README.md").read_text(encoding="utf-8"), component
-    )
+    text = beside(component, {"README.md": "text"}).get("text")
+    readme = documentation.derived(component) if text is None else text.decode("utf-8-sig")
+    readme = documentation.with_table(readme, component)
     note = documentation.names_note(component) + parameter_note(component) + note
-    page = documentation.page(component.__name__, readme + note)
-    drawing = (folder(component) / "drawing.svg").read_bytes()
-    return {"documentation/index.html": page, "documentation/drawing.svg": drawing} | _told(component)
+    return {
+        "documentation/index.html": documentation.page(component.__name__, readme + note),
+        **beside(component, {"drawing.svg": "documentation/drawing.svg"}),
+        **_told(component),
+    }
+
+
+def beside(component: type[Component], names: dict[str, str]) -> dict[str, bytes]:
+    """Files that lie with a component, by their names in the FMU; those that are not there are left out."""
+    home = folder(component)
+    return {there: (home / here).read_bytes() for here, there in names.items() if (home / here).is_file()}
 
 
 def _told(component: type[Component]) -> dict[str, bytes]:
@@ -115,7 +129,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
     package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
     files = {
         "modelDescription.xml": model_description(component, identity, version()),
-        "model.png": (folder(component) / "icon.png").read_bytes(),
+        **beside(component, {"icon.png": "model.png"}),
         **described(component),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
         "documentation/licenses/license.txt": license_of("loomfmu"),

@@ -7,20 +7,34 @@ after the other, with an `__init__` that lists the declared fields. The module i
 import inspect
 import math
 import textwrap
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
+from ..errors import LoomfmuError
 from ..variables import Component, Variable, arrays_of, variables_of
 
 HEADER = '"""{name}, written by loomfmu from its component and the physics it uses; do not edit."""\n'
 
 
-class SourceError(ValueError):
+class SourceError(LoomfmuError):
     """A component that uses what cannot be carried into a self-contained module."""
 
 
+_flattened: dict[type[Component], str] = {}
+
+
 def flatten(component: type[Component]) -> str:
-    """The component as one module. Raises SourceError, naming the function, where that cannot be done."""
+    """The component as one module, as its source stands at the first call.
+
+    Raises SourceError, naming the function, where that cannot be done.
+    """
+    if component not in _flattened:
+        _flattened[component] = _text(component)
+    return _flattened[component]
+
+
+def _text(component: type[Component]) -> str:
     methods = _methods(component)
     functions: dict[str, FunctionType] = {}
     constants: dict[str, float | int] = {}
@@ -65,14 +79,19 @@ def _collect(
                 _collect(used, functions, constants, from_math)
                 functions[name] = used
             elif known is not used:
-                raise SourceError(f"{function.__module__}: two functions are called {name}")
+                raise SourceError(f"{_place(function)}: two functions are called {name}")
         elif isinstance(used, int | float):
             constants[name] = used
         else:
             raise SourceError(
-                f"{function.__module__}.{function.__name__} uses {name}, which is neither a function of"
-                " the physics, a number nor of math"
+                f"{_place(function)}: {function.__name__} uses {name}, which is neither a function of the"
+                " physics, a number nor of math"
             )
+
+
+def _place(function: FunctionType) -> str:
+    code = function.__code__
+    return f"{Path(code.co_filename).name}, line {code.co_firstlineno}"
 
 
 def _class(component: type[Component], methods: dict[str, FunctionType]) -> str:

@@ -15,7 +15,6 @@ from typing import Any
 
 from .. import machines
 from ..cosim.claims.verdict import Verdict
-from ..cosim.importing.fmus import of_component
 from ..cosim.master.master import Interrupted
 from ..cosim.run import evaluate, run
 from ..cosim.scenes.scene import Scene
@@ -72,8 +71,7 @@ def identity(scene: Scene, flavour: str) -> str:
     parts = [version("loomfmu"), flavour, scene.text, repr(machines.MACHINES), repr(machines.HEADS)]
     parts += [scene.package_sha256] if scene.package else []
     for name, each in scene.instances.items():  # weaves and other files have become values
-        fmu = of_component(each.fmu.name, flavour) if each.fmu.built else each.fmu
-        parts += [name, fmu.sha256, repr(sorted(each.values.items()))]
+        parts += [name, each.fmu.in_flavour(flavour).sha256, repr(sorted(each.values.items()))]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 

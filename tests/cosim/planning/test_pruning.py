@@ -57,7 +57,7 @@ def test_what_is_not_needed_is_neither_built_nor_loaded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pool.free_all()
-    fmus.of_component.cache_clear()
+    fmus._known.clear()
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
     result = loomfmu.run(margin(), output=tmp_path / "margin.h5")
     assert result.holds
@@ -65,7 +65,7 @@ def test_what_is_not_needed_is_neither_built_nor_loaded(
     assert built == ["BeltMonitor.fmu", "WeftInsertion.fmu"]
     assert len(list((tmp_path / "cache" / "unpacked").iterdir())) == 2
     pool.free_all()
-    fmus.of_component.cache_clear()
+    fmus._known.clear()
 
 
 def test_what_is_left_out_is_told_with_its_reason_and_what_it_saves() -> None:

@@ -1,7 +1,7 @@
 """DobbyDrive: the rotor of the dobby with its speed modulator."""
 
 from dataclasses import dataclass
-from math import fabs, floor, pi, sin
+from math import fabs, floor, inf, pi, sin
 from typing import ClassVar
 
 from ...physics.heald import lift_fraction
@@ -31,6 +31,7 @@ class DobbyDrive(RotorLaws):
     """
 
     keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *RotorLaws.terminals,
         ROTOR.of(

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ... import units
-from ...components import COMPONENTS
-from ...variables import variables_of
+from ...variables import Component, variables_of
 from .ports import BASES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
@@ -24,18 +23,20 @@ KINDS = {
 
 def is_ours(description: Any) -> bool:
     """Whether an FMU was made by this package."""
-    made_by = description.generationTool or ""
-    return made_by.startswith("loomfmu ") and description.modelName in COMPONENTS
+    return (description.generationTool or "").startswith("loomfmu ")
 
 
-def ports_of(description: Any) -> dict[str, Port]:
-    """The scalar variables of the known types, by the names that scenes and traces use."""
+def ports_of(description: Any, component: type[Component] | None) -> dict[str, Port]:
+    """The scalar variables of the known types, by the names that scenes and traces use.
+
+    `component` is the one that the FMU was made of, if it is known.
+    """
     known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
     names = dict(zip((v.name for v in known), plain_names(v.name for v in known), strict=True))
-    if is_ours(description):
-        declared = {v.structured: v.name for v in variables_of(COMPONENTS[description.modelName])}
+    if component is not None:
+        declared = {v.structured: v.name for v in variables_of(component)}
         names = {name: declared.get(name, plain) for name, plain in names.items()}
-    rates = _rates(description, names)
+    rates = _rates(description, names, component)
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
     return {port.name: port for port in ports}
@@ -60,10 +61,10 @@ def plain_names(names: Iterable[str]) -> list[str]:
     return list(found)
 
 
-def _rates(description: Any, names: dict[str, str]) -> dict[str, str]:
+def _rates(description: Any, names: dict[str, str], component: type[Component] | None) -> dict[str, str]:
     """Which output is the time derivative of which: our declarations, or what the description says."""
-    if is_ours(description):
-        return {v.name: v.rate for v in variables_of(COMPONENTS[description.modelName]) if v.rate}
+    if component is not None:
+        return {v.name: v.rate for v in variables_of(component) if v.rate}
     return {
         variable.derivative.name: names[variable.name]
         for variable in description.modelVariables

@@ -4,7 +4,7 @@ import hashlib
 import shutil
 import zipfile
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from .ports import Port, Value
 
 FLAVOURS = ("live", "native")
 
-__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "file_of", "load", "of_component"]
+__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,11 @@ class Unpacked:
 class Fmu:
     """An FMU that can be instantiated.
 
-    `ours` are those that this package makes: they can be reset, and log whole texts. `single` is one that
-    a process may have one instance of. `flavour` is that of one which is built when its file is first
-    needed, and empty for one that was given as a file. `fixed_step` is one that takes equal steps only,
-    `needs_tool` one that says it needs the tool that made it.
+    `ours` are those that this package makes: they can be reset, and log whole texts. `component` is what one
+    was made of, which declares what others must know; None if that is not known. `single` is one that a
+    process may have one instance of. `flavour` is that of one which is built when its file is first needed,
+    and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
+    one that says it needs the tool that made it.
     """
 
     name: str
@@ -58,12 +59,8 @@ class Fmu:
     fixed_step: bool = False
     needs_tool: bool = False
     flavour: str = ""
+    component: type[Component] | None = field(default=None, repr=False)
     given: Unpacked | None = field(default=None, repr=False)
-
-    @property
-    def component(self) -> type[Component] | None:
-        """The component it was made of, which declares what others must know; none of another maker's."""
-        return COMPONENTS.get(self.name) if self.ours else None
 
     @property
     def keeps(self) -> str:
@@ -78,7 +75,14 @@ class Fmu:
     @cached_property
     def file(self) -> Unpacked:
         """Its file, built and unpacked at the first call."""
-        return self.given or _built(self.name, self.flavour)
+        if self.given is not None:
+            return self.given
+        assert self.component is not None, "what is built is built of a component"
+        return load(file_of(self.component, self.flavour, (native_builder.host_platform(),))).file
+
+    def in_flavour(self, flavour: str) -> "Fmu":
+        """This FMU as it is built in a flavour; one that was given as a file stays as it is."""
+        return self if self.component is None or not self.built else of_class(self.component, flavour)
 
     @property
     def path(self) -> Path:
@@ -133,37 +137,51 @@ class Fmu:
         return self.ports[name]
 
 
-@cache
+_known: dict[tuple[type[Component], str], Fmu] = {}
+
+
 def of_component(name: str, flavour: str = "live") -> Fmu:
-    """The FMU of one of our components, live or native. It is built only when its file is needed."""
-    _check(name, flavour)
-    description = BytesIO()
-    with zipfile.ZipFile(description, "w") as archive:
-        archive.writestr("modelDescription.xml", model_description(COMPONENTS[name], guid="", version=""))
-    read = fmpy.read_model_description(description, validate=False)
-    return Fmu(name=name, ports=ports_of(read), flavour=flavour)
-
-
-def _built(name: str, flavour: str) -> Unpacked:
-    return load(file_of(name, flavour, (native_builder.host_platform(),))).file
-
-
-def _check(name: str, flavour: str) -> None:
+    """The FMU of one of our components by its name, live or native; see `of_class`."""
     if name not in COMPONENTS:
         raise LoomfmuError(f"there is no component {name!r}{suggestion(name, COMPONENTS)}")
+    return of_class(COMPONENTS[name], flavour)
+
+
+def of_class(component: type[Component], flavour: str = "live") -> Fmu:
+    """The FMU of a component, live or native. It is built only when its file is needed."""
+    _check(flavour)
+    if (component, flavour) not in _known:
+        _known[component, flavour] = _described(component, flavour)
+    return _known[component, flavour]
+
+
+def _described(component: type[Component], flavour: str) -> Fmu:
+    description = BytesIO()
+    with zipfile.ZipFile(description, "w") as archive:
+        archive.writestr("modelDescription.xml", model_description(component, guid="", version=""))
+    read = fmpy.read_model_description(description, validate=False)
+    return Fmu(name=component.__name__, ports=ports_of(read, component), flavour=flavour, component=component)
+
+
+def _check(flavour: str) -> None:
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
 
 
-def file_of(name: str, flavour: str, platforms: tuple[str, ...]) -> Path:
-    """The file of one of our components, built unless the same one was; a live one is for all platforms."""
-    _check(name, flavour)
-    native, component = flavour == "native", COMPONENTS[name]
+def file_of(component: type[Component], flavour: str, platforms: tuple[str, ...]) -> Path:
+    """The file of a component, built unless the same one was; a live one is for all platforms."""
+    _check(flavour)
+    native = flavour == "native"
     identity = native_builder.identity(component, platforms) if native else builder.guid(component)
+    texts = sorted(builder.beside(component, builder.TEXTS).items())
+    identity += f"-{hashlib.sha256(repr(texts).encode()).hexdigest()[:8]}"
     built = cache_directory() / "fmus" / identity
-    path = built / f"{name}.fmu"
+    path = built / f"{component.__name__}.fmu"
     if not path.exists():
-        _ = native_builder.build_native(name, built, platforms) if native else builder.build(name, built)
+        if native:
+            native_builder.build_native(component, built, platforms)
+        else:
+            builder.build(component, built)
     return path
 
 
@@ -181,7 +199,8 @@ def load(path: Path) -> Fmu:
         raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
     try:
         description = fmpy.read_model_description(str(directory), validate=False)
-        ports = ports_of(description)
+        component = COMPONENTS.get(description.modelName) if is_ours(description) else None
+        ports = ports_of(description, component)
     except Exception as error:  # fmpy raises its own kinds for a description that is none
         raise LoomfmuError(
             f"{path}: its modelDescription.xml cannot be read ({_first_line(error)})"
@@ -192,6 +211,7 @@ def load(path: Path) -> Fmu:
         name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
         ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
         fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
+        component=component,
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),

@@ -125,10 +125,16 @@ def _unequal(needed: Scene) -> str:
 
 def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move, how the shaft's speed changes, and why."""
+    fine, turn = period(scene) / scene.steps_per_period, period(scene) / (2.0 * math.pi)
     yield period(scene) / scene.coarse_steps_per_revolution, ""
-    for each in scene.instances.values():
-        if each.fmu.component:
-            yield each.fmu.component.longest_step(each.effective())
+    for name, each in scene.instances.items():
+        component = each.fmu.component
+        if component:
+            yield component.longest_step(each.effective())
+        if component and component.keeps != MOTION:  # of what integrates every step counts anyway
+            said = f"asks for {component.longest_turn * 180.0 / math.pi:.4g} deg at most"
+            why = f"{name} {said if component.longest_turn else 'declares no longest_turn'}"
+            yield max(component.longest_turn * turn, fine), why
 
 
 def _check(scene: Scene) -> None:
@@ -226,6 +232,10 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
     """The edges of each window, the extreme within once samples show it, else points to see it by."""
     instance, _, variable = signal.partition(".")
     followed, sign = _extremes_of(scene, instance)[variable]
+    component = scene.instances[instance].fmu.component
+    if component is None or not component.windows:
+        _turns(places, trace, f"{instance}.{followed}", sign)
+        return
     for low, high in _windows(trace, scene, instance):
         places.points += [low, high]
         inside = np.flatnonzero((trace.time > low) & (trace.time < high))
@@ -279,11 +289,16 @@ def _bounded(sign: float) -> Look:
         elif trace.rate(signal) is None:
             _everywhere(places, trace, scene)
         else:
-            for time in _lowest_points(trace.time, sign * trace[signal]):
-                place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
-                places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
+            _turns(places, trace, signal, sign)
 
     return look
+
+
+def _turns(places: Places, trace: Recording, signal: str, sign: float) -> None:
+    """Where `sign` times a signal has a minimum, known to a share of the samples' distance there."""
+    for time in _lowest_points(trace.time, sign * trace[signal]):
+        place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
+        places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
 
 
 def _lowest_margin(places: Places, trace: Recording, scene: Scene, bound: object, belt: str = "belt") -> None:

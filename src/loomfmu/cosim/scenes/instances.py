@@ -8,6 +8,7 @@ from typing import Any
 
 from ... import machines
 from ...errors import LoomfmuError, suggestion
+from ...own import load
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from . import standard_loom
@@ -281,14 +282,12 @@ def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     for key in ("component", "fmu"):
         if not isinstance(table.get(key, ""), str):
             raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
-    component = table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name)))
+    component = str(table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name))))
     if "fmu" not in table:
-        fmu = fmus.of_component(str(component))
-        shafts = standard_loom.shafts()
-        if name == "shaft" and fmu.name not in shafts:
-            raise LoomfmuError(
-                f"shaft.component = {component!r}: the shaft of a scene is a {' or a '.join(shafts)}"
-            )
+        fmu = _of_component(name, component, directory)
+        if name == "shaft" and not (fmu.component and standard_loom.turns_others(fmu.component)):
+            shafts = " or a ".join(standard_loom.shafts())
+            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene is a {shafts}")
         return fmu
     if "component" in table:
         raise LoomfmuError(f"{name} has both a component and an fmu; it is one of them")
@@ -299,6 +298,22 @@ def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
             str(error) if str(error).startswith(f"{name}.") else f"{name}.fmu: {error}"
         ) from None
     return as_shaft(fmu) if name == "shaft" else fmu
+
+
+def _of_component(name: str, component: str, directory: Path) -> Fmu:
+    """The FMU of a component: one of ours, or one of a Python file, which is run."""
+    if not load.is_file(component):
+        return fmus.of_component(component)
+    try:
+        return fmus.of_class(load.component(component, directory))
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{name}.component: {error}") from None
+
+
+def own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, str]:
+    """The texts of the Python files that instances are made of, by the names that the scene gives them."""
+    named = [table["component"] for table in tables if load.is_file(table.get("component"))]
+    return {file: text for component in named for file, text in load.texts(component, directory).items()}
 
 
 def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:

@@ -14,7 +14,17 @@ from ...files import text_of
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
-from .instances import COARSE, KEYS, TIMES, Instance, instance, instance_tables, mixed, override
+from .instances import (
+    COARSE,
+    KEYS,
+    TIMES,
+    Instance,
+    instance,
+    instance_tables,
+    mixed,
+    override,
+    own_texts,
+)
 from .wiring import drives_of, wires_of
 
 ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
@@ -109,6 +119,7 @@ def parse(
     for each in wires:
         instances[each.sink[0]].follow(each)
     scene = assemble(tables, instances, wires, name, text, Path(directory))
+    texts |= own_texts(given.values(), Path(directory))
     scene = replace(scene, overrides=dict(overrides or {}), texts=texts)
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
@@ -194,7 +205,7 @@ def _notes(
     yield from mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
-        inputs = standard_loom.shaft_inputs(each.fmu.component) if each.fmu.component else ()
+        inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
         if inputs and not any((name, variable) in fed for variable in inputs):
             yield f"{name} turns at a speed of its own: none of its shaft inputs is wired to the shaft"
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]

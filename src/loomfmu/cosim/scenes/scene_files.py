@@ -12,6 +12,7 @@ def files_of(scene: Scene) -> list[Path]:
     """The file of a scene, and what it names: FMUs, weaves, every text that is the name of a file."""
     found = [path for path in (scene.file, scene.package) if path is not None]
     found += [instance.fmu.path for instance in scene.instances.values() if not instance.fmu.built]
+    found += [scene.directory / name for name in scene.texts]
     said = {} if scene.package is not None else toml(scene.text)
     for text in _texts([said, scene.overrides]):
         with contextlib.suppress(OSError, ValueError):  # most texts cannot be a file's name

@@ -1,6 +1,7 @@
 """The loom that a scene need not spell out: its instances, their components and their wiring."""
 
 import re
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -102,17 +103,36 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
-def wires(instance: str, component: type[Component]) -> dict[str, str]:
-    """Where the inputs of an instance are wired to in a standard loom, by its declarations."""
+def wires(instance: str, components: Mapping[str, type[Component]]) -> dict[str, str]:
+    """Where the inputs of an instance are usually wired to, by its declarations and by those of the others.
+
+    Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
+    """
+    number = instance.removeprefix(stem(instance))
+    component = components[instance]
     found = {v.name: v.source for v in variables_of(component) if v.causality == "input" and v.source}
     for terminal in _terminals(component, "input"):
-        owner = SOURCES[terminal.name]
-        feeding = COMPONENTS[COMPONENT_OF[owner.removesuffix("_#")]]
-        (outputs,) = (each for each in _terminals(feeding, "output") if each.name == terminal.name)
-        pairs = zip(terminal.variables, outputs.variables, strict=True)
+        offering = {
+            name: end.variables
+            for name, each in components.items()
+            for end in _terminals(each, "output")
+            if end.name == terminal.name and len(end.variables) == len(terminal.variables)
+        }
+        if terminal.name in SOURCES:
+            owner = SOURCES[terminal.name].replace("_#", number)
+            if owner not in components:  # another maker's FMU in its place names its outputs as it does
+                offering |= {owner: _usual(terminal, owner)}
+        else:
+            owner = next(iter(offering)) if len(offering) == 1 else ""
+        pairs = zip(terminal.variables, offering.get(owner, ()), strict=False)
         found |= {sink: f"{owner}.{output}" for sink, output in pairs}
-    number = instance.removeprefix(stem(instance))
     return {name: source.replace("_#", number) for name, source in found.items()}
+
+
+def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
+    """The outputs that a terminal is wired to in a standard loom."""
+    feeding = COMPONENTS[COMPONENT_OF[stem(owner)]]
+    return next(each.variables for each in _terminals(feeding, "output") if each.name == terminal.name)
 
 
 def _terminals(component: type[Component], causality: str) -> list[Terminal]:
@@ -121,8 +141,13 @@ def _terminals(component: type[Component], causality: str) -> list[Terminal]:
     return [terminal for terminal in component.terminals if terminal.variables[0] in names]
 
 
-def shaft_inputs(component: type[Component]) -> tuple[str, ...]:
-    """The inputs by which a component follows a shaft; none where it follows none."""
+def shaft_inputs(component: type[Component] | None, inputs: Collection[str]) -> tuple[str, ...]:
+    """The inputs by which a mechanism follows a shaft; none where it follows none.
+
+    Of an FMU whose component is not known here its inputs tell.
+    """
+    if component is None:
+        return tuple(FOLLOWED) if set(FOLLOWED) <= set(inputs) else ()
     return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
 
 

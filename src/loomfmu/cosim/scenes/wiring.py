@@ -15,9 +15,9 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any) -> list[Wire]:
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires is no table of "instance.input" = "instance.output"')
     sources: dict[str, str] = {}
-    for name, each in instances.items():
-        standard = standard_loom.wires(name, each.fmu.component) if each.fmu.component else {}
-        for sink, source in standard.items():
+    components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
+    for name in components:
+        for sink, source in standard_loom.wires(name, components).items():
             if source.split(".")[0] in instances:
                 sources[f"{name}.{sink}"] = source
     for sink, source in dotted(spelt_out).items():

@@ -97,7 +97,9 @@ def contents(scene: Scene, flavour: str, platforms: tuple[str, ...] | None = Non
 
 def _file(fmu: Fmu, flavour: str, platforms: tuple[str, ...]) -> Path:
     """The file of an FMU: built in that flavour, or the one that the scene names."""
-    return fmus.file_of(fmu.name, flavour, platforms) if fmu.built else fmu.path
+    if fmu.component is None or not fmu.built:
+        return fmu.path
+    return fmus.file_of(fmu.component, flavour, platforms)
 
 
 def _place(files: Files, file: Path) -> str:

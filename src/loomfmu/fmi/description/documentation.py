@@ -1,6 +1,7 @@
 """Documentation of an FMU: its README with the table of its variables, as HTML."""
 
 import html
+import inspect
 import math
 import re
 
@@ -79,12 +80,17 @@ def limits_text(variable: Variable) -> str:
     return f"{low:.6g} .. {high:.6g}"
 
 
+def derived(component: type[Component]) -> str:
+    """A README for a component that has none: its docstring."""
+    return f"# {component.__name__}\n\n{inspect.cleandoc(component.__doc__ or '')}\n"
+
+
 def with_table(readme: str, component: type[Component]) -> str:
-    """A README with the table of variables between its marks brought up to date."""
+    """A README with the table of variables between its marks brought up to date, or added at its end."""
     block = f"{BEGIN}\n{variable_table(component)}\n{END}"
     pattern = re.escape(BEGIN) + ".*?" + re.escape(END)
     if not re.search(pattern, readme, re.DOTALL):
-        raise ValueError(f"the README of {component.__name__} lacks the marks {BEGIN} and {END}")
+        return f"{readme.rstrip()}\n\n## Variables\n\n{block}\n"
     return re.sub(pattern, lambda _match: block, readme, flags=re.DOTALL)
 
 

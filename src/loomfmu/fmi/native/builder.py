@@ -19,7 +19,7 @@ from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
 from ...files import write_file
 from ...variables import Component
-from ..builder import FMU, described, file_in, folder, guid, license_of, version, zipped
+from ..builder import FMU, beside, described, file_in, guid, license_of, version, zipped
 from ..cache import compiler_environment
 from ..description.model_description import model_description, output_order
 from ..description.model_description3 import model_description3
@@ -97,7 +97,7 @@ folder `sources` holds all of it; one command, run in that folder, builds it for
 
 
 def build_native(
-    name: str,
+    component: str | type[Component],
     directory: Path,
     platforms: tuple[str, ...] = tuple(PLATFORMS),
     fmi: int = 2,
@@ -105,14 +105,14 @@ def build_native(
 ) -> Path:
     """Build one native FMU of FMI 2 or FMI 3 into a directory and return its path.
 
-    `overwrite` replaces what is not an FMU of ours.
+    `component` is a class, or the name of one of ours. `overwrite` replaces what is not an FMU of ours.
 
     Raises:
         KeyError: an unknown component
         LoomfmuError: it does not translate, an unknown platform, no compiler, or the file cannot be written
     """
-    component = COMPONENTS[name]
-    target = file_in(directory, name, overwrite)
+    component = COMPONENTS[component] if isinstance(component, str) else component
+    target = file_in(directory, component.__name__, overwrite)
     return write_file(target, zipped(contents(component, platforms, fmi)), FMU, overwrite=overwrite)
 
 
@@ -124,7 +124,7 @@ def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -
     icon = "model.png" if fmi == 2 else "terminalsAndIcons/icon.png"
     files = {
         "modelDescription.xml": _description(component, fmi),
-        icon: (folder(component) / "icon.png").read_bytes(),
+        **beside(component, {"icon.png": icon}),
         **described(component, note),
         **licenses(platforms, code),
         "sources/buildDescription.xml": BUILD_DESCRIPTION.format(name=name, fmi=fmi).encode(),

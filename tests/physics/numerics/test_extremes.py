@@ -1,4 +1,4 @@
-"""Extremes between samples: against dense samples of the same polynomial, and against a curve that is known."""
+"""Extremes between samples: against dense samples of the same polynomial, and against a known curve."""
 
 import math
 import random
@@ -6,13 +6,13 @@ import random
 import numpy as np
 import pytest
 
-from loomfmu.physics.extremes import (
+from loomfmu.physics.numerics.extremes import (
     highest_by_two_rates,
     highest_so_far,
     lowest_by_two_rates,
     lowest_so_far,
 )
-from loomfmu.physics.motion import turns_of_cubic
+from loomfmu.physics.numerics.motion import turns_of_cubic
 
 DENSE = np.linspace(0.0, 1.0, 20001)
 

@@ -1,4 +1,4 @@
-"""Extremes of a signal on the way from one sample to the next, so that no step decides what is seen of them."""
+"""Extremes of a signal between its samples, so that no step decides what is seen of them."""
 
 from .motion import joined, joined_value, turns_of_cubic
 
@@ -62,7 +62,7 @@ def lowest_by_two_rates(
     lowest: float, step: float, start: float, start_rate: float, start_second: float,
     end: float, end_rate: float, end_second: float,
 ) -> float:  # fmt: skip
-    """Lowest value of a signal so far, where its second rate is known as well: on the quintic between samples.
+    """Lowest value of a signal so far, on the quintic between samples: its second rate is known as well.
 
     The quintic is off by `h^6 s'''''' / 46080`. It is searched in eighths of the step, each for one turn.
 
@@ -75,7 +75,9 @@ def lowest_by_two_rates(
     Returns:
         lowest value up to this sample
 
-    >>> round(lowest_by_two_rates(1.0, 2.0, 1.0, -4.0, 12.0, 1.0, 4.0, 12.0), 15) + 0.0  # (x - 1)^4 from 0 to 2
+    (x - 1)^4 from 0 to 2:
+
+    >>> round(lowest_by_two_rates(1.0, 2.0, 1.0, -4.0, 12.0, 1.0, 4.0, 12.0), 15) + 0.0
     0.0
     """
     rate = step * start_rate

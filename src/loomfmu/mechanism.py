@@ -1,0 +1,53 @@
+"""What a mechanism of your own is made of: the names that its file imports.
+
+Functions of `loomfmu.physics` can be imported, too: they are carried into the FMU with the rest.
+"""
+
+from .components.shaft_driven import TOO_FAR, ShaftDriven
+from .components.terminals import FRAME, HEAD, ROTOR, SHAFT
+from .physics.numerics.extremes import (
+    highest_by_two_rates,
+    highest_so_far,
+    lowest_by_two_rates,
+    lowest_so_far,
+)
+from .physics.shaft import carried, too_far
+from .variables import (
+    EXTREMES,
+    MOTION,
+    NOTHING,
+    Component,
+    Problem,
+    Terminal,
+    indicator,
+    input_,
+    output,
+    parameter,
+    state,
+)
+
+__all__ = [
+    "EXTREMES",
+    "FRAME",
+    "HEAD",
+    "MOTION",
+    "NOTHING",
+    "ROTOR",
+    "SHAFT",
+    "TOO_FAR",
+    "Component",
+    "Problem",
+    "ShaftDriven",
+    "Terminal",
+    "carried",
+    "highest_by_two_rates",
+    "highest_so_far",
+    "indicator",
+    "input_",
+    "lowest_by_two_rates",
+    "lowest_so_far",
+    "output",
+    "parameter",
+    "state",
+    "too_far",
+]

@@ -1,0 +1,1 @@
+"""Mechanisms from outside the package: read from a file, checked, and held to what their declarations say."""

@@ -1,0 +1,80 @@
+"""What every mechanism on the shaft has to pass: its rates and its extremes are what they are declared to be.
+
+Each check raises AssertionError, naming the output; the tests that `loomfmu new` writes call them.
+"""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from math import pi
+from typing import Any
+
+from ..variables import Component, variables_of
+
+SPEED = 40.0  # of the shaft [rad/s]
+FINE = 2.0 * pi / 1440.0  # rad
+COARSE = pi / 12.0  # longest turn of a step where a component allows any [rad]
+STARTS = 8  # places within a step at which the first sample is taken
+BETTER = 0.1  # of the spread of samples: what the spread of an extreme may be
+ROUNDING = 1e-9  # of the largest value
+OFF = 0.01  # of the largest rate: a wrong factor or sign is off by more, a jump of the second rate by less
+
+
+def check_rates(component: type[Component], values: Mapping[str, Any] | None = None) -> None:
+    """Every output with a rate changes by that rate, over a revolution in steps of a quarter of a degree.
+
+    `values` are parameters that differ from the defaults, in SI.
+    """
+    rated = {v.name: v.rate for v in variables_of(component) if v.causality == "output" and v.rate}
+    rows = list(_run(component, values or {}, FINE, 0.0))
+    h = FINE / SPEED
+    for name, rate in rated.items():
+        largest = max(abs(row[rate]) for row in rows)
+        for before, after in pairwise(rows):
+            change = (after[name] - before[name]) / h
+            mean = 0.5 * (before[rate] + after[rate])
+            assert abs(change - mean) <= OFF * largest + ROUNDING * abs(after[name]) / h, (
+                f"{name} changes by {change:.6g} in a second near {before['time']:.6g} s,"
+                f" and its rate {rate} is {mean:.6g}"
+            )
+
+
+def check_extremes(component: type[Component], values: Mapping[str, Any] | None = None) -> None:
+    """Every extreme is that of the continuous curve: where the samples lie makes no difference to it.
+
+    Samples at several places of the coarsest steps that the component allows are off by more or less. What
+    is declared as an extreme so far and does not spread ten times less than they do was sampled itself.
+    """
+    turn = min(component.longest_turn or FINE, COARSE)
+    starts = [turn * place / STARTS for place in range(STARTS)]
+    runs = [list(_run(component, values or {}, turn, start)) for start in starts]
+    for variable in variables_of(component):
+        for followed, best in ((variable.lowest_of, min), (variable.highest_of, max)):
+            if followed and variable.type is float:
+                sampled = [best(row[followed] for row in rows) for rows in runs]
+                held = [rows[-1][variable.name] for rows in runs]
+                noise = ROUNDING * max(map(abs, [*sampled, *held]))
+                assert _spread(held) <= BETTER * _spread(sampled) + noise, (
+                    f"{variable.name} depends on where the samples lie, by {_spread(held):.3g}: it is sampled"
+                    f" (samples of {followed} spread by {_spread(sampled):.3g});"
+                    " use lowest_so_far or highest_so_far with the rate"
+                )
+
+
+def _spread(values: list[float]) -> float:
+    return max(values) - min(values)
+
+
+def _run(
+    component: type[Component], values: Mapping[str, Any], turn: float, start: float
+) -> Iterator[dict[str, float]]:
+    """Time and outputs over some two revolutions of a shaft of constant speed, in equal steps."""
+    names = [variable.name for variable in variables_of(component)]
+    assert "speed" in names and "start_angle" in names, f"{component.__name__} is not driven by the shaft"
+    running = component(**{"speed": SPEED, "start_angle": start - pi, **values})
+    outputs = [variable.name for variable in variables_of(component) if variable.causality == "output"]
+    h = turn / SPEED
+    problem = running.initialize(0.0)
+    for step in range(int(4.0 * pi / turn) + 2):
+        assert problem == 0 or component.problems[problem - 1].warning, component.problems[problem - 1].text
+        yield {"time": step * h, **{name: getattr(running, name) for name in outputs}}
+        problem = running.step(step * h, h)

@@ -1,0 +1,151 @@
+"""What is wrong with a component's declarations: the first thing that would go wrong later, or silently."""
+
+import ast
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import Field, fields
+from typing import Any, NamedTuple
+
+from .. import units
+from ..errors import suggestion
+from ..variables import EXTREMES, MOTION, NOTHING, Component, Variable, variables_of
+
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+KEYS = ("component", "fmu", "units", "machine", "head", "pattern")  # of an instance in a scene
+TYPES = {"float": float, "int": int, "bool": bool}
+
+
+class Fault(NamedTuple):
+    """What is wrong, and the field or method of the class where it is."""
+
+    field: str
+    text: str
+
+
+def fault(component: type[Component], taken: Collection[str]) -> Fault | None:
+    """The first fault of a component that bears none of the names that are taken; None if there is none."""
+    for find in (_of_class, _of_variables, _of_references, _of_traits, _of_problems):
+        for found in find(component):
+            return found
+    if component.__name__ in taken:
+        return Fault("", f"{component.__name__} is the name of one of loomfmu's components: choose another")
+    try:
+        component()
+    except ValueError as error:
+        return Fault("", " ".join(str(error).split()))
+    return None
+
+
+def _of_class(component: type[Component]) -> Iterator[Fault]:
+    name = component.__name__
+    if any(isinstance(each, Field) for each in vars(component).values()):
+        yield Fault("", f"{name} is not a dataclass: write @dataclass(slots=True) above it")
+    elif "__slots__" not in vars(component):
+        yield Fault("", f"{name} could keep what it does not declare: write @dataclass(slots=True) above it")
+    for method, given in (("initialize", Component.initialize), ("step", Component.step)):
+        if getattr(component, method) is given:
+            yield Fault("", f"{name} has no method {method}")
+    if not (component.__doc__ or "").strip() or component.__doc__ == Component.__doc__:
+        yield Fault("", f"{name} has no docstring: its first line describes the FMU")
+
+
+def _of_variables(component: type[Component]) -> Iterator[Fault]:
+    for declared in fields(component):
+        if "causality" not in declared.metadata:
+            name = declared.name
+            yield Fault(name, f"{name} is not declared by parameter, input_, output, state or indicator")
+    for variable in variables_of(component):
+        text = _of_variable(component, variable)
+        if text:
+            yield Fault(variable.name, text)
+    if not any(variable.causality == "output" for variable in variables_of(component)):
+        yield Fault("", f"{component.__name__} has no output")
+
+
+def _of_variable(component: type[Component], variable: Variable) -> str:
+    name, annotation = variable.name, component.__dataclass_fields__[variable.name].type
+    said = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", "?")
+    if name in KEYS or name == "time" or not NAME.fullmatch(name):
+        return f"a variable cannot be called {name}: scenes and traces use that name"
+    if TYPES.get(said) is not variable.type:
+        return f"{name} is a {said}, and its start {variable.start!r} is a {variable.type.__name__}"
+    for unit in (variable.unit, variable.display):
+        try:
+            units.unit(unit)
+        except units.UnitError as error:
+            return f"{name}: {error}"
+    if units.unit(variable.unit).factor != 1.0:
+        return f"{name} is in {variable.unit}: values are SI, {units.si(variable.unit)}; say display="
+    if units.unit(variable.unit).dimension != units.unit(variable.display).dimension:
+        return f"{name} is in {variable.unit}, which cannot be shown in {variable.display}"
+    return variable.complaint(variable.start) if variable.settable else ""
+
+
+def _of_references(component: type[Component]) -> Iterator[Fault]:
+    """Names that stand for other variables."""
+    known = {variable.name: variable for variable in variables_of(component)}
+    for variable in known.values():
+        for key, name, causality in (
+            ("rate", variable.rate, variable.causality),
+            ("lowest_of", variable.lowest_of, "output"),
+            ("highest_of", variable.highest_of, "output"),
+            *(("depends", name, "input") for name in variable.depends or ()),
+        ):
+            if name is not None and (name not in known or known[name].causality != causality):
+                fitting = [other for other, each in known.items() if each.causality == causality]
+                text = f"{variable.name}: {key} = {name!r} is not one of its {causality}s"
+                yield Fault(variable.name, text + suggestion(name, fitting))
+        if variable.rate is not None:
+            yield from _of_rate(variable, known[variable.rate])
+    for terminal in component.terminals:
+        absent = [name for name in terminal.variables if name not in known]
+        if absent or len(terminal.variables) != len(terminal.members) or not terminal.variables:
+            about = (
+                f"{absent[0]!r} is not a variable" if absent else f"it has {len(terminal.members)} members"
+            )
+            yield Fault("terminals", f"terminals: {terminal.name}: {about}{suggestion('', terminal.members)}")
+
+
+def _of_rate(variable: Variable, rate: Variable) -> Iterator[Fault]:
+    kg, m, s, rad = units.unit(variable.unit).dimension
+    if units.unit(rate.unit).dimension != (kg, m, s - 1, rad):
+        text = f"{variable.name} is in {variable.unit}, and its rate {rate.name} in {rate.unit}"
+        yield Fault(variable.name, text)
+
+
+def _of_traits(component: type[Component]) -> Iterator[Fault]:
+    outputs = [variable.name for variable in variables_of(component) if variable.causality == "output"]
+    held = [v.name for v in variables_of(component) if v.lowest_of or v.highest_of]
+    if component.keeps not in (NOTHING, EXTREMES, MOTION):
+        yield Fault("keeps", f"keeps = {component.keeps!r} is not NOTHING, EXTREMES or MOTION")
+    if held and component.keeps == NOTHING:
+        yield Fault(held[0], f"{held[0]} is an extreme so far, and keeps = NOTHING: write keeps = EXTREMES")
+    for name in component.windows:
+        if name not in outputs:
+            yield Fault("windows", f"windows: {name!r} is not an output{suggestion(name, outputs)}")
+
+
+def _of_problems(component: type[Component]) -> Iterator[Fault]:
+    """Problems that methods return and nobody has worded, and words that show no variable."""
+    names = [variable.name for variable in variables_of(component)]
+    for problem in component.problems:
+        for name in re.findall(r"\{([^{}]*)\}", problem.text.replace("{{", "").replace("}}", "")):
+            if name not in names:
+                yield Fault("problems", f"problems: {{{name}}} is not a variable{suggestion(name, names)}")
+    for method in ("check", "initialize", "step"):
+        for number in _returned(getattr(component, method)):
+            if number > len(component.problems):
+                text = f"{method} returns problem {number}, and `problems` has {len(component.problems)}"
+                yield Fault(method, text)
+
+
+def _returned(method: Callable[..., Any]) -> Iterator[int]:
+    """The whole numbers that a method returns as they stand."""
+    for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(method)))):
+        if isinstance(node, ast.Return):
+            given = node.value
+            for each in (given.body, given.orelse) if isinstance(given, ast.IfExp) else (given,):
+                if isinstance(each, ast.Constant) and type(each.value) is int:
+                    yield each.value

@@ -1,0 +1,45 @@
+"""Eccentric: against values that are known, and by the checks that every mechanism has to pass."""
+
+from math import pi
+from pathlib import Path
+
+import loomfmu
+import pytest
+from eccentric import Eccentric
+from loomfmu.own.checks import check_extremes, check_rates
+
+SCENE = Path(__file__).with_name("eccentric.toml")
+
+
+def test_half_a_revolution_lifts_by_the_stroke() -> None:
+    """A value that is known without the code."""
+    mechanism = Eccentric(stroke=0.03, start_angle=pi)
+    assert mechanism.initialize(0.0) == 0
+    assert mechanism.lift == pytest.approx(0.03, rel=1e-15)
+
+
+def test_rates_are_those_of_their_values() -> None:
+    """Of every output that is declared with `rate=`."""
+    check_rates(Eccentric)
+
+
+def test_extremes_do_not_depend_on_the_step() -> None:
+    """Of every output that is declared with `lowest_of=` or `highest_of=`."""
+    check_extremes(Eccentric)
+
+
+def test_it_follows_the_shaft() -> None:
+    """A start-up changes what it does."""
+    steady = loomfmu.evaluate(SCENE, values=["eccentric.lift"])
+    started = loomfmu.evaluate(SCENE, set={"shaft.ramp_duration": "0.2 s"}, values=["eccentric.lift"])
+    assert abs(steady.trace["eccentric.lift"] - started.trace["eccentric.lift"]).max() > 1e-3
+
+
+def test_the_scene_holds_on_either_grid() -> None:
+    """Few steps that land on the extremes tell the same as many equal ones."""
+    even = loomfmu.evaluate(SCENE)
+    windows = loomfmu.evaluate(SCENE, set={"grid": "windows"})
+    assert even.holds
+    assert windows.holds
+    # equal steps of 1 deg know the curve between them to 1e-9
+    assert windows.claims[0].worst == pytest.approx(even.claims[0].worst, rel=1e-8)
