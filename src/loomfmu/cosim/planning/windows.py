@@ -36,6 +36,8 @@ SCOUTS = 2  # runs that look for the windows: the second one sees the lowest poi
 MOST_STEPS = 10_000_000  # that are kept in memory, with what is watched at each
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
+DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may be the lowest
+RIPPLE = 1e-6  # of a signal's range: what samples about a minimum that is one differ by
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
 NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
 WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that it stands for has none
@@ -234,7 +236,7 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
     followed, sign = _extremes_of(scene, instance)[variable]
     component = scene.instances[instance].fmu.component
     if component is None or not component.windows:
-        _turns(places, trace, f"{instance}.{followed}", sign)
+        _deepest(places, trace, f"{instance}.{followed}", sign)
         return
     for low, high in _windows(trace, scene, instance):
         places.points += [low, high]
@@ -292,6 +294,17 @@ def _bounded(sign: float) -> Look:
             _turns(places, trace, signal, sign)
 
     return look
+
+
+def _deepest(places: Places, trace: Recording, signal: str, sign: float) -> None:
+    """The minima of `sign` times a signal that may be its lowest, and no ripple of a rounding."""
+    values = sign * np.asarray(trace[signal], dtype=float)
+    lowest, reach = float(values.min()), float(np.ptp(values))
+    for time in _lowest_points(trace.time, values):
+        place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
+        here, about = values[place - 1 : place + 1], values[max(place - 2, 0) : place + 2]
+        if here.min() <= lowest + DEEP * reach and np.ptp(about) > RIPPLE * reach:
+            places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
 
 
 def _turns(places: Places, trace: Recording, signal: str, sign: float) -> None:

@@ -1,0 +1,316 @@
+"""A mechanism from outside the package: written by `loomfmu new`, changed by hand, run, built and judged."""
+
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+import loomfmu
+from loomfmu import LoomfmuError
+from loomfmu.cli import main
+from loomfmu.cosim import scene as scenes
+from loomfmu.new import new
+
+TRIAL = Path(__file__).parent / "own" / "picking_cam"  # what was written by hand
+SCENE = """
+revolutions = 3
+steps_per_revolution = {steps}
+[shaft]
+speed = "400 rev/min"
+[cam]
+component = "picking_cam.py:PickingCam"
+[[claims]]
+kind = "above"
+signal = "cam.lowest_contact_force"
+bound = "10 N"
+"""
+
+
+@pytest.fixture
+def cam(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The trial: the folder that the command writes, three of its files rewritten by hand."""
+    monkeypatch.chdir(tmp_path)
+    folder = new("PickingCam", tmp_path)[0].parent
+    for file in TRIAL.iterdir():
+        if file.is_file():
+            shutil.copy(file, folder)
+    (folder / "cam.toml").write_text(SCENE.format(steps=360))
+    return folder
+
+
+def lowest_force(speed: float = 400.0 * math.pi / 30.0) -> float:
+    """Of the picking cam with its defaults, from equations (1) to (3) alone."""
+    law = np.polynomial.Polynomial([0, 0, 0, 0, 35, -84, 70, -20])
+    scale = 0.03 * (speed / (math.pi / 3.0)) ** 2
+
+    def force(u: float) -> float:
+        return float(500.0 + 5000.0 * 0.03 * law(u) + scale * law.deriv(2)(u))
+
+    near = min(np.linspace(0.0, 1.0, 1001), key=force)
+    return float(minimize_scalar(force, bounds=(near - 1e-3, near + 1e-3), method="bounded",
+                                 options={"xatol": 1e-10}).fun)  # fmt: skip
+
+
+def changed(folder: Path, **texts: str) -> None:
+    """The cam's source with some of its lines written in another way."""
+    path = folder / "picking_cam.py"
+    text = path.read_text()
+    for old, new_ in texts.values():
+        assert old in text
+        text = text.replace(old, new_)
+    path.write_text(text)
+
+
+# ---- the folder
+
+
+def in_a_process(*arguments: str, cwd: Path) -> str:
+    found = subprocess.run(
+        [sys.executable, *arguments], cwd=cwd, capture_output=True, text=True, check=False,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+    )  # fmt: skip
+    assert found.returncode == 0, found.stdout + found.stderr
+    return found.stdout
+
+
+@pytest.mark.parametrize(("name", "own"), [("PickingCam", "picking_cam"), ("LiftABC2", "lift_abc2")])
+def test_the_folder_runs_and_its_tests_pass_as_it_is_written(tmp_path: Path, name: str, own: str) -> None:
+    assert main(["new", name, "--output", str(tmp_path / "made here")]) == 0
+    folder = tmp_path / "made here" / own
+    assert sorted(file.name for file in folder.iterdir()) == [
+        "README.md", f"{own}.py", f"{own}.toml", f"test_{own}.py",
+    ]  # fmt: skip
+    assert not any("ccentric" in file.read_text() for file in folder.iterdir())
+    assert "holds" in in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", cwd=folder)
+    in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", "--native", cwd=folder)
+    in_a_process("-m", "pytest", "-q", "-p", "no:cacheprovider", cwd=folder)
+
+
+def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "picking_cam").mkdir()
+    assert main(["new", "PickingCam", "--output", str(tmp_path)]) == 2
+    assert "picking_cam already exists; nothing was written\n" in capsys.readouterr().err
+    assert list((tmp_path / "picking_cam").iterdir()) == []
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "file").write_text("mine")
+    for name in ("Link", "File"):
+        assert main(["new", name, "--output", str(tmp_path)]) == 2
+    assert main(["new", "PickingCam", "--output", str(tmp_path / "file")]) == 2
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["file", "link", "picking_cam"]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("picking_cam", "not a class name such as PickingCam"),
+        ("../Cam", "not a class name"),
+        ("True", "not a class name"),
+        ("BeltMonitor", "one of loomfmu's components"),
+        ("Belt", "scenes use the name belt themselves"),
+        ("Wires", "scenes use the name wires"),
+        ("Random", "random is a Python module already"),
+        ("Numpy", "numpy is a Python module already"),
+    ],
+)
+def test_names_that_cannot_be_used_are_refused(tmp_path: Path, name: str, said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        new(name, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---- the trial
+
+
+def test_the_trial_is_three_files_and_150_lines() -> None:
+    files = [file for file in TRIAL.iterdir() if file.is_file()]
+    assert len(files) == 3
+    assert sum(len(file.read_text().splitlines()) for file in files) <= 150
+
+
+@pytest.mark.parametrize("flavour", ["live", "native"])
+def test_the_lowest_force_is_that_of_the_equations_on_either_grid(cam: Path, flavour: str) -> None:
+    known = lowest_force()
+    for grid, steps in (("uniform", 1440), ("uniform", 360), ("windows", 1440), ("windows", 360)):
+        (cam / "cam.toml").write_text(SCENE.format(steps=steps))
+        found = loomfmu.evaluate(cam / "cam.toml", set={"grid": grid}, flavour=flavour)
+        # the cubic is off by h^4 F''''/384: the force has some 1e3 N and its fourth derivative by angle is
+        # 1e3 * (2 pi / 60 deg)^4 = 1.3e6; with 1 deg that is 3e-4 N, with 0.25 deg 1e-6 N; landings are exact
+        tolerance = {"windows": 1e-6}.get(grid, 3e-4 if steps == 360 else 1.3e-6)
+        assert found.claims[0].worst == pytest.approx(known, abs=tolerance)
+        assert found.holds
+
+
+@pytest.mark.parametrize("flavour", ["live", "native"])
+def test_a_start_up_changes_its_lift(cam: Path, flavour: str) -> None:
+    lifts = [
+        loomfmu.evaluate(
+            cam / "cam.toml", set={"shaft.ramp_duration": ramp}, values=["cam.lift"], flavour=flavour
+        ).trace["cam.lift"]
+        for ramp in ("0 s", "0.3 s")
+    ]
+    assert np.abs(lifts[0] - lifts[1]).max() > 0.02
+
+
+def test_live_and_native_give_the_same_bits(cam: Path) -> None:
+    ramp = {"shaft.ramp_duration": "0.1 s"}
+    live, native = (
+        loomfmu.run(cam / "cam.toml", set=ramp, flavour=flavour, output=cam / f"{flavour}.h5")
+        for flavour in ("live", "native")
+    )
+    assert len(list(live.trace)) > 5
+    for signal in live.trace:
+        np.testing.assert_array_equal(live.trace[signal], native.trace[signal])
+
+
+def test_what_is_not_declared_makes_it_slower_and_not_wrong(cam: Path) -> None:
+    known = lowest_force()
+    few = loomfmu.evaluate(cam / "cam.toml", set={"grid": "windows"})
+    for lines in (
+        {"turn": ("    longest_turn: ClassVar[float] = pi / 72.0  # an eighth of the shortest rise\n", "")},
+        {"keeps": ("    keeps: ClassVar[str] = EXTREMES\n", "")},
+    ):
+        before = (cam / "picking_cam.py").read_text()
+        changed(cam, **lines)
+        found = loomfmu.evaluate(cam / "cam.toml", set={"grid": "windows"})
+        assert len(found.trace.time) >= 3 * 360 + 1 > 2 * len(few.trace.time)
+        assert found.claims[0].worst == pytest.approx(known, abs=3e-4)
+        (cam / "picking_cam.py").write_text(before)
+
+
+def test_one_that_is_cut_off_from_the_shaft_is_named(cam: Path) -> None:
+    path = cam / "cam.toml"
+    cut = "".join(f'"cam.shaft_{n}" = false\n' for n in ("angle", "velocity", "acceleration"))
+    path.write_text(f"{path.read_text()}[wires]\n{cut}")
+    (note,) = scenes.load(path).notes
+    assert note == "cam turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+
+
+def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from loomfmu.own import checks, load
+
+    checks.check_extremes(load.component("picking_cam.py", cam))
+    changed(
+        cam,
+        a=("lowest_so_far(\n", "sampled(\n"),
+        b=("    state,\n", "    state,\n"),
+        c=("@dataclass(slots=True)\n", SAMPLED + "@dataclass(slots=True)\n"),
+    )
+    with pytest.raises(AssertionError, match="lowest_contact_force depends on where the samples lie"):
+        checks.check_extremes(load.component("picking_cam.py", cam))
+
+
+SAMPLED = '''
+def sampled(lowest: float, h: float, a: float, b: float, end: float, c: float) -> float:
+    """Lowest of the samples."""
+    return end if end < lowest else lowest
+
+
+'''
+
+
+# ---- FMUs of it
+
+
+@pytest.mark.parametrize("options", [[], ["--native"], ["--native", "--fmi", "3"]])
+def test_its_fmus_stand_alone(cam: Path, options: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(cam)
+    (cam / "icon.png").write_bytes(b"a picture")
+    assert main(["build", "picking_cam.py", *options, "--output", "made"]) == 0
+    path = cam / "made" / "PickingCam.fmu"
+    with zipfile.ZipFile(path) as archive:
+        page = archive.read("documentation/index.html").decode()
+        icon = "terminalsAndIcons/icon.png" if "3" in options else "model.png"
+        assert archive.read(icon) == b"a picture"
+        binaries = {name.split("/")[1] for name in archive.namelist() if name.startswith("binaries/")}
+    assert "A cam that throws the shuttle" in page
+    assert "<code>preload</code>" in page
+    assert len(binaries) == (2 if not options else 4 if "3" in options else 3)
+    if options:
+        assert fmpy.validation.validate_fmu(str(path)) == []
+    found = fmpy.simulate_fmu(
+        str(path),
+        stop_time=0.3,
+        output_interval=1e-3,
+        output=["lowest_contact_force"],
+        fmi_type="CoSimulation",
+    )
+    assert found["lowest_contact_force"][-1] == pytest.approx(lowest_force(), abs=0.1)  # 1 ms is 2.4 deg
+
+
+def test_without_a_readme_its_docstring_is_the_documentation(cam: Path) -> None:
+    (cam / "README.md").unlink()
+    assert main(["build", str(cam / "picking_cam.py"), "--output", str(cam)]) == 0
+    with zipfile.ZipFile(cam / "PickingCam.fmu") as archive:
+        assert "the follower on a spring" in archive.read("documentation/index.html").decode()
+        assert "model.png" not in archive.namelist()
+
+
+def test_the_fmu_runs_in_a_scene_as_a_file_and_in_a_package(cam: Path) -> None:
+    even = loomfmu.evaluate(cam / "cam.toml")
+    assert main(["build", str(cam / "picking_cam.py"), "--output", str(cam)]) == 0
+    text = (cam / "cam.toml").read_text().replace("component = \"picking_cam.py:PickingCam\"",
+                                                  'fmu = "PickingCam.fmu"')  # fmt: skip
+    (cam / "file.toml").write_text(text)
+    (note,) = scenes.load(cam / "file.toml").notes
+    assert note.startswith("cam turns at a speed of its own")
+    for flavour in ("live", "native"):
+        package = cam / f"{flavour}.ssp"
+        arguments = ["export", str(cam / "cam.toml"), "--ssp", str(package), "--flavour", flavour]
+        assert main([*arguments, *(["--platform", "linux64"] if flavour == "native" else [])]) == 0
+        found = loomfmu.evaluate(package)
+        # the package follows the shaft's FMU, whose angle is rounded otherwise: by 1e-16 of some turns
+        assert found.claims[0].worst == pytest.approx(even.claims[0].worst, rel=1e-12)
+
+
+# ---- where it came from
+
+
+def test_a_trace_keeps_its_source_and_runs_again_from_it(cam: Path) -> None:
+    source = (cam / "picking_cam.py").read_text()
+    law = source[source.index("def rise") : source.index("def pick")]
+    (cam / "cam_law.py").write_text(f'"""The law."""\n\n\n{law}')
+    (cam / "picking_cam.py").write_text(
+        source.replace(law, "").replace(
+            "from loomfmu.mechanism", "from cam_law import rise\nfrom loomfmu.mechanism"
+        )
+    )
+    (cam.parent / "scene.toml").write_text(
+        SCENE.format(steps=90).replace("picking_cam.py", "picking_cam/picking_cam.py")
+    )
+    first = loomfmu.run(cam.parent / "scene.toml", output=cam / "first.h5").trace
+    files = json.loads(first.attributes["files"])
+    assert set(files) == {"picking_cam/picking_cam.py", "picking_cam/cam_law.py"}
+    again = cam / "again"
+    (again / "picking_cam").mkdir(parents=True)
+    for name, text in files.items():
+        (again / name).write_text(text)
+    (again / "scene.toml").write_text(first.attributes["scene"])
+    second = loomfmu.run(again / "scene.toml", output=cam / "second.h5").trace
+    for signal in first:
+        np.testing.assert_array_equal(first[signal], second[signal])
+    with pytest.raises(LoomfmuError, match="it is an input of this command"):
+        loomfmu.run(cam.parent / "scene.toml", output=cam / "cam_law.py", overwrite=True)
+
+
+def test_a_sweep_of_it_runs_in_several_processes(cam: Path) -> None:
+    (cam / "sweep.toml").write_text(
+        'scene = "cam.toml"\nvalues = ["cam.lowest_contact_force"]\n'
+        '[grid]\n"cam.preload" = ["200 N", "500 N", "800 N"]\n[traces]\nfailures = 0\nsample = 0\n'
+    )
+    script = (
+        "import loomfmu\nif __name__ == '__main__':\n"
+        "    found = loomfmu.sweep('sweep.toml', processes=2, output='swept')\n"
+        "    print(found.table['cam.lowest_contact_force'].to_pylist())\n"
+    )
+    (cam / "swept.py").write_text(script)
+    forces = json.loads(in_a_process("swept.py", cwd=cam))
+    assert np.diff(forces) == pytest.approx([300.0, 300.0], rel=1e-12)
