@@ -13,7 +13,7 @@ from ..errors import suggestion
 from ..variables import EXTREMES, MOTION, NOTHING, Component, Variable, variables_of
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
-KEYS = ("component", "fmu", "units", "machine", "head", "pattern")  # of an instance in a scene
+KEYS = ("component", "fmu", "machine", "head", "pattern")  # of an instance in a scene
 TYPES = {"float": float, "int": int, "bool": bool}
 
 
@@ -47,7 +47,7 @@ def _of_class(component: type[Component]) -> Iterator[Fault]:
     for method, given in (("initialize", Component.initialize), ("step", Component.step)):
         if getattr(component, method) is given:
             yield Fault("", f"{name} has no method {method}")
-    if not (component.__doc__ or "").strip() or component.__doc__ == Component.__doc__:
+    if not (component.__doc__ or "").strip() or str(component.__doc__).startswith(f"{name}("):
         yield Fault("", f"{name} has no docstring: its first line describes the FMU")
 
 
@@ -70,7 +70,9 @@ def _of_variable(component: type[Component], variable: Variable) -> str:
     if name in KEYS or name == "time" or not NAME.fullmatch(name):
         return f"a variable cannot be called {name}: scenes and traces use that name"
     if TYPES.get(said) is not variable.type:
-        return f"{name} is a {said}, and its start {variable.start!r} is a {variable.type.__name__}"
+        return (
+            f"{name} is declared {said}, and its start {variable.start!r} is of type {variable.type.__name__}"
+        )
     for unit in (variable.unit, variable.display):
         try:
             units.unit(unit)

@@ -1,0 +1,150 @@
+"""Files of one's own that cannot be an FMU: one line that says where and what, before anything is written."""
+
+from pathlib import Path
+
+import pytest
+
+from loomfmu import LoomfmuError
+from loomfmu.cli import main
+from loomfmu.components import COMPONENTS
+from loomfmu.own import declared, load
+
+GOOD = '''"""A bell."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from loomfmu.mechanism import EXTREMES, NOTHING, Component, Problem, SHAFT, output, parameter, input_, state
+
+
+@dataclass(slots=True)
+class Bell(Component):
+    """A bell."""
+
+    problems: ClassVar = (Problem("the pitch of {pitch} is too high"),)
+    pitch: float = parameter("1", 0.5, "Pitch", minimum=0.0, maximum=1.0)
+    sound: float = output("m", "Sound", rate="rate")
+    rate: float = output("m/s", "Rate")
+
+    def initialize(self, time: float) -> int:
+        """Silence."""
+        self.sound = 0.0
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Ring."""
+        self.sound = self.pitch * time
+        self.rate = self.pitch
+        return 0
+'''
+MISTAKES = {
+    "a class that is no dataclass": ("@dataclass(slots=True)\n", "", r"line 9: Bell is not a dataclass"),
+    "no slots": ("(slots=True)", "", r"line 10: Bell could keep what it does not declare"),
+    "no docstring": ('    """A bell."""\n\n    p', "    p", r"line 10: Bell has no docstring"),
+    "no step": ("def step(", "def stepp(", r"it has no component|line 10: Bell has no method step"),
+    "a field of another kind": ('parameter("1", 0.5, "Pitch"', 'dict("1", 0.5, "Pitch"', "14: TypeError"),
+    "an unknown unit": ('output("m/s"', 'output("furlong/s"', "line 16: rate: unknown unit 'furlong/s'"),
+    "a unit that is not SI": ('output("m",', 'output("mm",', "line 15: sound is in mm: values are SI, m"),
+    "another unit for people": ('"Rate")', '"Rate", display="N")', "line 16: rate is in m/s, which"),
+    "an int for a float": ("0.5, ", "1, ", "line 14: pitch is declared float, and its start"),
+    "a start outside": ("0.5, ", "1.5, ", r"line 14: pitch = 1.5 is outside \[0, 1\]"),
+    "a rate that is not there": ('rate="rate"', 'rate="rat"', "line 15: sound: rate = 'rat' is not one of"),
+    "a rate in another unit": ('"m/s", "Rate"', '"m", "Rate"', "line 15: sound is in m, and its rate"),
+    "a taken name": ("pitch", "machine", "line 14: a variable cannot be called machine"),
+    "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
+    "an extreme that keeps nothing": (
+        '    rate: float = output("m/s", "Rate")',
+        '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="sound")',
+        "line 17: rate is an extreme so far, and keeps = NOTHING",
+    ),
+    "a problem without words": ("return 0\n\n", "return 2\n\n", "line 18: initialize returns problem 2"),
+    "words that show nothing": ("{pitch}", "{pich}", r"line 13: problems: \{pich\} .* did you mean 'pitch'"),
+    "a terminal of other members": (
+        "    pitch",
+        '    terminals: ClassVar = (SHAFT.of("pitch"),)\n    pitch',
+        "line 14: terminals: shaft: it has 3 members",
+    ),
+    "what does not translate": ("self.pitch * time", "[time][0]", r"line 25\).*Subscript is not"),
+    "hidden state": ("self.rate = self.pitch", "self.kept = time", "kept"),
+    "a module in a method": ("self.pitch * time", "Path", r"line 25\).*`self.sound = Path`"),
+    "a syntax error": ("return 0", "return 0 0", "line 21: invalid syntax"),
+    "an import that fails": ('ll."""\n\nfrom', 'll."""\nimport nowhere\nfrom', "line 2: Module"),
+    "an exception": ('ll."""\n\nfrom', 'll."""\n1 / 0\nfrom', "line 2: ZeroDivisionError: division"),
+    "an exit": ('ll."""\n\nfrom', 'll."""\nraise SystemExit(0)\nfrom', "line 2: SystemExit: 0"),
+    "a name of ours": ("class Bell(", "class MainShaft(", "MainShaft is the name of one of"),
+    "two components": (
+        "@dataclass",
+        "@dataclass(slots=True)\nclass Other(Component):\n    value: float = output('1', 'V')\n\n"
+        "    def step(self, time: float, step_size: float) -> int:\n        return 0\n\n\n@dataclass",
+        r"2 components, say which: .*bell\.py:Other, .*bell\.py:Bell",
+    ),
+    "no component": ("(Component)", "", "it has no component: declare a class on"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_gets_one_line_with_its_place(
+    mistake: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old, new, said = MISTAKES[mistake]
+    assert old in GOOD
+    path = tmp_path / "bell.py"
+    path.write_text(GOOD.replace(old, new))
+    assert main(["build", str(path), "--output", str(tmp_path / "made")]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"loomfmu: {path}")
+    assert error.count("\n") == 1
+    assert not (tmp_path / "made").exists()
+    with pytest.raises(LoomfmuError, match=said):
+        load.component(str(path))
+    (tmp_path / "scene.toml").write_text('duration = "1 s"\nstep = "0.1 s"\n[bell]\ncomponent = "bell.py"\n')
+    assert main(["run", str(tmp_path / "scene.toml")]) == 2
+    assert "bell.component: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("spec", "said"),
+    [
+        ("gone.py", "gone.py: cannot be read"),
+        ("bell.py:Bel", "it has no component 'Bel'; did you mean 'Bell'"),
+        ("bell.py:Component", "it has no component 'Component'"),
+    ],
+)
+def test_files_and_classes_that_are_not_there(tmp_path: Path, spec: str, said: str) -> None:
+    (tmp_path / "bell.py").write_text(GOOD)
+    with pytest.raises(LoomfmuError, match=said):
+        load.component(spec, tmp_path)
+
+
+def test_a_file_is_run_again_only_if_a_text_has_changed(tmp_path: Path) -> None:
+    (tmp_path / "pitches.py").write_text("LOW = 0.25\n")
+    path = tmp_path / "bell.py"
+    path.write_text(
+        GOOD.replace("from dataclasses", "from pitches import LOW\nfrom dataclasses").replace("0.5,", "LOW,")
+    )
+    first = load.component("bell.py", tmp_path)
+    assert first().pitch == 0.25
+    assert load.component("bell.py:Bell", tmp_path)().pitch == 0.25
+    assert load.component("bell.py", tmp_path) is first
+    (tmp_path / "pitches.py").write_text("LOW = 0.75\n")  # as long as before, within the same second
+    assert load.component("bell.py", tmp_path)().pitch == 0.75
+
+
+def test_neighbours_of_one_name_in_two_folders_do_not_meet(tmp_path: Path) -> None:
+    found = []
+    for name, low in (("here", 0.25), ("there", 0.5)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "pitches.py").write_text(f"LOW = {low}\n")
+        (tmp_path / name / "bell.py").write_text(
+            GOOD.replace("from dataclasses", "from pitches import LOW\nfrom dataclasses").replace(
+                "0.5,", "LOW,"
+            )
+        )
+        found.append(load.component("bell.py", tmp_path / name)().pitch)
+    assert found == [0.25, 0.5]
+    assert list(tmp_path.rglob("*.pyc")) == []
+
+
+@pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
+def test_our_own_components_have_no_fault(component: type) -> None:
+    assert declared.fault(component, ()) is None
