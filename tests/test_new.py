@@ -17,7 +17,7 @@ from scipy.optimize import minimize_scalar
 import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
-from loomfmu.cosim import scene as scenes
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.new import new
 
 TRIAL = Path(__file__).parent / "own" / "picking_cam"  # what was written by hand
@@ -314,3 +314,34 @@ def test_a_sweep_of_it_runs_in_several_processes(cam: Path) -> None:
     (cam / "swept.py").write_text(script)
     forces = json.loads(in_a_process("swept.py", cwd=cam))
     assert np.diff(forces) == pytest.approx([300.0, 300.0], rel=1e-12)
+
+
+# ---- its page in the documentation
+
+
+def test_the_commands_of_its_page_work(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "own_mechanism.md").read_text()
+    section = page[page.index("## Start") : page.index("## In a scene")]
+    commands = [line.strip() for line in section.splitlines() if line.startswith("    ")]
+    assert len(commands) == 8
+    here = tmp_path
+    for command in commands:
+        program, *arguments = command.split()
+        if program == "cd":
+            here = here / arguments[0]
+            continue
+        module = {"loomfmu": "loomfmu.cli", "pytest": "pytest"}[program]
+        in_a_process("-m", module, *arguments, cwd=here)
+    assert (here / "build" / "native_fmi3" / "PickingCam.fmu").exists()
+
+
+def test_the_message_on_its_page_is_the_one_that_is_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "own_mechanism.md").read_text()
+    (shown,) = [line.strip() for line in page.splitlines() if line.startswith("    loomfmu: ")]
+    monkeypatch.chdir(new("PickingCam", tmp_path)[0].parent)
+    text = Path("picking_cam.py").read_text()
+    Path("picking_cam.py").write_text(text.replace('rate="velocity"', 'rate="velocty"'))
+    assert main(["build", "picking_cam.py"]) == 2
+    assert capsys.readouterr().err == f"{shown}\n"

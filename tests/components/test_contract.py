@@ -370,9 +370,14 @@ def test_splitting_a_step_changes_nothing(component, given, pieces):
         advance(whole, n * step_size, step_size)
         for k in range(pieces):
             advance(split, n * step_size + k * step_size / pieces, step_size / pieces)
+        found, other = values(whole, "output"), values(split, "output")
+        for held in [v.name for v in declared(component) if v.lowest_of or v.highest_of]:
+            # the cubic between samples: steps of 5 deg know a motion of a sixth of a turn to 2e-5, where a
+            # sampled extreme is off by 3e-2
+            same({held: found.pop(held)}, {held: other[held]}, 1e-4)
         # times and inputs are rounded differently, to 1e-16; a second derivative from samples 0.2 ms apart
         # magnifies that by up to 60 / (0.2 ms)^2, over the largest accelerations of 1e3: 1e-9
-        same(values(whole, "output"), values(split, "output"), 1e-8)
+        same(found, other, 1e-8)
 
 
 @every_flag
@@ -390,9 +395,9 @@ def test_rates_belong_to_their_outputs(component, given):
         largest = max(abs(row[variable.rate]) for row in rows)
         for before, here, after in zip(rows, rows[1:], rows[2:], strict=False):
             numeric = (after[variable.name] - before[variable.name]) / (2.0 * step_size)
-            # a difference over 20 us: exact to (5 us w)^2 for the fastest motions, w < 100 / s, and rounding
-            # of a travel of 1 m to 1e-16 / 20 us
-            assert numeric == pytest.approx(here[variable.rate], abs=1e-6 * largest + 1e-10), variable.name
+            # a difference over 20 us: exact to (5 us w)^2 for the fastest motions, w < 600 / s (a cam that
+            # rises in 60 deg), and rounding of a travel of 1 m to 1e-16 / 20 us
+            assert numeric == pytest.approx(here[variable.rate], abs=1e-5 * largest + 1e-10), variable.name
 
 
 @every_flag

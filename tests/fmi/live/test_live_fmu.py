@@ -114,6 +114,8 @@ def test_steps_of_any_size_lead_to_the_same_end(live: Open, name: str) -> None:
             assert instance.step(time, following - time) == OK
         ends.append(dict(zip(instance.fmu.ports, instance.variables(), strict=True)))
     for output in (v for v in variables_of(COMPONENTS[name]) if v.causality == "output"):
+        if output.lowest_of or output.highest_of:
+            continue  # no curve tells the extremes of a revolution from its two ends
         values = [end[output.name] for end in ends]
         # one step of a damper is summed from pieces of its own: rounding of some hundred of them;
         # the others are closed forms of t + h, which differs in its last bit
