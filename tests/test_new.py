@@ -194,6 +194,37 @@ def test_one_that_is_cut_off_from_the_shaft_is_named(cam: Path) -> None:
     assert note == "cam turns at a speed of its own: none of its shaft inputs is wired to the shaft"
 
 
+ALONE = '''"""A wheel that knows no shaft."""
+
+from dataclasses import dataclass
+
+from loomfmu.mechanism import Component, output, parameter
+
+
+@dataclass(slots=True)
+class Wheel(Component):
+    """A wheel."""
+
+    speed: float = parameter("rad/s", 40.0, "Speed", display="rev/min")
+    angle: float = output("rad", "Angle", unbounded=True)
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Turn."""
+        self.angle = self.speed * (time + step_size)
+        return 0
+'''
+
+
+def test_one_that_cannot_follow_the_shaft_is_named(tmp_path: Path) -> None:
+    (tmp_path / "wheel.py").write_text(ALONE)
+    scene = scenes.parse('[shaft]\n[wheel]\ncomponent = "wheel.py"\n', directory=tmp_path)
+    assert scene.notes == ("wheel turns at a speed of its own: Wheel has no terminal SHAFT",)
+
+
 def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from loomfmu.own import checks, load
 

@@ -208,6 +208,8 @@ def _notes(
         inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
         if inputs and not any((name, variable) in fed for variable in inputs):
             yield f"{name} turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+        if not inputs and each.fmu.component and standard_loom.turns_alone(each.fmu.component):
+            yield f"{name} turns at a speed of its own: {each.fmu.name} has no terminal SHAFT"
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 

@@ -151,6 +151,12 @@ def shaft_inputs(component: type[Component] | None, inputs: Collection[str]) -> 
     return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
 
 
+def turns_alone(component: type[Component]) -> bool:
+    """Whether a mechanism has a speed of its own and no way to follow a shaft."""
+    turning = any(v.causality == "parameter" and v.unit == "rad/s" for v in variables_of(component))
+    return turning and not turns_others(component) and not shaft_inputs(component, ())
+
+
 def shafts() -> list[str]:
     """The components that turn others: those whose outputs are a shaft."""
     return [name for name, each in COMPONENTS.items() if turns_others(each)]
