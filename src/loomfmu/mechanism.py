@@ -3,6 +3,7 @@
 Functions of `loomfmu.physics` can be imported, too: they are carried into the FMU with the rest.
 """
 
+from .arrays import array
 from .components.shaft_driven import TOO_FAR, ShaftDriven
 from .components.terminals import FRAME, HEAD, ROTOR, SHAFT
 from .physics.numerics.extremes import (
@@ -19,6 +20,7 @@ from .variables import (
     Component,
     Problem,
     Terminal,
+    at_step_end,
     indicator,
     input_,
     output,
@@ -39,6 +41,8 @@ __all__ = [
     "Problem",
     "ShaftDriven",
     "Terminal",
+    "array",
+    "at_step_end",
     "carried",
     "highest_by_two_rates",
     "highest_so_far",

@@ -64,7 +64,7 @@ MISTAKES = {
         '    terminals: ClassVar = (SHAFT.of("pitch"),)\n    pitch',
         "line 14: terminals: shaft: it has 3 members",
     ),
-    "what does not translate": ("self.pitch * time", "[time][0]", r"line 25\).*Subscript is not"),
+    "what does not translate": ("self.pitch * time", "[time][0]", r"line 25\).*is not an array"),
     "hidden state": ("self.rate = self.pitch", "self.kept = time", "kept"),
     "a module in a method": ("self.pitch * time", "Path", r"line 25\).*`self.sound = Path`"),
     "a syntax error": ("return 0", "return 0 0", "line 21: invalid syntax"),
@@ -114,6 +114,21 @@ def test_files_and_classes_that_are_not_there(tmp_path: Path, spec: str, said: s
     (tmp_path / "bell.py").write_text(GOOD)
     with pytest.raises(LoomfmuError, match=said):
         load.component(spec, tmp_path)
+
+
+def test_an_array_of_another_type_is_refused(tmp_path: Path) -> None:
+    text = GOOD.replace("import EXTREMES", "import array, EXTREMES").replace(
+        "    pitch:",
+        '    peg: tuple[KIND, ...] = array(parameter("1", n, "A peg") for n in (1, 0))\n    pitch:',
+    )
+    path = tmp_path / "bell.py"
+    path.write_text(text.replace("KIND", "int"))
+    assert load.component(str(path))(peg_2=5).peg == (1, 5)
+    path.write_text(text.replace("KIND", "float"))
+    with pytest.raises(
+        LoomfmuError, match=r"line 14: peg_1 is declared tuple\[float, \.\.\.\], and its start"
+    ):
+        load.component(str(path))
 
 
 def test_a_file_is_run_again_only_if_a_text_has_changed(tmp_path: Path) -> None:

@@ -14,7 +14,6 @@ from ..variables import EXTREMES, MOTION, NOTHING, Component, Variable, variable
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 KEYS = ("component", "fmu", "machine", "head", "pattern")  # of an instance in a scene
-TYPES = {"float": float, "int": int, "bool": bool}
 
 
 class Fault(NamedTuple):
@@ -59,17 +58,18 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
     for variable in variables_of(component):
         text = _of_variable(component, variable)
         if text:
-            yield Fault(variable.name, text)
+            yield Fault(variable.element.partition("[")[0] or variable.name, text)
     if not any(variable.causality == "output" for variable in variables_of(component)):
         yield Fault("", f"{component.__name__} has no output")
 
 
 def _of_variable(component: type[Component], variable: Variable) -> str:
     name, annotation = variable.name, component.__dataclass_fields__[variable.name].type
-    said = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", "?")
+    said = annotation.__name__ if isinstance(annotation, type) else str(annotation)
+    wanted = f"tuple[{variable.type.__name__}, ...]" if variable.element else variable.type.__name__
     if name in KEYS or name == "time" or not NAME.fullmatch(name):
         return f"a variable cannot be called {name}: scenes and traces use that name"
-    if TYPES.get(said) is not variable.type:
+    if said != wanted:
         return (
             f"{name} is declared {said}, and its start {variable.start!r} is of type {variable.type.__name__}"
         )
