@@ -31,8 +31,7 @@ bench: .venv/installed-for-tests
 
 # the tables of variables in the READMEs of the FMUs, and their reference results
 docs: .venv/installed
-	$(BIN)/python -c "from loomfmu.fmi.builder import write_readmes; write_readmes()"
-	$(BIN)/python -c "from loomfmu.fmi.references import write_references; write_references()"
+	$(BIN)/python docs/write_fmu_pages.py
 
 # the report that compares everything published with what is computed
 validation: .venv/installed

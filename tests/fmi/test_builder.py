@@ -14,13 +14,13 @@ import fmpy
 import numpy as np
 import pytest
 from live_fmus import COMPONENTS, NAMES, fmu_cache, in_a_process
+from write_fmu_pages import SAMPLES, STEP_SIZE, reference, write_references
 
 from loomfmu import LoomfmuError, components
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi import builder
 from loomfmu.fmi.description import documentation
 from loomfmu.fmi.live import live_slave, live_wrapper
-from loomfmu.fmi.references import SAMPLES, STEP_SIZE, reference, write_references
 from loomfmu.fmi.source import SourceError, flatten
 from loomfmu.variables import Component, output, parameter, variables_of
 
@@ -305,8 +305,8 @@ def test_the_fmu_gives_the_reference_results(name: str) -> None:
 def test_reference_results_are_written_where_the_fmus_lie(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("loomfmu.fmi.references.folder", lambda component: tmp_path)
-    monkeypatch.setattr("loomfmu.fmi.references.COMPONENTS", {"MainShaft": components.MainShaft})
+    monkeypatch.setattr("write_fmu_pages.folder", lambda component: tmp_path)
+    monkeypatch.setattr("write_fmu_pages.COMPONENTS", {"MainShaft": components.MainShaft})
     write_references()
     written = (tmp_path / "reference.csv").read_text()
     assert written == reference(components.MainShaft)

@@ -79,14 +79,6 @@ def zipped(contents: dict[str, bytes]) -> bytes:
     return buffer.getvalue()
 
 
-def write_readmes() -> None:
-    """Bring the tables of variables in all READMEs up to date; a README that has none gets it at its end."""
-    for component in COMPONENTS.values():
-        readme = folder(component) / "README.md"
-        text = documentation.with_table(readme.read_text(encoding="utf-8"), component)
-        readme.write_text(text, encoding="utf-8")
-
-
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of all that is said of its variables, its source and the slave that runs it."""
     digest = hashlib.sha256(model_description(component, "", version()))

@@ -6,7 +6,7 @@ from pathlib import Path
 from loomfmu.components import ReedBeatUp, WeftInsertion
 from loomfmu.physics.linkage import spherical_rocker
 
-HERE = Path(__file__).parent
+FMUS = Path(__file__).parents[1] / "fmus"
 BLUE, RED, GREY, PALE = "#1f5f8b", "#d1495b", "#5b6770", "#e4ebf0"
 SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 Point = tuple[float, float]
@@ -103,7 +103,7 @@ class Drawing:
 
     def write(self, name: str) -> None:
         """Write the drawing of an FMU."""
-        (HERE / name / "drawing.svg").write_text("\n".join([*self.parts, "</svg>", ""]), encoding="utf-8")
+        (FMUS / name / "drawing.svg").write_text("\n".join([*self.parts, "</svg>", ""]), encoding="utf-8")
 
 
 def index(symbol: str) -> str:

@@ -15,7 +15,7 @@ from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
 from loomfmu.variables import Component
 
-HERE = Path(__file__).parent
+FMUS = Path(__file__).parents[1] / "fmus"
 BLUE, RED, PALE, GROUND, EDGE = "#1f5f8b", "#d1495b", "#a9bfcd", "#f5f8fa", "#8fa5b3"
 # an input of a component takes the output of the same name of the component before it
 WIRES = ("rotor_angle", "rotor_velocity", "rotor_acceleration", "travel", "lift", "velocity", "acceleration")
@@ -58,7 +58,7 @@ def draw(
         axes.axhline(level, color=level_colour, linewidth=1.3, clip_on=False)
     for x, y, colour in curves:
         axes.plot(x, y, color=colour, linewidth=2.8, solid_capstyle="round", clip_on=False)
-    figure.savefig(HERE / name / "icon.png", transparent=True, metadata={"Software": None})
+    figure.savefig(FMUS / name / "icon.png", transparent=True, metadata={"Software": None})
     plt.close(figure)
 
 
