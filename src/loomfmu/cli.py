@@ -117,6 +117,10 @@ def _parser() -> argparse.ArgumentParser:
     show.add_argument("trace", metavar="FILE.h5")
     show.set_defaults(command=_show)
 
+    cache = commands.add_parser("cache", help="show where built and unpacked FMUs are kept, and their size")
+    cache.add_argument("--clear", action="store_true", help="delete them; they are built again when needed")
+    cache.set_defaults(command=_cache)
+
     validate = commands.add_parser("validate", help="compare all that is published with what is computed")
     validate.add_argument("--output", type=Path, default=Path("results"), metavar="DIR")
     _add_force(validate, "files in DIR that are neither such a report nor pictures")
@@ -293,6 +297,20 @@ def _validate(options: argparse.Namespace) -> int:
         print(path)
     if not plots.available():
         print('the plots are left out: they need matplotlib, pip install "loomfmu[plot]"', file=sys.stderr)
+    return 0
+
+
+def _cache(options: argparse.Namespace) -> int:
+    from .fmi.cache import cache_directory
+    from .fmi.cache_entries import contents, delete
+
+    if options.clear:
+        delete()
+    found = contents()
+    size, entries = sum(each.size for each in found), sum(each.entries for each in found)
+    print(f"{cache_directory()}: {size / 1e6:.1f} MB, {entries} entries")
+    for each in found:
+        print(f"  {each.kind:8}  {each.size / 1e6:8.1f} MB  {each.entries:6} entries")
     return 0
 
 

@@ -4,16 +4,20 @@ import os
 import stat
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from live_fmus import in_a_process
 
+from loomfmu import LoomfmuError
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi import builder
+from loomfmu.fmi import builder, cache
 from loomfmu.fmi.cache import cache_directory, compiler_environment
 
 SIMS = Path(__file__).parents[2] / "sims"
+unix = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes of files are those of Unix")
 
 
 @pytest.fixture(autouse=True)
@@ -40,6 +44,63 @@ def test_it_is_named_or_in_the_users_own(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LOOMFMU_CACHE", "mine")
     assert cache_directory() == tmp_path / "mine"
+    monkeypatch.setenv("LOOMFMU_CACHE", "")
+    assert cache_directory() == tmp_path / "other" / "loomfmu"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".cache", "mine", "other"]
+
+
+@unix
+def test_an_empty_home_is_none_and_not_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import pwd
+
+    monkeypatch.setattr(pwd, "getpwuid", lambda _: SimpleNamespace(pw_dir=str(tmp_path / "real")))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    assert cache_directory() == tmp_path / "real" / ".cache" / "loomfmu"
+
+
+@unix
+def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "loomfmu").mkdir()
+    (tmp_path / "loomfmu").chmod(0o777)
+    assert stat.S_IMODE(cache_directory().stat().st_mode) == 0o700
+
+
+@unix
+def test_a_named_cache_that_others_can_write_to_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "shared"))
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "shared").chmod(0o775)
+    with pytest.raises(LoomfmuError, match=r"LOOMFMU_CACHE = .*shared can be written to by others; name a"):
+        cache_directory()
+
+
+@unix
+def test_another_users_cache_is_not_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(cache, "_temporary", [])
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    cache_directory()
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)
+    monkeypatch.setattr(cache, "SYSTEM", -1)
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    found = cache_directory()
+    assert found.parent == tmp_path / "temporary"
+    assert caplog.messages == [
+        f"loomfmu: the cache {tmp_path / 'loomfmu'} belongs to another user; using a temporary one,"
+        " LOOMFMU_CACHE names another"
+    ]
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "loomfmu"))
+    with pytest.raises(LoomfmuError, match=r"LOOMFMU_CACHE = .* belongs to another user; name a folder"):
+        cache_directory()
 
 
 @pytest.mark.parametrize("flavour", [[], ["--native"]])
@@ -83,12 +144,12 @@ def test_the_compiler_has_a_cache_that_it_can_write(
     assert compiler_environment()["ZIG_GLOBAL_CACHE_DIR"] == "own"
     monkeypatch.delenv("ZIG_GLOBAL_CACHE_DIR")
     monkeypatch.setenv("HOME", str(tmp_path))
-    assert "ZIG_GLOBAL_CACHE_DIR" not in compiler_environment()
+    assert compiler_environment()["ZIG_GLOBAL_CACHE_DIR"] == str(tmp_path / ".cache" / "zig")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="modes of files are those of Unix")
+@unix
 @pytest.mark.parametrize("mask", [0o022, 0o027])
-def test_files_are_as_open_to_others_as_the_umask_lets_them_be(
+def test_a_built_fmu_is_as_open_as_the_umask_lets_it_be_and_the_cache_is_closed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mask: int
 ) -> None:
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
@@ -99,5 +160,5 @@ def test_files_are_as_open_to_others_as_the_umask_lets_them_be(
     finally:
         os.umask(before)
     assert stat.S_IMODE(made.stat().st_mode) == 0o666 & ~mask
-    assert stat.S_IMODE(unpacked.stat().st_mode) == 0o777 & ~mask
+    assert {stat.S_IMODE(path.stat().st_mode) for path in (unpacked, *unpacked.parents[:2])} == {0o700}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["MainShaft.fmu", "cache"]

@@ -5,6 +5,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import fmpy
 import pytest
 from natives import Native
 from sharing import native_fmus
@@ -37,9 +38,12 @@ def built(fmu_cache: None, tools: None) -> dict[str, fmus.Fmu]:
 
 
 @pytest.fixture(scope="session")
-def sources(built: dict[str, fmus.Fmu]) -> dict[str, Path]:
+def sources(built: dict[str, fmus.Fmu], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The folder of C sources of each FMU, as a user finds it."""
-    return {name: fmu.directory / "sources" for name, fmu in built.items()}
+    unpacked = tmp_path_factory.mktemp("sources")
+    for name, fmu in built.items():
+        fmpy.extract(fmu.path, unpacked / name)
+    return {name: unpacked / name / "sources" for name in built}
 
 
 @pytest.fixture

@@ -1,52 +1,97 @@
-"""Where built and unpacked FMUs are kept between runs."""
+"""Where built and unpacked FMUs are kept between runs: a folder that nobody else can write to."""
 
 import atexit
+import logging
 import os
 import shutil
+import stat
 import tempfile
 from pathlib import Path
+
+from platformdirs import user_cache_path
+
+from ..errors import LoomfmuError
+
+ON_UNIX = hasattr(os, "getuid")
+SYSTEM = 0  # its user can change everything anyway
+WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 _temporary: list[str] = []  # the directory that this process has made and removes at its end
 
 
 def cache_directory() -> Path:
-    """LOOMFMU_CACHE, or `loomfmu` in the user's cache directory, or where that cannot be written a new one.
+    """LOOMFMU_CACHE, or `loomfmu` in the user's cache directory, or where that cannot be used a new one.
 
-    Processes started from this one share it, since they find it in LOOMFMU_CACHE; at the end it is removed.
+    Processes started from this one share a new one, since they find it in LOOMFMU_CACHE; at the end it is
+    removed. Raises LoomfmuError where others may write to the folder that LOOMFMU_CACHE names: what lies
+    there is run.
     """
     named = os.environ.get("LOOMFMU_CACHE")
     if named:
-        return Path(named).absolute()
-    usual = _caches() / "loomfmu"
-    if _is_writable(usual):
-        return usual
-    _temporary.append(tempfile.mkdtemp(prefix="loomfmu-"))
-    os.environ["LOOMFMU_CACHE"] = _temporary[-1]
-    return Path(_temporary[-1])
+        place = Path(named).absolute()
+        if reason := _fault(place):
+            raise LoomfmuError(f"LOOMFMU_CACHE = {place} {reason}; name a folder that only you can write to")
+        return place
+    usual = _of_user("loomfmu")
+    if usual is None:
+        return _new_one()
+    if reason := _fault(usual, mend=True):
+        # Python's own logging brings it to the standard error, if nothing else is set up
+        logging.getLogger("loomfmu.cache").warning(
+            "loomfmu: the cache %s %s; using a temporary one, LOOMFMU_CACHE names another", usual, reason
+        )
+        return _new_one()
+    return usual
 
 
 def compiler_environment() -> dict[str, str]:
     """What the compiler is started with: it waits for ever where it cannot write its own cache."""
-    if os.environ.get("ZIG_GLOBAL_CACHE_DIR") or _is_writable(_caches() / "zig"):
+    if os.environ.get("ZIG_GLOBAL_CACHE_DIR"):
         return dict(os.environ)
-    return os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(cache_directory() / "zig")}
+    return os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(_of_user("zig") or cache_directory() / "zig")}
 
 
-def _caches() -> Path:
-    """The user's directory of caches, which need not exist nor be one that can be written."""
-    named = os.environ.get("XDG_CACHE_HOME")
-    try:
-        return Path(named) if named else Path.home() / ".cache"
-    except RuntimeError:  # a user without a home, as in some containers
-        return Path(os.devnull)
-
-
-def _is_writable(directory: Path) -> bool:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError:
+def is_private(status: os.stat_result) -> bool:
+    """Whether only the user, or the system, can write to a file or folder; links are never private."""
+    if stat.S_ISLNK(status.st_mode):
         return False
-    return os.access(directory, os.W_OK | os.X_OK)
+    return _is_own(status) and not (ON_UNIX and status.st_mode & WRITABLE_BY_OTHERS)
+
+
+def _is_own(status: os.stat_result) -> bool:
+    return not ON_UNIX or status.st_uid in (SYSTEM, os.getuid())
+
+
+def _of_user(name: str) -> Path | None:
+    """The user's cache directory for a program, if there is one that can be written."""
+    try:
+        directory = user_cache_path(name, appauthor=False)
+        directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except (OSError, RuntimeError):  # also for a user without a home, as in some containers
+        return None
+    return directory if os.access(directory, os.W_OK | os.X_OK) else None
+
+
+def _fault(directory: Path, mend: bool = False) -> str:
+    """Why a folder cannot be a cache, empty if it can. It is made, and with `mend` closed to others."""
+    try:
+        directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = directory.stat()
+        if mend and _is_own(status) and stat.S_IMODE(status.st_mode) != 0o700:
+            directory.chmod(0o700)
+            status = directory.stat()
+    except OSError as error:
+        return f"cannot be used ({error.strerror})"
+    if is_private(status):
+        return ""
+    return "can be written to by others" if _is_own(status) else "belongs to another user"
+
+
+def _new_one() -> Path:
+    """A temporary directory for this process and those that it starts."""
+    _temporary.append(tempfile.mkdtemp(prefix="loomfmu-"))
+    os.environ["LOOMFMU_CACHE"] = _temporary[-1]
+    return Path(_temporary[-1])
 
 
 @atexit.register

@@ -1,14 +1,12 @@
 """FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
-import shutil
 import zipfile
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from io import BytesIO
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
-from uuid import uuid4
 
 import fmpy
 
@@ -16,7 +14,7 @@ from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
 from ...files import source
 from ...fmi import builder
-from ...fmi.cache import cache_directory
+from ...fmi.cache_entries import FMUS, UNPACKED, folder, made_file
 from ...fmi.description.model_description import model_description
 from ...fmi.native import builder as native_builder
 from ...variables import MOTION, Component
@@ -117,10 +115,12 @@ class Fmu:
     def check_platform(self, where: str) -> None:
         """Refuse a file that has no library for this machine, naming the platforms that it has."""
         here = fmpy.platform if self.fmi == 2 else fmpy.platform_tuple
-        libraries = self.directory / "binaries"
-        if (libraries / here / f"{self.identifier}{fmpy.sharedLibraryExtension}").exists():
+        if (self.directory / f"binaries/{here}/{self.identifier}{fmpy.sharedLibraryExtension}").exists():
             return
-        found = sorted({each.parent.name for each in libraries.glob(f"*/{self.identifier}.*")})
+        with zipfile.ZipFile(self.path) as archive:
+            libraries = [PurePosixPath(name) for name in archive.namelist()]
+        matching = [each for each in libraries if each.match(f"binaries/*/{self.identifier}.*")]
+        found = sorted({each.parent.name for each in matching})
         known = f"it has {', '.join(found)}" if found else "it has none at all"
         raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
 
@@ -171,29 +171,31 @@ def _check(flavour: str) -> None:
 def file_of(component: type[Component], flavour: str, platforms: tuple[str, ...]) -> Path:
     """The file of a component, built unless the same one was; a live one is for all platforms."""
     _check(flavour)
-    native = flavour == "native"
-    identity = native_builder.identity(component, platforms) if native else builder.guid(component)
+    if flavour == "live":
+        identity, make = builder.guid(component), partial(builder.archive, component)
+    else:
+        identity = native_builder.identity(component, platforms)
+        make = partial(native_builder.archive, component, platforms)
     texts = sorted(builder.beside(component, builder.TEXTS).items())
     identity += f"-{hashlib.sha256(repr(texts).encode()).hexdigest()[:8]}"
-    built = cache_directory() / "fmus" / identity
-    path = built / f"{component.__name__}.fmu"
-    if not path.exists():
-        if native:
-            native_builder.build_native(component, built, platforms)
-        else:
-            builder.build(component, built)
-    return path
+    return made_file(FMUS, identity, f"{component.__name__}.fmu", make)
 
 
 def load(path: Path) -> Fmu:
     """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
     try:
-        sha256 = hashlib.sha256(source(path).read_bytes()).hexdigest()
-        directory = _unpacked(path, sha256)
+        content = source(path).read_bytes()
+        sha256 = hashlib.sha256(content).hexdigest()
+        with zipfile.ZipFile(BytesIO(content)) as archive:
+            # compared with the FMU at each start: what runs is what the hash names
+            names = list(filter(_is_run, archive.namelist()))
+            directory = folder(UNPACKED, sha256, names, archive.read)
         found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:
         raise LoomfmuError(f"{path}: there is no such FMU") from None
-    except Exception as error:  # zipfile and fmpy raise a dozen kinds for a damaged archive
+    except LoomfmuError:  # of the cache
+        raise
+    except Exception as error:  # zipfile raises a dozen kinds for a damaged archive
         raise LoomfmuError(f"{path}: not a readable FMU ({_first_line(error)})") from None
     if not found:
         raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
@@ -218,6 +220,14 @@ def load(path: Path) -> Fmu:
     )  # fmt: skip
 
 
+def _is_run(member: str) -> bool:
+    """Whether a file of an FMU counts in a run: not documents, sources and other platforms' libraries."""
+    top, _, rest = member.partition("/")
+    if top == "binaries":
+        return rest.partition("/")[0] in ("", fmpy.platform, fmpy.platform_tuple)
+    return top not in ("documentation", "sources")
+
+
 def _first_line(error: Exception) -> str:
     reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
     return str(reason).splitlines()[0]
@@ -232,21 +242,3 @@ def _check_runnable(path: Path, description: Any) -> None:
         raise LoomfmuError(
             f"{path}: it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run"
         )
-
-
-def _unpacked(path: Path, sha256: str) -> Path:
-    """The FMU's files, unpacked once for all runs and processes."""
-    target = cache_directory() / "unpacked" / sha256
-    if not target.exists():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        temporary = target.with_name(f"{sha256}.{uuid4().hex}")
-        temporary.mkdir()  # as open to others as the umask lets it be: a cache may be shared
-        try:
-            fmpy.extract(str(path), unzipdir=str(temporary))
-            temporary.rename(target)
-        except OSError:
-            if not target.exists():  # else another process was faster
-                raise
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
-    return target

@@ -7,7 +7,9 @@ the cost of fmpy's public methods, and the same calls.
 
 import ctypes
 import logging
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 from urllib.parse import unquote
 
@@ -72,7 +74,8 @@ class Slave:
         self._saved: int | None = None
         fmu.check_platform(name)
         try:
-            self._slave = self._open()
+            with _no_bytecode():
+                self._slave = self._open()
         except Exception as error:
             hint = f" ({NEEDS_TOOL})" if fmu.needs_tool else ""
             raise LoomfmuError(
@@ -240,6 +243,16 @@ class Slave:
         if not self.fatal:
             self._slave.freeInstance()
             self.fatal = True
+
+
+@contextmanager
+def _no_bytecode() -> Iterator[None]:
+    """Let Python inside an FMU write no bytecode beside its source: what is not in the FMU is not run."""
+    before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        yield
+    finally:
+        sys.dont_write_bytecode = before
 
 
 _unheard = logging.NullHandler()

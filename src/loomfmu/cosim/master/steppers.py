@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
-from ...fmi.cache import cache_directory
+from ...fmi.cache_entries import STEPPER, made_file
 from ...fmi.native import builder as native_builder
 from ..importing.slave import WARNING, Call, Ended, Slave
 from .grid import Span
@@ -254,12 +254,10 @@ def _library() -> Path | None:
     if shipped.exists():
         return shipped
     try:
-        kept = cache_directory() / "stepper" / native_builder.library_identity(SOURCE) / shipped.name
-        if not kept.exists():
-            native_builder.build_library(SOURCE, kept, platform)
-    except (LoomfmuError, OSError):  # no compiler, or no place to keep what it makes
+        identity = native_builder.library_identity(SOURCE)
+        return made_file(STEPPER, identity, shipped.name, lambda: native_builder.library(SOURCE, platform))
+    except LoomfmuError:  # no compiler, or no place to keep what it makes
         return None
-    return kept
 
 
 def _shipped(platform: str) -> Path:

@@ -18,7 +18,7 @@ from xml.etree.ElementTree import Element, ParseError, fromstring
 
 from ...errors import LoomfmuError
 from ...files import source as readable
-from ...fmi.cache import cache_directory
+from ...fmi.cache_entries import PACKAGES, folder
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
@@ -72,7 +72,6 @@ class _Package:
         self.path = path
         content = readable(path).read_bytes()
         self.sha256 = hashlib.sha256(content).hexdigest()
-        self.directory = cache_directory() / "packages" / self.sha256
         with zipfile.ZipFile(path) as archive:
             self.files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
         self.notes: list[str] = []
@@ -156,13 +155,9 @@ class _Package:
     def _fmu(self, source: str) -> Fmu:
         """An FMU of the package, put where it can be read from."""
         name = self.member(source)
-        place = self.directory / name
-        if not place.exists():
-            place.parent.mkdir(parents=True, exist_ok=True)
-            partial = place.with_name(f"{place.name}.partial")
-            partial.write_bytes(self.files[name])
-            partial.replace(place)
-        return fmus.load(place)
+        content, file = self.files[name], posixpath.basename(name)
+        key = hashlib.sha256(content).hexdigest()
+        return fmus.load(folder(PACKAGES, key, [file], lambda _: content) / file)
 
     def _with_units(self, fmu: Fmu, element: Element, name: str) -> Fmu:
         """The units that connectors state, where the FMU itself states none."""

@@ -17,7 +17,7 @@ import fmpy
 
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
-from ...files import write_file
+from ...files import ANY, write_file
 from ...variables import Component
 from ..builder import FMU, beside, described, file_in, guid, license_of, version, zipped
 from ..cache import compiler_environment
@@ -113,7 +113,12 @@ def build_native(
     """
     component = COMPONENTS[component] if isinstance(component, str) else component
     target = file_in(directory, component.__name__, overwrite)
-    return write_file(target, zipped(contents(component, platforms, fmi)), FMU, overwrite=overwrite)
+    return write_file(target, archive(component, platforms, fmi), FMU, overwrite=overwrite)
+
+
+def archive(component: type[Component], platforms: tuple[str, ...], fmi: int = 2) -> bytes:
+    """A native FMU as bytes. Raises LoomfmuError as `build_native`."""
+    return zipped(contents(component, platforms, fmi))
 
 
 def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:
@@ -256,23 +261,25 @@ def library_identity(source: Path) -> str:
 
 
 def build_library(source: Path, output: Path, platform: str) -> None:
-    """Compile one C file into a shared library for all processors of a platform, whole or not at all.
+    """Compile one C file into a shared library file. Raises LoomfmuError as `library`, or naming the file."""
+    write_file(output, library(source, platform), ANY)
 
-    Raises:
-        LoomfmuError: there is no compiler, or it does not compile
-        OSError: the file cannot be written
+
+def library(source: Path, platform: str) -> bytes:
+    """One C file as a shared library for all processors of a platform.
+
+    Raises LoomfmuError where there is no compiler, or it does not compile.
     """
     _compiler()
-    output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent) as name:
-        directory = Path(name)
+    suffix, targets = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
+        directory, output = Path(name), Path(f"{source.stem}{suffix}")
         shutil.copy(source, directory)
         parts = []
-        for target in PLATFORMS[platform].targets:
-            _compile(source.name, Path(output.name), target, directory)
-            parts.append((directory / output.name).read_bytes())
-        (directory / output.name).write_bytes(parts[0] if len(parts) == 1 else fat_binary(parts))
-        (directory / output.name).replace(output)
+        for target in targets:
+            _compile(source.name, output, target, directory)
+            parts.append((directory / output).read_bytes())
+    return parts[0] if len(parts) == 1 else fat_binary(parts)
 
 
 @cache
