@@ -21,7 +21,8 @@ from .worker import Batch, Job, job_of, run_trace
 if TYPE_CHECKING:
     from .store import Store
 
-NEEDED = {"pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep"}  # package -> extra
+# package -> extra
+NEEDED = {"pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "sweep"}
 Advance = Callable[[int], None]
 
 

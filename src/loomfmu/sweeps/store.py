@@ -12,13 +12,13 @@ import contextlib
 import json
 import os
 import re
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
+from filelock import FileLock, Timeout
 
 from ..errors import LoomfmuError
 from ..files import ANY, cannot_write, check_target
@@ -29,7 +29,6 @@ from .worker import Batch
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
 PARTIAL = ".partial"
 LOCK, IDENTITY = "lock", "sweep.json"
-FAR = 1 << 30  # where Windows locks a byte: a locked byte cannot be read
 
 
 class Store:
@@ -196,55 +195,42 @@ def _replace(path: Path, content: Any) -> None:
 def _locked(directory: Path) -> Iterator[None]:
     """Keep other sweeps out of a directory. The system frees the lock with the process that has it."""
     path = directory / LOCK
-    with _held(path) as file:
+    descriptors: list[int] = []
+    lock = FileLock(path, blocking=False, on_acquired=descriptors.append)
+    try:
+        lock.acquire()
+    except Timeout:
+        raise LoomfmuError(f"{directory}: another sweep is running there{_holder(path)}") from None
+    try:
+        _sign(path, descriptors[0])
         try:
-            try:
-                file.truncate(0)
-                # not by way of a buffer, which would be written once more when the file is closed
-                os.write(file.fileno(), str(os.getpid()).encode())
-            except OSError as error:
-                raise cannot_write(path, error) from None
             yield
         finally:
-            with contextlib.suppress(PermissionError):  # Windows deletes no file that is open
+            with contextlib.suppress(PermissionError):  # Windows deletes it when it is let go
                 path.unlink(missing_ok=True)
-    with contextlib.suppress(PermissionError):
-        if sys.platform == "win32":
-            path.unlink(missing_ok=True)
+    finally:
+        lock.release()
 
 
-def _held(path: Path) -> IO[str]:
-    """The lock of a directory, open and ours."""
-    while True:
-        file = path.open("a+", errors="replace")
-        try:
-            file.seek(0)
-            holder = file.read(20).strip()
-            if holder and not holder.isdecimal():
-                raise LoomfmuError(f"{path}: it is not the lock of a sweep; --output names another place")
-            _lock(file)
-            with contextlib.suppress(FileNotFoundError):
-                if os.path.samestat(os.fstat(file.fileno()), path.stat()):
-                    return file
-            file.close()  # its last holder has deleted it meanwhile
-        except (BlockingIOError, PermissionError):
-            file.close()
-            who = f" (process {holder})" if holder else ""
-            raise LoomfmuError(f"{path.parent}: another sweep is running there{who}") from None
-        except BaseException:
-            file.close()
-            raise
+def _sign(path: Path, descriptor: int) -> None:
+    """Write into a lock that is ours which process we are."""
+    written = os.read(descriptor, 20).strip()
+    if written and not written.isdigit():
+        raise LoomfmuError(f"{path}: it is not the lock of a sweep; --output names another place")
+    try:
+        os.ftruncate(descriptor, 0)
+        os.lseek(descriptor, 0, os.SEEK_SET)
+        # a blank first: nobody else can read the byte that Windows locks
+        os.write(descriptor, f" {os.getpid()}".encode())
+    except OSError as error:
+        path.unlink(missing_ok=True)
+        raise cannot_write(path, error) from None
 
 
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(file: IO[str]) -> None:
-        file.seek(FAR)
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-
-else:
-    import fcntl
-
-    def _lock(file: IO[str]) -> None:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+def _holder(path: Path) -> str:
+    """The process that has a lock, as the end of a message; empty if it cannot be told."""
+    with contextlib.suppress(OSError), path.open("rb", buffering=0) as file:
+        file.seek(1)
+        if (process := file.read(20)).isdigit():
+            return f" (process {process.decode()})"
+    return ""
