@@ -7,6 +7,7 @@ import re
 import struct
 import zipfile
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
@@ -70,6 +71,9 @@ def test_licences_of_all_that_is_in_it(name: str) -> None:
     assert b"MIT License" in files["documentation/licenses/license.txt"]
     assert b"MIT License" in files["documentation/licenses/pythonfmu.txt"]
     assert files["documentation/licenses/license.txt"] != files["documentation/licenses/pythonfmu.txt"]
+    notice = files["documentation/licenses/cppfmu.txt"].decode()
+    assert f"pythonfmu {metadata.version('pythonfmu')} " in notice and "mozilla.org/MPL/2.0" in notice
+    assert b"Redistribution and use" in files["documentation/licenses/fmi_headers.txt"]
 
 
 @every_fmu

@@ -2,7 +2,6 @@
 
 import contextlib
 import ctypes
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -79,9 +78,11 @@ def libcosim(scene: Scene, directory: Path) -> Signals:
 
 @cache
 def tbb() -> None:
-    """ecos is linked to a library that `pip install tbb` puts where the loader does not look."""
-    with contextlib.suppress(OSError):
-        ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libtbb.so.12"), ctypes.RTLD_GLOBAL)
+    """ecos is linked to a library that `pip install tbb4u` puts where the loader does not look."""
+    with contextlib.suppress(ImportError, OSError):
+        import tbb4u
+
+        ctypes.CDLL(str(Path(tbb4u.__file__).with_name("libtbb.so.12")), ctypes.RTLD_GLOBAL)
 
 
 def ecos(scene: Scene, directory: Path) -> Signals:

@@ -4,12 +4,15 @@ import hashlib
 import inspect
 import io
 import re
+import textwrap
 import uuid
 import zipfile
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+
+import fmpy
 
 from .. import units
 from ..components import COMPONENTS
@@ -24,6 +27,7 @@ from .source import flatten
 
 FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
 TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png")}  # that lie with a component
+HEADERS = Path(fmpy.__file__).with_name("c-code")  # those of the standard
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
 
@@ -116,6 +120,7 @@ def _told(component: type[Component]) -> dict[str, bytes]:
 def _contents(component: type[Component]) -> dict[str, bytes]:
     """All files of an FMU by their names in it."""
     name = component.__name__
+    header = (HEADERS / "fmi2Functions.h").read_text("utf-8")
     identity = guid(component)
     # every FMU of a process shares one set of Python modules: the name must belong to this content alone
     package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
@@ -126,6 +131,8 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
         "documentation/externalDependencies.html": documentation.external_dependencies(name),
         "documentation/licenses/license.txt": license_of("loomfmu"),
         "documentation/licenses/pythonfmu.txt": license_of("pythonfmu"),
+        "documentation/licenses/cppfmu.txt": Path(live_slave.__file__).with_name("cppfmu.txt").read_bytes(),
+        "documentation/licenses/fmi_headers.txt": license_of_headers(header),
         "resources/slavemodule.txt": f"{package}_entry".encode(),
         f"resources/{package}_entry.py": _entry(component, package, identity).encode(),
         f"resources/{package}/__init__.py": b"",
@@ -200,3 +207,8 @@ def license_of(distribution: str) -> bytes:
         if "license" in file.name.lower():
             return Path(str(file.locate())).read_bytes()
     return (Path(__file__).parents[3] / "LICENSE").read_bytes()
+
+
+def license_of_headers(header: str) -> bytes:
+    """The licence of the standard's headers, which one of them states."""
+    return textwrap.dedent(header[header.index("Copyright (C)") : header.index("*/")]).encode()

@@ -32,7 +32,7 @@ the FMU. Nothing is launched and no package is needed beyond Python's standard l
 - CPython 3.11 or newer, as a 64-bit process on Linux (GLIBC 2.32 or newer) or Windows.
 - A host that has Python loaded with its symbols visible, such as fmpy or PyFMI. A plain C or C++ program
   without Python cannot load this flavour.
-- The compiled wrapper of pythonfmu (MIT), which is in the FMU.
+- The compiled wrapper of pythonfmu (MIT, with code of cppfmu, MPL 2.0), which is in the FMU.
 """
 
 

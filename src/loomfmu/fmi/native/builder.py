@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import textwrap
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -13,13 +12,22 @@ from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
-import fmpy
-
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
 from ...files import ANY, write_file
 from ...variables import Component
-from ..builder import FMU, beside, described, file_in, guid, license_of, version, zipped
+from ..builder import (
+    FMU,
+    HEADERS,
+    beside,
+    described,
+    file_in,
+    guid,
+    license_of,
+    license_of_headers,
+    version,
+    zipped,
+)
 from ..cache import compiler_environment
 from ..description.model_description import model_description, output_order
 from ..description.model_description3 import model_description3
@@ -28,7 +36,6 @@ from .tables import tables
 from .translate import translate
 
 SHELL = Path(__file__).with_name("shell")
-HEADERS = Path(fmpy.__file__).with_name("c-code")
 
 
 @dataclass(frozen=True)
@@ -193,9 +200,7 @@ def licenses(platforms: tuple[str, ...], code: dict[str, str]) -> dict[str, byte
     header = next(text for file, text in code.items() if file.endswith("Functions.h"))
     found = {
         "license.txt": license_of("loomfmu"),
-        "fmi_headers.txt": textwrap.dedent(
-            header[header.index("Copyright (C)") : header.index("*/")]
-        ).encode(),
+        "fmi_headers.txt": license_of_headers(header),
     }
     if "win64" in platforms:
         # what the compiler links into a DLL beside our own
