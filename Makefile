@@ -2,11 +2,15 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+# what is pinned by version and hash, then this package with nothing else
+INSTALL_PINNED := $(PIP) install --no-deps --require-hashes --requirement
+INSTALL_THIS := $(PIP) install --no-deps --no-build-isolation --editable .
+PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 
-.PHONY: demo test check stress bench docs validation wheel clean
+.PHONY: demo test check stress bench docs validation wheel pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu build
@@ -34,15 +38,13 @@ docs: .venv/installed
 	$(BIN)/python docs/write_fmu_pages.py
 
 # the report that compares everything published with what is computed
-validation: .venv/installed
-	$(INSTALL) --editable .[plot]
+validation: .venv/installed-for-tests
 	$(BIN)/loomfmu validate
 
 # a package that needs no compiler for its stepper, on any platform
-wheel: .venv/installed
-	$(INSTALL) --editable .[native]
+wheel: .venv/installed-for-tests
 	$(BIN)/python -c "from loomfmu.cosim.master.steppers import build_all; build_all()"
-	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
+	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist .
 	rm -r src/loomfmu/cosim/master/native/*/
 
 .venv/created:
@@ -50,13 +52,21 @@ wheel: .venv/installed
 	$(PYTHON) -m venv .venv
 	touch $@
 
-.venv/installed: .venv/created pyproject.toml constraints.txt
-	$(INSTALL) --editable .
+.venv/installed: .venv/created pyproject.toml pins/run.txt
+	$(INSTALL_PINNED) pins/run.txt
+	$(INSTALL_THIS)
 	touch $@
 
-.venv/installed-for-tests: .venv/created pyproject.toml constraints.txt
-	$(INSTALL) --editable .[test]
+.venv/installed-for-tests: .venv/created pyproject.toml pins/test.txt
+	$(INSTALL_PINNED) pins/test.txt
+	$(INSTALL_THIS)
 	touch .venv/installed $@
+
+# for all platforms and Pythons; versions that are pinned stay: delete a line to have a newer one
+pins: .venv/created
+	$(PIP) install uv
+	$(PIN) pyproject.toml --group build --extra test --output-file pins/test.txt
+	$(PIN) pyproject.toml --group build --constraint pins/test.txt --output-file pins/run.txt
 
 clean:
 	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

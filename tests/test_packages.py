@@ -1,20 +1,52 @@
 """The packages that are installed with this one."""
 
+import re
+import tomllib
 from importlib import metadata
 from pathlib import Path
 
-PINS = Path(__file__).parents[1] / "constraints.txt"
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parents[1]
+PINNED = re.compile(r"^([A-Za-z0-9_.-]+)==(\S+)", re.MULTILINE)
+
+
+def pins(name: str) -> dict[str, str]:
+    """The version of each package."""
+    return dict(PINNED.findall((ROOT / "pins" / name).read_text(encoding="utf-8")))
+
+
+def test_the_pins_are_what_is_asked_for() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = [text for extra in project["optional-dependencies"].values() for text in extra]
+    for name, texts in (("run.txt", project["dependencies"]), ("test.txt", extras)):
+        for text in texts:
+            required = Requirement(text)
+            if required.name != "loomfmu":
+                assert pins(name)[canonicalize_name(required.name)] in required.specifier, text
+
+
+def test_both_lists_pin_the_same_versions() -> None:
+    assert pins("run.txt").items() <= pins("test.txt").items()
+
+
+def test_every_file_of_a_package_has_a_hash() -> None:
+    text = (ROOT / "pins" / "test.txt").read_text(encoding="utf-8")
+    packages = re.split(r"^(?=\w)", text, flags=re.MULTILINE)[1:]
+    assert len(packages) == len(pins("test.txt"))
+    assert [each for each in packages if "--hash=sha256:" not in each] == []
 
 
 def test_all_of_them_are_free_software() -> None:
     found = []
-    for line in PINS.read_text().splitlines():
+    for name in pins("test.txt"):
         try:
-            described = metadata.metadata(line.partition("==")[0])
+            described = metadata.metadata(name)
         except metadata.PackageNotFoundError:  # of another platform or another Python
             continue
         licences = [each for each in described.get_all("Classifier", []) if each.startswith("License")]
         licences += (described.get("License") or "").splitlines()[:1]  # some have the whole text there
         if any(word in " ".join(licences) for word in ("Proprietary", "Intel Simplified")):
-            found.append(line)
+            found.append(name)
     assert found == []
