@@ -36,21 +36,11 @@ class Drive:
         >>> Drive("motor", "mode", (0.0, 2.0), (1, 3), "Integer", True).along(np.array([-1.0, 1.9, 2.0]))
         array([1, 1, 3], dtype=int32)
         """
-        places = np.array(self.periods)
-        if self.held:
-            last = np.searchsorted(places, revolutions, side="right") - 1
-            kind = np.float64 if self.kind == "Real" else np.int32
-            return np.array(self.values, dtype=kind)[np.maximum(last, 0)]
-        values = np.array(self.values)
-        if len(places) == 1:
-            return np.full(len(revolutions), values[0])
-        after = np.clip(np.searchsorted(places, revolutions, side="right"), 1, len(places) - 1)
-        start, end = places[after - 1], places[after]
-        low, high = values[after - 1], values[after]
-        # held outside the table; a share of exactly 1 need not give the end exactly
-        inside = np.clip(revolutions, places[0], places[-1])
-        found = low + (high - low) * (inside - start) / (end - start)
-        return np.asarray(np.where(revolutions >= places[-1], values[-1], found))
+        if not self.held:
+            return np.interp(revolutions, self.periods, self.values)
+        last = np.searchsorted(self.periods, revolutions, side="right") - 1
+        kind = np.float64 if self.kind == "Real" else np.int32
+        return np.array(self.values, dtype=kind)[np.maximum(last, 0)]
 
 
 def drive(name: str, port: Port, table: Any) -> Drive:
