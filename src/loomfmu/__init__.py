@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import design as design
     from .cosim.claims.claims import judge as judge
-    from .cosim.run import Evaluation as Evaluation
-    from .cosim.run import Result as Result
+    from .cosim.results import Evaluation as Evaluation
+    from .cosim.results import Result as Result
     from .cosim.run import evaluate as evaluate
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 # public name -> its module
 _HOMES = {
-    "Evaluation": "cosim.run",
+    "Evaluation": "cosim.results",
     "LoomfmuError": "errors",
-    "Result": "cosim.run",
+    "Result": "cosim.results",
     "Sweep": "sweeps.run",
     "Trace": "traces",
     "Verdict": "traces",

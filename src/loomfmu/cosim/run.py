@@ -3,84 +3,32 @@
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..files import cannot_write, check_target
-from ..traces import PARTIAL, TRACE, Recording, Trace, TraceWriter, partial_of
+from ..traces import PARTIAL, TRACE, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
 from .claims.claims import judge
-from .claims.verdict import Verdict
 from .importing.fmus import FLAVOURS
-from .importing.slave import Ended
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
-from .planning.plan import Plan, channels, in_memory, record
+from .planning.plan import Plan, channels, ended_text, explained, in_memory, record
 from .planning.pruning import prune
 from .planning.requested import checked_claims, judged_by, output_port, recorded, shaft_angle, with_rates
 from .planning.windows import window_grid
 from .provenance import attributes, groups
+from .results import Evaluation, Result
 from .scenes import scene as scenes
 from .scenes.scene import WINDOWS, Scene
 from .scenes.scene_files import files_of
 from .ssp import read as ssp_read
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
-SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: another one would say that it is something else
-LARGE_TRACE = 300_000_000  # bytes from which its size is told before the run
-
-
-@dataclass(frozen=True, repr=False)
-class _Judged:
-    """A finished run: the verdicts on its claims, what the FMUs warned of, and what was left out.
-
-    It is true where all claims hold. `skipped` are lines that say what was not run or not read and why, and
-    what that saved; `steps` is the number of communication steps. `ended` tells which FMU ended it
-    before its time, and when.
-    """
-
-    scene: Scene
-    claims: tuple[Verdict, ...]
-    warnings: tuple[str, ...]
-    skipped: tuple[str, ...]
-    steps: int
-    ended: str = field(default="", kw_only=True)
-
-    @property
-    def holds(self) -> bool:
-        """Whether every claim holds."""
-        return all(self.claims)
-
-    def __bool__(self) -> bool:
-        return self.holds
-
-    def __repr__(self) -> str:
-        failing = [verdict for verdict in self.claims if not verdict]
-        said = f"{len(failing)} of {len(self.claims)} claims fail" if failing else "all claims hold"
-        if not self.claims:
-            said = "no claims"
-        listed = "".join(f"\n  {verdict}" for verdict in failing)
-        return f"<{type(self).__name__} {self.scene.name}: {said}{':' * bool(failing)}{listed}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Result(_Judged):
-    """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
-
-    `path` is where the trace was written. `trace` stays that of this run when another one is written there.
-    """
-
-    path: Path
-    trace: Trace = field(repr=False, compare=False)
-
-
-@dataclass(frozen=True, repr=False)
-class Evaluation(_Judged):
-    """A finished run whose trace is in memory: `trace["belt.margin"]` are the signal's values in SI."""
-
-    trace: Recording
+SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: any other belongs to other kinds of files
+LARGE_TRACE = 300_000_000  # bytes from which its size is reported before the run
 
 
 def run(
@@ -95,47 +43,39 @@ def run(
     """Co-simulate a scene, record it to HDF5 and judge its claims.
 
     Args:
-        scene: path of a scene file or of a system package (.ssp), or a scene that was read before
+        scene: path of a scene file or a system package (.ssp), or a scene that was read before
         set: values that differ from the scene's, such as {"shaft.speed": "685 rpm"}; numbers are SI
         output: path of the trace; `results/<scene>.h5` below the current directory by default
-        progress: tell how large a large trace will be, and show a progress bar on a long run, if standard
-            error is a terminal
+        progress: report the size of a large trace beforehand and show a progress bar for a long run, if
+            standard error is a terminal
         flavour: "live" or "native" FMUs
         overwrite: replace a file at `output` that is not a trace
 
     Raises:
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
-        KeyboardInterrupt: Ctrl-C; what was written stays readable beside the final name, as `.partial`
+        KeyboardInterrupt: Ctrl-C; what was written stays readable in a file that the message names
     """
     scene = _checked(scene, set, flavour)
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     signals = recorded(scene)
     plan = Plan(scene, prune(scene, signals), _grid(scene, signals))
     _check_target(plan, path, overwrite, progress)
-    with plan.master() as master:
-        master.initialize()
+    target = path.absolute()  # an FMU may change the working directory
+    with plan.stepped() as master:
         if master.interrupted.value:
             raise KeyboardInterrupt("interrupted before the first step")
-        writer = _writer(plan, master, path, flavour)
-        try:
-            with _bar(plan, progress) as advance:
-                record(master, writer, advance)
+        writer = _writer(plan, master, path, target, flavour)
+        with _kept(writer, path), _bar(plan, progress) as advance:
+            record(master, writer, advance)
             if master.interrupted.value:
                 raise Interrupted
-        except Interrupted:
-            kept = writer.abandon("interrupted")
-            raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
-        except OSError as error:
-            kept = writer.abandon("failed")
-            raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {kept}") from None
-        except BaseException:
-            writer.abandon("failed")
-            raise
+        # while the instances are still there: one that crashes when it is freed takes nothing with it
+        verdicts = _finish(scene, writer, path, ended_text(master.ended))
         warnings = (*scene.notes, *master.warnings())
-    ended = _told(master.ended)
-    verdicts = _finish(scene, writer, ended)
-    skipped = explained(plan)
-    return Result(scene, verdicts, warnings, skipped, master.steps, path, Trace(path), ended=ended)
+    return Result(
+        scene, verdicts, warnings, explained(plan), master.steps, path, Trace(path),
+        ended=ended_text(master.ended),
+    )  # fmt: skip
 
 
 def evaluate(
@@ -165,7 +105,7 @@ def evaluate(
     warnings = (*scene.notes, *found.warnings)
     return Evaluation(
         scene, verdicts, warnings, explained(found.plan), found.steps, found.recording,
-        ended=_told(found.ended),
+        ended=ended_text(found.ended),
     )  # fmt: skip
 
 
@@ -195,25 +135,6 @@ def _grid(scene: Scene, signals: Sequence[str]) -> Grid:
     return window_grid(scene, signals) if scene.grid == WINDOWS else uniform(scene)
 
 
-def explained(plan: Plan) -> tuple[str, ...]:
-    """What a run leaves out and why, and what that saves."""
-    kept, whole = len(plan.pruned.scene.instances), len(plan.scene.instances)
-    taken, usual = plan.grid.steps, plan.scene.steps
-    lines = [*plan.pruned.skipped, *plan.grid.notes]
-    done, full = kept * taken + plan.grid.scouted, whole * usual
-    if not done:
-        saved = "none left"
-    elif done == full:
-        saved = "all of them"
-    else:
-        saved = f"{full / done:.3g} times fewer" if done < full else f"{100 * (done / full - 1):.2g} % more"
-    return (
-        *lines,
-        f"{kept} of {whole} FMUs, {taken} steps where equal ones would be {usual}:"
-        f" {done} steps of FMUs instead of {full}, {saved}",
-    )
-
-
 def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
     """A scene from its file or its system package, with other values if there are any."""
     if isinstance(scene, Scene):
@@ -233,7 +154,9 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
     if flavour == "live":
         return scene
     if scene.package is not None:
-        raise LoomfmuError(f"{scene.package}: a system package brings its own FMUs; its flavour is settled")
+        raise LoomfmuError(
+            f"{scene.package}: a system package brings its own FMUs, so no flavour can be chosen"
+        )
     instances = {
         name: replace(instance, fmu=instance.fmu.in_flavour(flavour))
         for name, instance in scene.instances.items()
@@ -241,12 +164,24 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
     return replace(scene, instances=instances)
 
 
-def _told(ended: Ended | None) -> str:
-    """Which FMU ended the run before its time, and when."""
-    return f"{ended.name} at {ended.time:.9g} s" if ended else ""
+@contextmanager
+def _kept(writer: TraceWriter, path: Path) -> Iterator[None]:
+    """Whatever ends the run early: what was written stays readable, and the message says where it is."""
+    place = path.with_name(writer.partial.name)
+    try:
+        yield
+    except Interrupted:
+        writer.abandon("interrupted")
+        raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {place}") from None
+    except OSError as error:
+        writer.abandon("failed")
+        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {place}") from None
+    except BaseException:
+        writer.abandon("failed")
+        raise
 
 
-def _finish(scene: Scene, writer: TraceWriter, ended: str) -> tuple[Verdict, ...]:
+def _finish(scene: Scene, writer: TraceWriter, path: Path, ended: str) -> tuple[Verdict, ...]:
     """Seal the trace, judge it, store the verdicts and give it its final name."""
     try:
         writer.seal("complete", ended)
@@ -254,22 +189,23 @@ def _finish(scene: Scene, writer: TraceWriter, ended: str) -> tuple[Verdict, ...
             verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
         writer.complete([verdict.as_dict() for verdict in verdicts])
     except OSError as error:
-        raise cannot_write(writer.path, error) from None
+        raise cannot_write(path, error) from None
     except LoomfmuError as error:
-        raise LoomfmuError(f"{error}; the trace is kept in {writer.partial}") from None
+        kept = path.with_name(writer.partial.name)
+        raise LoomfmuError(f"{error}; the trace is kept in {kept}") from None
     return verdicts
 
 
-def _check_target(plan: Plan, path: Path, overwrite: bool, told: bool) -> None:
-    """Refuse, before the run, a trace that may not be written there or does not fit; tell of a large one."""
+def _check_target(plan: Plan, path: Path, overwrite: bool, report: bool) -> None:
+    """Refuse, before the run, a trace that may not be written there or does not fit; report a large one."""
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
     if path.suffix.lower() not in SUFFIXES:
-        raise LoomfmuError(f"{path}: a trace is HDF5 and takes the name {path.with_suffix('.h5').name}")
+        raise LoomfmuError(f"{path}: a trace is an HDF5 file; name it {path.with_suffix('.h5').name}")
     check_target(partial_of(path), PARTIAL, inputs, overwrite)
     kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
-    if told and size > LARGE_TRACE:
+    if report and size > LARGE_TRACE:
         print(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less", file=sys.stderr)
     try:
         check_room(partial_of(path), size)
@@ -277,16 +213,16 @@ def _check_target(plan: Plan, path: Path, overwrite: bool, told: bool) -> None:
         raise cannot_write(path, error) from None
 
 
-def _writer(plan: Plan, master: Master, path: Path, flavour: str) -> TraceWriter:
+def _writer(plan: Plan, master: Master, path: Path, target: Path, flavour: str) -> TraceWriter:
     try:
-        return TraceWriter(path, attributes(plan, flavour), channels(plan, master), groups(plan))
+        return TraceWriter(target, attributes(plan, flavour), channels(plan, master), groups(plan))
     except OSError as error:
         raise cannot_write(path, error) from None
 
 
 @contextmanager
 def _bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
-    """A progress bar, where one is wanted, the run is long and somebody is looking."""
+    """A progress bar for a long run, if it is wanted and standard error is a terminal."""
     if not wanted or plan.grid.steps < LONG_RUN or not sys.stderr.isatty():
         yield lambda _step: None
         return

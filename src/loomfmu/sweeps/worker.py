@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from .. import machines
-from ..cosim.claims.verdict import Verdict
 from ..cosim.master.master import Interrupted
 from ..cosim.run import evaluate, run
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
+from ..traces import Verdict
 from .plan import SweepPlan, read_scene
 
 # the threads of one process share the instances that rest between runs: they take turns

@@ -11,9 +11,10 @@ from .. import units
 class Verdict:
     """What became of a claim; true where it holds.
 
-    `bound` and `worst` are in `unit`, which is SI unless an FMU of another maker has a unit of its own.
+    `bound` and `worst` are in `unit`, which is SI unless a third-party FMU has a unit of its own.
     People read them in `display_unit`; "1" means in `unit` itself. `time` is in s, `angle` in rad within the
-    revolution, which is counted from 1; without a shaft they are NaN and None.
+    revolution, which is counted from 1; without a shaft they are NaN and None. `sense` is 1 if the worst
+    value is to be at least the bound, -1 if at most, and 0 if a trace does not say.
     """
 
     claim: str
@@ -27,6 +28,7 @@ class Verdict:
     angle: float
     revolution: int | None
     note: str = ""
+    sense: int = 0
 
     def __bool__(self) -> bool:
         return self.holds
@@ -41,6 +43,11 @@ class Verdict:
             f"{self.word}: {self.claim}: {self.signal}, {self.shown(self.worst)}{place},"
             f" bound {self.shown(self.bound)}{note}"
         )
+
+    @property
+    def distance(self) -> float:
+        """How far the worst value is from the bound, in `unit`; negative on the wrong side of it."""
+        return self.sense * (self.worst - self.bound) if self.sense else math.nan
 
     @property
     def word(self) -> str:

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
 from loomfmu.components import DobbyDrive
-from loomfmu.cosim.claims import curves
+from loomfmu.cosim.claims import curves, shaft
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
@@ -126,7 +126,7 @@ def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so(tmp_path
     time = np.linspace(0, 5, 51)
     wavy = drawn(tmp_path, lambda t: t, np.cos, None, time)
     found = judge(wavy, kind="above", signal="a.x", bound=-2.0)
-    assert found.note == "a.x is known at the samples only: its rate is not recorded"
+    assert found.note == "a.x is known only at the samples: its rate is not recorded"
     assert (found.worst, found.time) == (np.cos(time).min(), time[31])
     # what only falls has its extremes at its ends: nothing is missed
     falling = drawn(tmp_path, lambda t: t, lambda t: -t, None, time)
@@ -255,7 +255,7 @@ def test_claims_on_the_loom_say_where_rates_are_missing(
             judge(trace, kind="rapier_in_open_shed", head_height=0.0).note,
             judge(trace, kind="reed_clear_of_rapier", clearance=0.0).note,
         ]
-    lacking = "{} is known at the samples only: its rate is not recorded".format
+    lacking = "{} is known only at the samples: its rate is not recorded".format
     assert said == [
         lacking("heald_1.lift"),
         "; ".join(map(lacking, ("weft.travel", "heald_1.lift", "heald_2.lift"))),
@@ -275,7 +275,7 @@ def test_a_bound_that_only_the_curve_between_samples_passes_is_held(tmp_path: Pa
     assert found
     assert found.worst > 1.0
     assert re.fullmatch(
-        r"beyond the bound only between samples, where the curve may be off by \d\.\de[-+]\d\d mm", found.note
+        r"passes the bound only between samples, where the curve may be off by \d\.\de[-+]\d\d mm", found.note
     )
     # a bound that a sample passes by more than rounding, 1e-12 of 1400, fails
     assert not judge(trace, kind="below", signal="a.x", bound=1.0 - 2e-9)
@@ -342,7 +342,7 @@ def test_a_window_that_the_run_never_enters_fails(tmp_path: Path) -> None:
     trace = drawn(tmp_path, lambda t: t, np.cos, lambda t: -np.sin(t), np.linspace(0, 1, 11))
     found = judge(trace, kind="above", signal="a.x", bound=-9.0, window=["180 deg", "200 deg"])
     assert not found
-    assert found.note == "the run is never in that window"
+    assert found.note == "the run never enters that window"
     assert found.as_dict()["worst"] is None
     assert "nan" not in json.dumps(found.as_dict()).lower()
 
@@ -409,12 +409,12 @@ def test_a_frame_that_holds_dwells_a_turn_longer(loom: Callable[..., Trace]) -> 
 def test_a_frame_that_never_moves_dwells_throughout(loom: Callable[..., Trace]) -> None:
     found = judge(loom(90, weave="1/10"), kind="dwell", heald="heald_1", at_least="80 deg")
     assert found
-    assert found.note == "the frame is there throughout the run"
+    assert found.note == "the frame stays there throughout the run"
     assert math.isclose(found.worst, 3 * TURN, rel_tol=1e-14)
     # a run that is shorter than the bound cannot tell
     short = judge(loom(90, weave="1/10", revolutions=0.2), kind="dwell", heald="heald_1", at_least="80 deg")
     assert not short
-    assert short.note == "the frame is there throughout, but the run is shorter than that"
+    assert short.note == "the frame stays there all the time, but the run is too short to tell"
 
 
 SLOW = {"shaft__start_angle": "180 deg"}  # the slow point, in the middle of a dwell
@@ -428,7 +428,7 @@ def test_a_dwell_that_is_under_way_at_the_start_is_judged_over_a_whole_revolutio
     found = judge(trace, kind="dwell", heald="heald_1", at_least="80 deg")
     assert found
     assert abs(found.worst - exact_dwell(0.015)) < 1e-9
-    assert found.note == "its pieces at the run's end and start taken together"
+    assert found.note == "joined from its parts at the end and the start of the run"
     assert not judge(trace, kind="dwell", heald="heald_1", at_least="86 deg")
     # a run of two revolutions sees one whole dwell between
     found = judge(loom(revolutions=2, shaft__start_angle=start), kind="dwell", heald="heald_1", at_least=0.0)
@@ -448,17 +448,16 @@ def test_what_a_run_shows_of_a_dwell_that_it_cuts_off_is_the_least_that_it_lasts
     together = judged(2, "80 deg")
     assert together
     assert abs(together.worst - exact_dwell(0.015)) < 1e-9
-    assert (
-        together.note == "its pieces at the run's end and start taken together: it lasts at least that long"
-    )
+    joined = "joined from its parts at the end and the start of the run"
+    assert together.note == f"{joined}: it lasts at least this long"
     one = judged(2, "300 deg")
     assert one
     assert abs(one.worst - piece) < 1e-9
-    assert one.note == "the other one is cut off by an end of the run, and not judged"
+    assert one.note == "the other one is cut off by an end of the run and not judged"
     both = judged(3, "300 deg")
     assert both
     assert abs(both.worst - piece) < 1e-9
-    assert both.note == "cut off by an end of the run: it lasts at least that long"
+    assert both.note == "cut off by an end of the run: it lasts at least this long"
     unknown = judged(2, "440 deg")
     assert not unknown
     assert math.isnan(unknown.worst)
@@ -503,7 +502,8 @@ def test_clear_shed_is_the_dwell_at_another_height(loom: Callable[..., Trace]) -
     with pytest.raises(LoomfmuError) as raised:
         judge(loom(), kind="clear_shed", heald="heald_1", clearance="9 mm", at_least=0.0)
     assert str(raised.value) == (
-        "clear_shed of heald_1: clearance = 9 mm is outside (0, 8.166667) mm, the warp's way to either side"
+        "clear_shed of heald_1: clearance = 9 mm is outside (0, 8.166667) mm,"
+        " how far the warp moves to either side"
     )
 
 
@@ -689,7 +689,7 @@ at_most = "1 N"
         ),
         (
             {"kind": "above", "signal": "weft.travel", "bound": 0, "window": ["1 deg"]},
-            "claim 'above': window = ['1 deg'] is not [from, to] in shaft angle",
+            "claim 'above': window = ['1 deg'] must be two shaft angles, such as [\"330 deg\", \"30 deg\"]",
         ),
         (
             {"kind": "above", "signal": "weft.travel", "bound": 0, "window": ["90 deg", "90 deg"]},
@@ -705,11 +705,11 @@ at_most = "1 N"
         ),
         (
             {"kind": "dwell_contains", "heald": "heald_1", "angles": []},
-            "claim 'dwell_contains': angles = [] is no list of shaft angles",
+            "claim 'dwell_contains': angles = [] must be a list of shaft angles, such as [\"140 deg\"]",
         ),
         (
             {"kind": "dwell", "heald": "heald_1", "at_least": 1, "tolerance": 0.5},
-            "claim 'dwell': tolerance = 0.5 is outside (0, 0.5), shares of the stroke",
+            "claim 'dwell': tolerance = 0.5 is outside (0, 0.5) of the stroke",
         ),
         (
             {"kind": "peak_load", "damper": "damper_1", "at_most": "1 mm"},
@@ -717,7 +717,7 @@ at_most = "1 N"
         ),
         (
             {"kind": "dwell", "heald": "heald_9", "at_least": 1},
-            "loom_0.h5: no parameter 'heald_9.stroke' is recorded",
+            "loom_0.h5: no signal 'heald_9.lift' is recorded; did you mean 'heald_2.lift'?",
         ),
     ],
 )
@@ -760,11 +760,11 @@ def test_a_bound_may_be_a_parameter_of_the_run(tmp_path):
 @pytest.mark.parametrize(
     ("bound", "message"),
     [
-        ("shaft.sped", "claim: bound = 'shaft.sped' is no parameter; did you mean 'shaft.speed'?"),
-        ("belt.head_mass", "claim: bound belt.head_mass is in kg, belt.lowest_speed_limit in rad/s"),
+        ("shaft.sped", "claim: bound = 'shaft.sped' is not a parameter; did you mean 'shaft.speed'?"),
+        ("belt.head_mass", "claim: bound belt.head_mass is in kg, but belt.lowest_speed_limit is in rad/s"),
     ],
 )
-def test_a_bound_that_is_no_fitting_parameter_is_refused(tmp_path, bound, message):
+def test_a_bound_that_does_not_fit_its_signal_is_refused(tmp_path, bound, message):
     with pytest.raises(LoomfmuError, match=re.escape(message)):
         judged(tmp_path, f'kind = "above"\nsignal = "belt.lowest_speed_limit"\nbound = "{bound}"')
 
@@ -827,7 +827,7 @@ def test_a_lock_that_turns_by_itself_is_judged_at_the_samples_and_says_so(tmp_pa
     found = judged(tmp_path, alone, **{"lock.follow_shaft": False, "lock.speed": "540 rev/min"})
     assert found.holds
     assert found.note == (
-        "lock.in_time is known at the samples only: the lock does not follow shaft.velocity"
+        "lock.in_time is known only at the samples: the lock does not follow shaft.velocity"
     )
 
 
@@ -883,7 +883,7 @@ def test_a_run_that_never_reaches_the_belts_risk_says_so() -> None:
     assert evaluate(DEMO).claims[0].note == ""
 
 
-def test_a_negative_speed_is_no_bound(loom: Callable[..., Trace]) -> None:
+def test_a_negative_speed_is_refused_as_a_bound(loom: Callable[..., Trace]) -> None:
     said = r'bound shaft.speed = -800 rev/min is negative, .*, such as bound = "800 rev/min"'
     with pytest.raises(LoomfmuError, match=said):
         evaluate(DEMO, set={"shaft.speed": "-800 rpm"})
@@ -900,7 +900,7 @@ def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
 ) -> None:
     trace = loom(360, shaft__speed=f"{600 * way} rpm", shaft__start_angle=f"{start * way} deg")
     places = [
-        curves.on_the_shaft(curves.Motion(trace, "shaft.angle"), revolutions * 0.1)
+        shaft.place(curves.Motion(trace, "shaft.angle"), revolutions * 0.1)
         for revolutions in (0.0, 0.3, 1.3, 2.6)
     ]
     assert [revolution for _angle, revolution in places] == [1, 1, 2, 3]

@@ -1,4 +1,4 @@
-"""What a run leaves out: found backwards from what is asked, and told."""
+"""What a run leaves out: found backwards from what is requested, and explained."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,9 +11,9 @@ from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu.cosim.importing import fmus, pool
+from loomfmu.cosim.planning.plan import explained
 from loomfmu.cosim.planning.pruning import Pruned, prune
 from loomfmu.cosim.planning.requested import judged_by, recorded
-from loomfmu.cosim.run import explained
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 
@@ -68,17 +68,14 @@ def test_what_is_not_needed_is_neither_built_nor_loaded(
     fmus._known.clear()
 
 
-def test_what_is_left_out_is_told_with_its_reason_and_what_it_saves() -> None:
+def test_what_is_left_out_is_explained_with_its_reason_and_what_it_saves() -> None:
     scene = margin()
-    told = loomfmu.evaluate(scene).skipped
-    assert "shaft (MainShaft): its speed is constant, what follows it turns by itself" in told
-    assert "damper_3 (HealdDamper): nothing that is recorded or claimed depends on it" in told
-    assert any(line.startswith("belt: 10 of 12 outputs that nobody reads: free_length, ") for line in told)
+    skipped = loomfmu.evaluate(scene).skipped
+    assert "shaft (MainShaft): not run; its speed is constant, so its angle needs no FMU" in skipped
+    assert "damper_3 (HealdDamper): not run; nothing that is recorded or claimed depends on it" in skipped
+    assert any(line.startswith("belt: 10 of 12 outputs not read: free_length, ") for line in skipped)
     # 12 FMUs and 360 steps against 2 and 360
-    assert told[-1] == (
-        "2 of 12 FMUs, 360 steps where equal ones would be 360:"
-        " 720 steps of FMUs instead of 4320, 6 times fewer"
-    )
+    assert skipped[-1] == ("ran 2 of 12 FMUs, 360 steps each: 720 FMU steps instead of 4320, 6 times fewer")
 
 
 def test_less_gives_the_same_bits(tmp_path: Path) -> None:
@@ -154,21 +151,31 @@ def test_loops_are_kept_whole() -> None:
     assert set(needed.scene.instances) == {"weft", "belt"}
 
 
-def test_nothing_asked_is_nothing_run() -> None:
+def test_without_a_request_nothing_runs() -> None:
     evaluated = loomfmu.evaluate(scenes.parse("revolutions = 2\nsteps_per_revolution = 8\n[shaft]", "shaft"))
-    assert evaluated.skipped[-1].endswith("none left")
+    assert evaluated.skipped[-1] == "ran none of 1 FMUs; 16 FMU steps skipped"
     # the closed form of a constant speed: 400 rev/min
     np.testing.assert_allclose(evaluated.trace["shaft.angle"], np.arange(17) * np.pi / 4, rtol=1e-15)
     assert evaluated.trace["shaft.velocity"][-1] == evaluated.trace.parameter("shaft.speed")
 
 
 @pytest.mark.parametrize(
-    ("taken", "said"), [(50, "2 times fewer"), (100, "all of them"), (108, "8 % more"), (0, "none left")]
+    ("taken", "scouted", "expected"),
+    [
+        (50, 0, "ran 1 of 1 FMUs, 50 steps each: 50 FMU steps instead of 100, 2 times fewer"),
+        (100, 0, "ran 1 of 1 FMUs, 100 steps each; nothing skipped"),
+        (
+            98,
+            10,
+            "ran 1 of 1 FMUs, 98 steps each and 10 to find the windows:"
+            " 108 FMU steps instead of 100, 8 % more",
+        ),
+    ],
 )
-def test_what_a_grid_saves_or_costs_is_told(taken: int, said: str) -> None:
+def test_what_a_grid_saves_or_costs_is_reported(taken: int, scouted: int, expected: str) -> None:
     whole = SimpleNamespace(instances={"a": 1}, steps=100)
     plan: Any = SimpleNamespace(
         scene=whole, pruned=SimpleNamespace(scene=whole, skipped=()),
-        grid=SimpleNamespace(steps=taken, scouted=0, notes=()),
+        grid=SimpleNamespace(steps=taken, scouted=scouted, notes=()),
     )  # fmt: skip
-    assert explained(plan)[-1].endswith(f", {said}")
+    assert explained(plan) == (expected,)

@@ -98,7 +98,7 @@ def test_a_rigid_loom_is_exact_to_1e_9_with_a_tenth_of_the_steps() -> None:
 def test_with_a_damper_the_steps_are_the_scenes_own_and_the_landings() -> None:
     found, even = judged(steps_per_revolution=360), judged("uniform", steps_per_revolution=360)
     assert any(
-        line.startswith("steps: 360 in a revolution (damper_1 integrates), and landings")
+        line.startswith("steps: 360 per revolution (damper_1 integrates), plus steps that land")
         for line in found.skipped
     )
     assert abs(found.claims[0].worst - lowest("margin")) < 1e-9
@@ -143,9 +143,9 @@ def test_ripples_are_not_overlooked(order: int, amplitude: float) -> None:
     # no worse than the scene's own steps, which are off by 1e-5 at an order of 100
     worse = abs(even.claims[0].worst - exact.claims[0].worst)
     assert abs(found.claims[0].worst - exact.claims[0].worst) <= worse + 1e-9
-    told = {100: "1600 in a revolution", 36: "576 in a revolution"}
-    if order in told:
-        wanted = f"steps: {told[order]} (the shaft ripples {order} times in a revolution)"
+    steps = {100: "1600 per revolution", 36: "576 per revolution"}
+    if order in steps:
+        wanted = f"steps: {steps[order]} (the shaft ripples {order} times in a revolution)"
         assert any(line.startswith(wanted) for line in found.skipped)
 
 
@@ -155,7 +155,7 @@ def test_a_ripple_takes_more_steps_than_the_scene_has() -> None:
     found = loomfmu.evaluate(BELT, set=few | at)
     exact = loomfmu.evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 11520, **at})
     assert found.claims[0].worst == pytest.approx(exact.claims[0].worst, abs=1e-9)
-    wanted = "steps: 112 in a revolution (the shaft ripples 7 times in a revolution), and landings"
+    wanted = "steps: 112 per revolution (the shaft ripples 7 times in a revolution), plus steps that land"
     assert any(line.startswith(wanted) for line in found.skipped)
 
 
@@ -176,9 +176,7 @@ def test_a_quick_start_is_not_overlooked() -> None:
     found = loomfmu.evaluate(BELT, set={"grid": "windows", **at})
     fine = loomfmu.evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 5760, **at})
     assert found.claims[0].worst == pytest.approx(fine.claims[0].worst, abs=1e-9)
-    assert any(
-        "steps: 320 in a revolution (the shaft starts up in 0.005 s)" in line for line in found.skipped
-    )
+    assert any("steps: 320 per revolution (the shaft starts up in 0.005 s)" in line for line in found.skipped)
 
 
 def test_a_pull_between_two_coarse_steps_is_not_overlooked() -> None:
@@ -238,11 +236,11 @@ def test_windows_are_found_wherever_they_are(changed: dict[str, object]) -> None
     [
         (
             '[shaft]\ncomponent = "DrivenShaft"\ninertia = 0.1\n',
-            "(weft.shaft_torque -> shaft.torque_1 closes a loop)",
+            "weft.shaft_torque -> shaft.torque_1 closes a loop",
         ),
         (
             '[shaft]\ncomponent = "DrivenShaft"\n[wires]\n"shaft.torque_1" = false\n',
-            "(shaft integrates)",
+            "shaft integrates",
         ),
     ],
 )
@@ -251,7 +249,7 @@ def test_what_integrates_takes_the_scenes_own_steps(rest: str, why: str) -> None
     text += '[loom]\nmachine = "WL680-3600"\n'
     text += f'{rest}[[claims]]\nkind = "lowest_margin"\nbound = -1.0\n'
     found = loomfmu.evaluate(scenes.parse(text))
-    assert f"steps: the scene's own everywhere {why}" in found.skipped
+    assert f'steps: all equal, as with grid = "uniform", because {why}' in found.skipped
     even = loomfmu.evaluate(scenes.parse(text), set={"grid": "uniform"})
     assert found.claims == even.claims
     assert found.steps == even.steps == 360
@@ -293,7 +291,7 @@ def test_a_recorded_run_is_on_the_same_grid_and_says_so(tmp_path: Path) -> None:
     np.testing.assert_array_equal(result.trace.time, judged().trace.time)
     assert result.trace.attributes["grid"] == "windows"
     assert any(
-        line.startswith("steps: 1440 in a revolution (damper_1 integrates), and landings")
+        line.startswith("steps: 1440 per revolution (damper_1 integrates), plus steps that land")
         for line in result.skipped
     )
 
@@ -301,15 +299,15 @@ def test_a_recorded_run_is_on_the_same_grid_and_says_so(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[shaft]", 'grid = "windows": the scene has no claims, whose windows these could be'),
+        ("[shaft]", 'grid = "windows": the scene has no claims, so there is nothing to look for'),
         (
             "coarse_steps_per_revolution = 2000\n"
             '[[claims]]\nkind = "below"\nsignal = "shaft.velocity"\nbound = 1\n',
-            "coarse_steps_per_revolution = 2000 is outside [1, 1440], the fine steps_per_revolution",
+            "coarse_steps_per_revolution = 2000 is outside [1, 1440], its steps_per_revolution",
         ),
     ],
 )
-def test_mistakes_are_told(text: str, message: str) -> None:
+def test_mistakes_are_refused(text: str, message: str) -> None:
     with pytest.raises(LoomfmuError) as raised:
         loomfmu.evaluate(scenes.parse(f'grid = "windows"\n{text}'))
     assert str(raised.value) == message
@@ -334,5 +332,8 @@ def test_points_are_kept_apart_from_the_last_one_that_stays() -> None:
 
 def test_more_steps_than_memory_holds_are_refused_before_any_is_taken() -> None:
     scene = scenes.load(SIMS / "belt_alone.toml", {"revolutions": 1e8})
-    with pytest.raises(LoomfmuError, match=r"2400000000 steps are more than 10000000, .* fewer revolutions"):
+    with pytest.raises(
+        LoomfmuError,
+        match=r"2400000000 steps are more than the 10000000 that fit into memory; .* fewer revolutions",
+    ):
         windows.window_grid(scene, ["belt.lowest_margin"])

@@ -8,22 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import LoomfmuError
 from ...traces import Signals
 from . import bernstein
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-TURN = 2.0 * math.pi
-BLOCK = 1 << 16  # intervals that are looked at together
+BLOCK = 1 << 16  # intervals that are searched together
 SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
-ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
-COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples tell of one oscillation
+COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples in an oscillation
 DOUBT = 0.1  # of the difference between second rates over an interval, see `Motion.doubt`
 ROUNDING = 1e-12  # of the largest value: what rounding may add
-# Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
-# margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
-FARTHEST = TURN / 20.0
 COARSE_NOTE = "the samples are too far apart to be sure: take more steps"
 
 
@@ -49,12 +43,12 @@ class Extreme(NamedTuple):
 
     @property
     def note(self) -> str:
-        """What a verdict says of it."""
+        """What a verdict says about it."""
         return COARSE_NOTE if self.coarse else ""
 
 
 class Motion:
-    """A signal and its rates as far as they are recorded: on each interval the polynomial they give."""
+    """A signal between its samples: on each interval the polynomial that it and its recorded rates give."""
 
     def __init__(self, trace: Signals, signal: str, rates: int = 2):
         self.signal = signal
@@ -69,13 +63,13 @@ class Motion:
 
     @property
     def note(self) -> str:
-        """What a verdict says where the values between the samples are not known."""
+        """What a verdict says if the values between the samples are not known."""
         if not self.finite:
             return f"{self.signal} or its rate is not finite everywhere"
         steps = np.diff(self.values[0])
         if len(self.values) > 1 or np.all(steps <= 0.0) or np.all(steps >= 0.0):
             return ""
-        return f"{self.signal} is known at the samples only: its rate is not recorded"
+        return f"{self.signal} is known only at the samples: its rate is not recorded"
 
     def points(self, intervals: Integers) -> Floats:
         """Bernstein points of the polynomials on some intervals."""
@@ -267,94 +261,3 @@ def first_lowest(values: ArrayLike, times: ArrayLike, same: float = SAME) -> tup
     lowest = float(np.min(values))  # NaN if there is one
     equal = np.isnan(values) if math.isnan(lowest) else values <= lowest + same
     return lowest, float(np.min(times[equal]))
-
-
-def spans_within(lift: Motion, distance: float, stroke: float) -> list[Stretch]:
-    """Times from entering to leaving a distance from the lower or the upper end.
-
-    A frame that holds stays within: its span is as long as the picks it holds for.
-    """
-    return sorted(lift.beyond(distance, -1.0) + lift.beyond(stroke - distance, 1.0))
-
-
-def shaft(trace: Signals) -> Motion | None:
-    """The main shaft's angle, if the run has a shaft."""
-    return Motion(trace, "shaft.angle") if "shaft.angle" in trace else None
-
-
-def too_coarse(turning: Motion) -> bool:
-    """Whether the shaft turns so far between two samples that they do not tell how a loom moves."""
-    return bool(np.any(np.abs(np.diff(turning.values[0])) > FARTHEST * (1.0 + SAME)))
-
-
-def on_the_shaft(turning: Motion, time: float) -> tuple[float, int]:
-    """Where the shaft stands in its revolution, and the revolution, counted from 1 the way that it turns."""
-    angle, first, last = turning.at(time), *turning.values[0][[0, -1]]
-    way = -1.0 if last < first else 1.0
-    revolution = math.floor(way * angle / TURN) - math.floor(way * first / TURN) + 1
-    return angle - TURN * math.floor(angle / TURN), revolution
-
-
-def needed_shaft(trace: Signals) -> Motion:
-    """The main shaft's angle. Raises LoomfmuError where the run has none."""
-    found = shaft(trace)
-    if found is None:
-        raise LoomfmuError(f"{trace.name}: the claim needs shaft angles, and no shaft.angle is recorded")
-    return found
-
-
-def times_at(trace: Signals, angle: float) -> list[float]:
-    """All times at which the shaft stands at an angle of its revolution."""
-    turning = needed_shaft(trace)
-    turned = (turning.values[0] - angle) / TURN
-    whole = np.floor(turned)
-    times = []
-    for interval in np.flatnonzero(whole[1:] != whole[:-1]):
-        points = turning.points(np.array([interval]))[:, 0]
-        low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
-        for turn in range(low + 1, high + 1):
-            level = points - (angle + TURN * turn)
-            # to rounding the level may be the sample itself
-            shares = bernstein.sign_changes(level) or [float(abs(level[-1]) < abs(level[0]))]
-            times += [turning.moment(int(interval), share) for share in shares]
-    for end in (0, -1):  # a run that begins or ends there, to rounding
-        if abs(turned[end] - round(float(turned[end]))) < 1e-9:
-            times.append(float(turning.time[end]))
-    return sorted(set(times))
-
-
-def within_window(trace: Signals, start: float, width: float) -> list[Stretch]:
-    """Stretches of time in which the shaft is in a window of its revolution, the edges included."""
-    turning = needed_shaft(trace)
-    edges = [*times_at(trace, start), *times_at(trace, start + width)]
-    marks = np.unique([turning.time[0], *edges, turning.time[-1]])
-    away = (turning.along(0.5 * (marks[1:] + marks[:-1])) - start) % TURN
-    inside = [
-        Stretch(float(marks[place]), float(marks[place + 1])) for place in np.flatnonzero(away <= width)
-    ]
-    return sorted([*inside, *(Stretch(edge, edge) for edge in edges)])
-
-
-def reached(trace: Signals, latch: str, followed: Floats) -> float:
-    """When a latched extreme was reached, as well as its samples tell.
-
-    The latch tells the step. In it the time is where the parabola through the lowest of the samples of what
-    the latch follows turns.
-
-    Args:
-        latch: the signal that keeps the extreme
-        followed: samples of what it follows, taken so that the extreme is the lowest
-    """
-    time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
-    step = int(np.argmax(kept <= ALIKE * np.max(np.abs(followed))))
-    if step == 0:
-        return float(time[0])
-    lowest = step if followed[step] <= followed[step - 1] else step - 1
-    if not 0 < lowest < len(time) - 1:
-        return float(time[lowest])
-    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2] for each in (time, followed))
-    before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
-    if after <= before:
-        return float(time[lowest])
-    turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
-    return float(np.clip(turn, time[step - 1], time[step]))

@@ -1,113 +1,164 @@
 """Claims on heald frames: how long they dwell and leave the shed clear, by the angle that the shaft turns."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ... import units
 from ...errors import LoomfmuError
-from ...traces import Signals
-from . import curves
-from .verdict import ANGLE, PERCENT, Verdict, verdict
+from ...traces import Signals, Verdict
+from . import shaft
+from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
+from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
+from .curves import Floats, Motion, Stretch, first_lowest
 
-TOLERANCE = 0.015  # of the stroke: within it a frame dwells, if nothing else is said
+TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
+SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
 
 
-def dwell(trace: Signals, heald: str, at_least: float | str, tolerance: float | str = TOLERANCE) -> Verdict:
-    """Every dwell of a frame, within a share of its stroke from an end, lasts that shaft angle.
+@dataclass(frozen=True, kw_only=True)
+class _Span(Claim, kind=False):
+    """Whenever a frame is within a distance from an end of its stroke, it stays there for a shaft angle.
 
-    Judged by the dwells that begin and end within the run, and by those that the run's ends cut off as far
-    as they last that long nevertheless.
+    Spans that begin and end within the run are judged, and those that an end of the run cuts off if what the
+    run shows of them is long enough.
     """
-    share = units.parse(tolerance, "1")
-    distance = share * trace.parameter(f"{heald}.stroke")
-    claim = f"dwell within {100 * share:g} % of the stroke"
-    return _shortest(trace, claim, f"{heald}.lift", heald, distance, at_least)
+
+    heald: str = argument(Name())
+    at_least: float = argument(Quantity("rad", "deg", usual=1.5, low=0.0))
+
+    unit, grid = ANGLE, LANDINGS
+
+    def _distance(self, trace: Signals) -> float:
+        """How near to an end of its stroke the frame is to be [m]."""
+        raise NotImplementedError
+
+    def _judge(self, trace: Signals, text: str, signal: str) -> Verdict:
+        lift, turning = Motion(trace, f"{self.heald}.lift"), shaft.needed_angle(trace)
+        stroke = trace.parameter(f"{self.heald}.stroke")
+        spans = _spans(lift, self._distance(trace), stroke)
+        turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
+        judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
+        note = ""
+        if not judged:
+            judged, note = _cut_off(spans, turned, self.at_least, _repeats(lift, stroke, turning), lift.time)
+        worst, time = math.nan, math.nan
+        if judged:
+            worst, time = first_lowest([turn for turn, _ in judged], [start for _, start in judged])
+        return self.verdict(trace, text, signal, self.at_least, worst, time, note, lift.note)
+
+    def landings(self, trace: Signals) -> Landings:
+        lift, distance = Motion(trace, f"{self.heald}.lift"), self._distance(trace)
+        stroke = trace.parameter(f"{self.heald}.stroke")
+        return Landings(lift.crossings(distance) + lift.crossings(stroke - distance), [])
 
 
-def clear_shed(trace: Signals, heald: str, clearance: float | str, at_least: float | str) -> Verdict:
-    """Every time that a frame's warp is beyond a height, either way, lasts that shaft angle; see `dwell`."""
-    height = units.parse(clearance, "m")
-    stroke = trace.parameter(f"{heald}.stroke")
-    ratio = trace.parameter(f"{heald}.warp_ratio")
-    if not 0.0 < height < 0.5 * stroke * ratio:
-        raise LoomfmuError(
-            f"clear_shed of {heald}: clearance = {1e3 * height:.7g} mm is outside"
-            f" (0, {500 * stroke * ratio:.7g}) mm, the warp's way to either side"
-        )
-    claim = f"warp beyond {1e3 * height:g} mm"
-    return _shortest(trace, claim, f"{heald}.warp_height", heald, 0.5 * stroke - height / ratio, at_least)
+@dataclass(frozen=True, kw_only=True)
+class Dwell(_Span):
+    """Every dwell of a frame, within a share of its stroke from an end, lasts a shaft angle."""
+
+    tolerance: float = argument(SHARE, TOLERANCE)
+
+    needs = ("heald.lift",)
+
+    def _distance(self, trace: Signals) -> float:
+        return self.tolerance * trace.parameter(f"{self.heald}.stroke")
+
+    def judge(self, trace: Signals) -> Verdict:
+        text = f"dwell within {100 * self.tolerance:g} % of the stroke"
+        return self._judge(trace, text, f"{self.heald}.lift")
 
 
-def dwell_contains(
-    trace: Signals, heald: str, angles: list[float | str], tolerance: float | str = TOLERANCE
-) -> Verdict:
+@dataclass(frozen=True, kw_only=True)
+class ClearShed(_Span):
+    """Every time that a frame's warp is beyond a height, either way, lasts a shaft angle."""
+
+    clearance: float = argument(Quantity("m", "mm", usual=0.03, low=0.0))
+
+    needs = ("heald.lift", "heald.warp_height")
+
+    def _distance(self, trace: Signals) -> float:
+        stroke, ratio = (trace.parameter(f"{self.heald}.{name}") for name in ("stroke", "warp_ratio"))
+        return 0.5 * stroke - self.clearance / ratio
+
+    def judge(self, trace: Signals) -> Verdict:
+        stroke, ratio = (trace.parameter(f"{self.heald}.{name}") for name in ("stroke", "warp_ratio"))
+        if not 0.0 < self.clearance < 0.5 * stroke * ratio:
+            raise LoomfmuError(
+                f"clear_shed of {self.heald}: clearance = {1e3 * self.clearance:.7g} mm is outside"
+                f" (0, {500 * stroke * ratio:.7g}) mm, how far the warp moves to either side"
+            )
+        return self._judge(trace, f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_height")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DwellContains(Claim):
     """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
-    limit = units.parse(tolerance, "1")
-    stroke = trace.parameter(f"{heald}.stroke")
-    lift = curves.Motion(trace, f"{heald}.lift")
-    times = [time for angle in angles for time in curves.times_at(trace, units.parse(angle, "rad"))]
-    shown = ", ".join(units.show(units.parse(angle, "rad"), "deg") for angle in angles)
-    claim, signal = f"dwell at {shown}", f"{heald}.lift"
-    if not times:
-        reason = "the run never reaches these angles"
-        return verdict(trace, claim, signal, False, limit, math.nan, PERCENT, math.nan, reason)
-    moments = np.array(times)
-    lifts = lift.along(moments)
-    away = np.minimum(np.abs(lifts), np.abs(stroke - lifts)) / stroke
-    lowest, time = curves.first_lowest(-away, moments)
-    return verdict(trace, claim, signal, -lowest <= limit, limit, -lowest, PERCENT, time, lift.note)
+
+    heald: str = argument(Name())
+    angles: Sequence[float] = argument(Angles("rad", "deg"))
+    tolerance: float = argument(SHARE, TOLERANCE)
+
+    needs = ("heald.lift",)
+    sense, unit, grid = AT_MOST, PERCENT, LANDINGS
+
+    def judge(self, trace: Signals) -> Verdict:
+        signal = f"{self.heald}.lift"
+        stroke, lift = trace.parameter(f"{self.heald}.stroke"), Motion(trace, signal)
+        times, note = np.array(self.landings(trace).times), lift.note
+        worst, time = math.nan, math.nan
+        if len(times):
+            lifts = lift.along(times)
+            away = np.minimum(np.abs(lifts), np.abs(stroke - lifts)) / stroke
+            lowest, time = first_lowest(-away, times)
+            worst = -lowest
+        else:
+            note = "the run never reaches these angles"
+        text = f"dwell at {angles_text(self.angles)}"
+        return self.verdict(trace, text, signal, self.tolerance, worst, time, note)
+
+    def landings(self, trace: Signals) -> Landings:
+        return Landings([time for angle in self.angles for time in shaft.times_at(trace, angle)], [])
 
 
-def _shortest(
-    trace: Signals, claim: str, signal: str, heald: str, distance: float, at_least: float | str
-) -> Verdict:
-    """The shortest time that a frame stays within a distance from an end of its stroke, as a shaft angle."""
-    limit = units.parse(at_least, "rad")
-    lift = curves.Motion(trace, f"{heald}.lift")
-    shaft = curves.needed_shaft(trace)
-    stroke = trace.parameter(f"{heald}.stroke")
-    spans = curves.spans_within(lift, distance, stroke)
-    turned = [abs(shaft.at(span.end) - shaft.at(span.start)) for span in spans]
-    judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
-    note = ""
-    if not judged:
-        judged, note = _cut_off(spans, turned, limit, _repeats(lift, stroke, shaft), lift.time)
-    if not judged:
-        return verdict(trace, claim, signal, False, limit, math.nan, ANGLE, math.nan, note, lift.note)
-    worst, time = curves.first_lowest([turn for turn, _ in judged], [start for _, start in judged])
-    return verdict(trace, claim, signal, worst >= limit, limit, worst, ANGLE, time, note, lift.note)
+def _spans(lift: Motion, distance: float, stroke: float) -> list[Stretch]:
+    """Times from entering to leaving a distance from the lower or the upper end.
+
+    A frame that holds stays within: its span is as long as the picks it holds for.
+    """
+    return sorted(lift.beyond(distance, -1.0) + lift.beyond(stroke - distance, 1.0))
 
 
 def _cut_off(
-    spans: list[curves.Stretch], turned: list[float], limit: float, repeats: bool, time: curves.Floats
+    spans: list[Stretch], turned: list[float], limit: float, repeats: bool, time: Floats
 ) -> tuple[list[tuple[float, float]], str]:
-    """What spans that the run's ends cut off tell: lengths and starts to be judged, and a note.
+    """What can be judged of spans that the ends of the run cut off: their lengths and starts, and a note.
 
-    Cut off, a span lasts at least as long as it is seen. Where the motion repeats, the piece at the run's end
-    goes on like the one at its start, so both make up one span; whole turns of holding are left out.
+    Such a span lasts at least as long as the run shows. If the motion repeats, the piece at the end of the
+    run goes on as the one at its start does, so both make up one span, less whole revolutions of holding.
     """
     if not spans:
-        return [], "the frame is never there in the run"
+        return [], "the frame never gets there in this run"
     if len(spans) == 1 and (spans[0].start, spans[0].end) == (time[0], time[-1]):
         if turned[0] < limit:
-            return [], "the frame is there throughout, but the run is shorter than that"
-        return [(turned[0], spans[0].start)], "the frame is there throughout the run"
+            return [], "the frame stays there all the time, but the run is too short to tell"
+        return [(turned[0], spans[0].start)], "the frame stays there throughout the run"
     enough = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if turn >= limit]
     if len(enough) == len(spans):
-        return enough, "cut off by an end of the run: it lasts at least that long"
-    joined = math.fmod(sum(turned), curves.TURN)
+        return enough, "cut off by an end of the run: it lasts at least this long"
+    joined = math.fmod(sum(turned), TURN)
     held = joined < sum(turned)
     if len(spans) == 2 and repeats and (joined >= limit or not held):
-        note = "its pieces at the run's end and start taken together"
-        return [(joined, spans[1].start)], f"{note}: it lasts at least that long" if held else note
+        note = "joined from its parts at the end and the start of the run"
+        return [(joined, spans[1].start)], f"{note}: it lasts at least this long" if held else note
     if enough:
-        return enough, "the other one is cut off by an end of the run, and not judged"
+        return enough, "the other one is cut off by an end of the run and not judged"
     return [], "none begins and ends within the run"
 
 
-def _repeats(lift: curves.Motion, stroke: float, shaft: curves.Motion) -> bool:
+def _repeats(lift: Motion, stroke: float, turning: Motion) -> bool:
     """Whether the run is whole revolutions, and the frame ends as far from an end as it began."""
-    turns = abs(float(shaft.values[0][-1] - shaft.values[0][0])) / curves.TURN
+    turns = abs(float(turning.values[0][-1] - turning.values[0][0])) / TURN
     first, last = (min(abs(lift.values[0][end]), abs(stroke - lift.values[0][end])) for end in (0, -1))
     return round(turns) > 0 and abs(turns - round(turns)) < 1e-9 and abs(last - first) <= 1e-9 * stroke

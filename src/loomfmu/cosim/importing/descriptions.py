@@ -42,6 +42,12 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     return {port.name: port for port in ports}
 
 
+def unsupported_outputs(description: Any) -> tuple[str, ...]:
+    """The outputs that are not scalars of the known types: arrays, texts, binary values, clocks."""
+    outputs = [v for v in description.modelVariables if v.causality == "output"]
+    return tuple(v.name for v in outputs if v.type not in KINDS or v.dimensions)
+
+
 def plain_names(names: Iterable[str]) -> list[str]:
     """Names of letters, digits and _, a letter first, all different.
 

@@ -18,7 +18,7 @@ from ...fmi.cache_entries import FMUS, UNPACKED, folder, made_file
 from ...fmi.description.model_description import model_description
 from ...fmi.native import builder as native_builder
 from ...variables import MOTION, Component
-from .descriptions import is_ours, ports_of
+from .descriptions import is_ours, ports_of, unsupported_outputs
 from .ports import Port, Value
 
 FLAVOURS = ("live", "native")
@@ -46,7 +46,7 @@ class Fmu:
     was made of, which declares what others must know; None if that is not known. `single` is one that a
     process may have one instance of. `flavour` is that of one which is built when its file is first needed,
     and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
-    one that says it needs the tool that made it.
+    one that says it needs the tool that made it; `unsupported` are outputs without a port.
     """
 
     name: str
@@ -56,6 +56,7 @@ class Fmu:
     single: bool = False
     fixed_step: bool = False
     needs_tool: bool = False
+    unsupported: tuple[str, ...] = ()
     flavour: str = ""
     component: type[Component] | None = field(default=None, repr=False)
     given: Unpacked | None = field(default=None, repr=False)
@@ -213,7 +214,7 @@ def load(path: Path) -> Fmu:
         name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
         ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
         fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
-        component=component,
+        component=component, unsupported=unsupported_outputs(description),
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),

@@ -1,7 +1,10 @@
-"""Stepping a scene with only what some signals need, and keeping these."""
+"""Stepping a scene with only what some signals need, and keeping these signals."""
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -24,7 +27,7 @@ class Keeper(Protocol):
 
 @dataclass(frozen=True)
 class Plan:
-    """How a scene is stepped: with what, and where."""
+    """How a scene is stepped: with which FMUs and on which grid."""
 
     scene: Scene
     pruned: Pruned
@@ -35,13 +38,33 @@ class Plan:
         """What is kept."""
         return self.pruned.signals
 
-    def master(self) -> Master:
-        """The master of the run."""
-        return Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts)
+    @contextmanager
+    def stepped(self) -> Iterator[Master]:
+        """The master of the run, initialized. The working directory stays as it was, whatever FMUs do."""
+        with (
+            _same_directory(),
+            Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts) as master,
+        ):
+            master.initialize()
+            yield master
+
+
+@contextmanager
+def _same_directory() -> Iterator[None]:
+    """Go back to the working directory, which an FMU may change; it may also be gone already."""
+    try:
+        before = Path.cwd()
+    except OSError:
+        yield
+        return
+    try:
+        yield
+    finally:
+        os.chdir(before)
 
 
 def channels(plan: Plan, master: Master) -> list[Channel]:
-    """What is kept, where the master has it, and what is said of it."""
+    """What is kept: where the master has it, and how a trace describes it."""
     found = []
     for signal in plan.signals:
         port = output_port(plan.scene, signal, "record")
@@ -78,7 +101,7 @@ def record(master: Master, keeper: Keeper, progress: Callable[[int], None]) -> N
 
 
 class InMemory(NamedTuple):
-    """A run that is kept in memory: how it was stepped, how far, and what its FMUs warned of."""
+    """A run that is kept in memory: how it was stepped, how far, and the warnings of its FMUs."""
 
     recording: Recording
     plan: Plan
@@ -90,11 +113,32 @@ class InMemory(NamedTuple):
 def in_memory(scene: Scene, signals: Sequence[str], grid: Grid) -> InMemory:
     """Run a scene and keep these signals in memory."""
     plan = Plan(scene, prune(scene, signals), grid)
-    with plan.master() as master:
-        master.initialize()
+    with plan.stepped() as master:
         recording = Recording(scene.name, channels(plan, master), effective(scene, plan.pruned))
         try:
             record(master, recording, lambda _step: None)
         except Interrupted:
             raise KeyboardInterrupt("interrupted") from None
         return InMemory(recording, plan, master.steps, master.ended, master.warnings())
+
+
+def ended_text(ended: Ended | None) -> str:
+    """Which FMU ended the run early, and when."""
+    return f"{ended.name} at {ended.time:.9g} s" if ended else ""
+
+
+def explained(plan: Plan) -> tuple[str, ...]:
+    """What a run skips and why, and what that saves."""
+    kept, whole = len(plan.pruned.scene.instances), len(plan.scene.instances)
+    taken, scouted = plan.grid.steps, plan.grid.scouted
+    done, full = kept * taken + scouted, whole * plan.scene.steps
+    lines = [*plan.pruned.skipped, *plan.grid.notes]
+    ran = f"ran {kept} of {whole} FMUs, {taken} steps each"
+    if done == full:
+        saved = "no steps skipped" if lines else "nothing skipped"
+        return (*lines, f"{ran}; {saved}")
+    if not done:
+        return (*lines, f"ran none of {whole} FMUs; {full} FMU steps skipped")
+    ratio = f"{full / done:.3g} times fewer" if done < full else f"{100 * (done / full - 1):.2g} % more"
+    search = f" and {scouted} to find the windows" if scouted else ""
+    return (*lines, f"{ran}{search}: {done} FMU steps instead of {full}, {ratio}")

@@ -2,27 +2,27 @@
 
 An instance that no requested signal depends on is not run, an output that is not read is not fetched, and a
 main shaft of constant speed needs no FMU: its angle is a product, and what follows it can turn by itself.
-FMUs of other makers always run: they may be there for what they do, such as to log or to send.
+Third-party FMUs always run: they may be there for what they do, such as to log or to send.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from ..claims.claims import parameters_of
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.graph import Wire
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import FOLLOWED
+from .requested import claims_of
 
 
 @dataclass(frozen=True)
 class Pruned:
     """A scene with only what some signals need.
 
-    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need none, `skipped` lines
-    that say what was left out and why.
+    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need no FMU, `skipped` lines
+    on what was left out and why.
     """
 
     scene: Scene
@@ -38,8 +38,8 @@ def prune(scene: Scene, signals: Iterable[str]) -> Pruned:
     shafts = {name: _constant(each) for name, each in scene.instances.items() if _is_constant(scene, name)}
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
     requested = {signal.split(".")[0] for signal in signals} - set(shafts)
-    theirs = {name for name, each in scene.instances.items() if not each.fmu.ours}
-    needed = _upstream(requested | theirs, wires)
+    third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}
+    needed = _upstream(requested | third_party, wires)
     wires = [wire for wire in wires if wire.sink[0] in needed]
     instances = {name: _turning(scene, name, shafts) for name in scene.instances if name in needed}
     fetched = {wire.source for wire in wires}
@@ -53,16 +53,16 @@ def prune(scene: Scene, signals: Iterable[str]) -> Pruned:
         signals=signals,
         fetched=frozenset(fetched),
         shafts=shafts,
-        skipped=tuple(_told(scene, instances, fetched, shafts)),
+        skipped=tuple(_skipped(scene, instances, fetched, shafts)),
     )
 
 
 def effective(scene: Scene, kept: Pruned) -> dict[str, dict[str, Value]]:
-    """The values at the start of every instance that runs, and of those whose parameters the claims read.
+    """The start values of every instance that runs, and of those whose parameters the claims need.
 
-    What has no effect is left out: a speed of its own where it follows a shaft, an input that is fed.
+    What has no effect is left out: an instance's own speed if it follows a shaft, an input that is wired.
     """
-    read = {name for claim in scene.claims for name in parameters_of(claim)}
+    read = {name for claim in claims_of(scene) for name in claim.parameter_owners()}
     fed = {wire.sink for wire in scene.wires} | {(d.instance, d.variable) for d in scene.drives}
     found = {}
     for name, instance in scene.instances.items():
@@ -73,7 +73,7 @@ def effective(scene: Scene, kept: Pruned) -> dict[str, dict[str, Value]]:
 
 
 def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
-    """Instances and all that they are fed by, near or far."""
+    """Instances, and all that feed them, directly or through others."""
     needed, waiting = set(wanted), list(wanted)
     while waiting:
         sink = waiting.pop()
@@ -97,7 +97,7 @@ def _is_constant(scene: Scene, name: str) -> bool:
 
 
 def _follows(scene: Scene, name: str, shaft: str) -> bool:
-    """Whether an instance takes nothing from the shaft but the motion that it follows."""
+    """Whether an instance takes only the motion that it follows from the shaft."""
     follower = scene.instances[name]
     taken = {wire.sink[1]: wire.source for wire in scene.wires if wire.sink[0] == name}
     wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}
@@ -111,7 +111,7 @@ def _constant(shaft: Instance) -> ConstantShaft:
 
 
 def _turning(scene: Scene, name: str, shafts: dict[str, ConstantShaft]) -> Instance:
-    """An instance that turns by itself, if it would follow a shaft that is left out."""
+    """An instance; if it follows a shaft that is left out, it turns by itself instead."""
     instance = scene.instances[name]
     shaft = {wire.source[0] for wire in scene.wires if wire.sink[0] == name} & set(shafts)
     if not shaft:
@@ -121,19 +121,18 @@ def _turning(scene: Scene, name: str, shafts: dict[str, ConstantShaft]) -> Insta
     return replace(instance, values=instance.values | own)
 
 
-def _told(
+def _skipped(
     scene: Scene, kept: dict[str, Instance], fetched: set[tuple[str, str]], shafts: dict[str, ConstantShaft]
 ) -> Iterable[str]:
-    """What was left out, and why."""
+    """Lines on what was left out, and why."""
     for name, instance in scene.instances.items():
         kind = instance.fmu.name
         if name in shafts:
-            yield f"{name} ({kind}): its speed is constant, what follows it turns by itself"
+            yield f"{name} ({kind}): not run; its speed is constant, so its angle needs no FMU"
         elif name not in kept:
-            yield f"{name} ({kind}): nothing that is recorded or claimed depends on it"
+            yield f"{name} ({kind}): not run; nothing that is recorded or claimed depends on it"
         else:
             outputs = [port.name for port in instance.fmu.ports.values() if port.causality == "output"]
             unread = [variable for variable in outputs if (name, variable) not in fetched]
             if unread:
-                share = f"{len(unread)} of {len(outputs)} outputs"
-                yield f"{name}: {share} that nobody reads: {', '.join(unread)}"
+                yield f"{name}: {len(unread)} of {len(outputs)} outputs not read: {', '.join(unread)}"

@@ -1,24 +1,17 @@
-"""The signals that a run is requested to give: those recorded and those that claims need, checked first."""
+"""The signals that a run must give: those recorded and those that claims need, checked first."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
-from ... import units
 from ...errors import LoomfmuError, suggestion
-from ..claims.claims import UNITS, check, check_speed, check_values, names_parameter, signals_of
+from ..claims.claim import Claim
+from ..claims.claims import angles_in, doubts, read
+from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
 
-ANGLES = frozenset(("window", "angles", "at_least"))  # arguments of claims that need a shaft
 SHAFT_ANGLE = "shaft.angle"
-# arguments of claims that people write in another unit than SI: that unit, and a usual value in SI
-USUAL = {
-    "window": ("deg", 1.5),
-    "at_least": ("deg", 1.5),
-    "clearance": ("mm", 0.03),
-    "head_height": ("mm", 0.03),
-}
+MOST = 5  # names that a warning lists
 
 
 def output_port(scene: Scene, signal: str, where: str) -> Port:
@@ -35,39 +28,39 @@ def output_port(scene: Scene, signal: str, where: str) -> Port:
     return ports[variable]
 
 
+def claims_of(scene: Scene) -> list[Claim]:
+    """The scene's claims. Raises LoomfmuError for one that cannot be read."""
+    return [read(table, lambda signal: output_port(scene, signal, "claim").unit) for table in scene.claims]
+
+
 def checked_claims(scene: Scene) -> Scene:
-    """The scene, with a note where a claim's number was probably meant in another unit.
+    """The scene, with a note on each number of a claim that was probably meant in another unit.
 
-    Refuses a claim that cannot be judged before the run, not after it.
+    Refuses, before the run, a claim that could not be judged after it.
     """
-    doubts: list[str] = []
-    for claim in scene.claims:
-        kind = claim.get("kind")
-        arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
-        check(kind, arguments)
-        for angle in ANGLES.intersection(arguments):
-            if "shaft" not in scene.instances:
-                raise LoomfmuError(f"claim {kind!r}: {angle} is a shaft angle, and the scene has no shaft")
-        for signal in signals_of(claim, scene.instances):
-            output_port(scene, signal, f"claim {kind!r}")
-        check_values(str(kind), arguments, lambda signal: output_port(scene, signal, "claim").unit)
-        if names_parameter("bound", arguments.get("bound")):
-            _check_parameter(scene, arguments["bound"], arguments["signal"])
-        doubts += filter(None, _doubts(scene, f"claim {kind!r}", arguments))
-    return replace(scene, notes=tuple(dict.fromkeys((*scene.notes, *doubts))))
+    notes = [*scene.notes, *_unrecorded(scene)]
+    for table, claim in zip(scene.claims, claims_of(scene), strict=True):
+        where = f"claim {table['kind']!r}"
+        for angle in angles_in(table) if "shaft" not in scene.instances else ():
+            raise LoomfmuError(f"{where}: {angle} is a shaft angle, and the scene has no shaft")
+        for signal in claim.signals(scene.instances):
+            output_port(scene, signal, where)
+        if isinstance(claim, Bounded) and isinstance(claim.bound, str):
+            _check_parameter(scene, claim.bound, claim.signal)
+        elif isinstance(claim, Bounded):
+            port = output_port(scene, claim.signal, where)
+            notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
+        notes += doubts(table)
+    return replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
 
 
-def _doubts(scene: Scene, where: str, arguments: dict[str, Any]) -> Iterator[str]:
-    """What is odd about the numbers of a claim that have no unit, or empty texts."""
-    bound = arguments.get("bound")
-    if "signal" in arguments and not names_parameter("bound", bound):
-        signal = arguments["signal"]
-        yield output_port(scene, signal, where).doubt(bound, f"{where} of {signal}: bound")
-    for name in USUAL.keys() & arguments.keys():
-        given, (display, usual) = arguments[name], USUAL[name]
-        for quantity in given if isinstance(given, list | tuple) else [given]:
-            said = quantity is not None and units.doubt(quantity, UNITS[name], display, usual)
-            yield f"{where}: {name} = {quantity} {said}" if said else ""
+def _unrecorded(scene: Scene) -> Iterator[str]:
+    """A warning for each FMU that has outputs, but none that can be recorded."""
+    for name, instance in scene.instances.items():
+        fmu = instance.fmu
+        if fmu.unsupported and not any(port.causality == "output" for port in fmu.ports.values()):
+            listed = ", ".join([*fmu.unsupported[:MOST], *["..."] * (len(fmu.unsupported) > MOST)])
+            yield f"{name}: no output is recorded, none is a scalar number or a Boolean: {listed}"
 
 
 def _check_parameter(scene: Scene, name: str, signal: str) -> None:
@@ -76,22 +69,23 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
     known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
     if name not in known:
-        raise LoomfmuError(f"claim: bound = {name!r} is no parameter{suggestion(name, known)}")
-    if variable not in scene.instances[instance].effective():
+        raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
+    values = scene.instances[instance].effective()
+    if variable not in values:
         raise LoomfmuError(f"claim: bound = {name!r} has no effect in this scene: {instance} does not use it")
     wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
     if given != wanted:
-        raise LoomfmuError(f"claim: bound {name} is in {given}, {signal} in {wanted}")
-    check_speed(name, float(scene.instances[instance].effective()[variable]), wanted)
+        raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
+    check_speed(name, float(values[variable]), wanted)
 
 
 def judged_by(scene: Scene) -> list[str]:
     """The signals that the scene's claims need, and the rates of these."""
-    return with_rates(scene, [s for claim in scene.claims for s in signals_of(claim, scene.instances)])
+    return with_rates(scene, [s for claim in claims_of(scene) for s in claim.signals(scene.instances)])
 
 
 def shaft_angle(scene: Scene) -> list[str]:
-    """The signal of the shaft's angle, along which everything is told; none in a scene without a shaft."""
+    """The signal of the shaft's angle, by which places are given; none in a scene without a shaft."""
     return [SHAFT_ANGLE] if "shaft" in scene.instances else []
 
 

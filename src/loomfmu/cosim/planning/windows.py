@@ -1,39 +1,37 @@
-"""The window grid: steps where the claims look, landing on what they look for; coarse ones elsewhere.
+"""The window grid: communication steps that land where the claims look, and coarse steps elsewhere.
 
-A coarse run of what the claims need tells about where that is: the edges of the belt's window of risk and
-its lowest point, the edges of a dwell, the angles that a claim names. A second one, with points in the
-windows of risk, tells it so well that steps can land on it. A sample has no error of interpolation, and
-close to one it is small: so few steps do for what takes many equal ones.
+A coarse run of what the claims need finds roughly where they look: the edges of the belt's window of risk and
+its lowest point, the edges of a dwell, the angles that a claim names. A second one, with more points in the
+windows of risk, finds it so well that steps can land on it. At a sample there is no error of interpolation,
+and near one it is small, so a few such steps replace many equal ones.
 
-That holds for what follows from the sample alone. What integrates over its inputs keeps the error of every
-step, and how large that is depends on the motion: it gets the scene's own steps, and the landings.
+This works for what depends on the present alone. What integrates over its inputs keeps the error of every
+step, so it gets the scene's own steps and the landings.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import units
 from ...errors import LoomfmuError
 from ...traces import Recording
 from ...variables import MOTION, variables_of
-from ..claims import claims, curves
+from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import turns_others
 from .plan import in_memory
 from .pruning import prune
-from .requested import shaft_angle, with_rates
+from .requested import claims_of, shaft_angle, with_rates
 
 Floats = NDArray[np.float64]
-Look = Callable[..., None]
 
 SCOUTS = 2  # runs that look for the windows: the second one sees the lowest points
-MOST_STEPS = 10_000_000  # that are kept in memory, with what is watched at each
+MOST_STEPS = 10_000_000  # that are kept in memory, with the watched signals
 INSIDE = 6  # points within a window of risk, for the second scout
 REACH = 0.125  # of the steps by which a lowest point was found: it is known better than that
 DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may be the lowest
@@ -45,7 +43,7 @@ WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that i
 
 @dataclass
 class Places:
-    """Where claims look, [s]: points to land on, points about them, and the longest step anywhere."""
+    """Where claims look: points to land on [s], points around them, and the longest step allowed."""
 
     period: float
     most: float
@@ -53,7 +51,7 @@ class Places:
     about: list[float] = field(default_factory=list)
 
     def bracket(self, time: float, reach: float) -> None:
-        """Land on a point that is known to within a reach, and on both of its sides."""
+        """Land on a point that is known to within a reach, and on both sides of it."""
         if any(abs(time - point) < 0.5 * reach for point in self.points):
             return  # two claims look for the same
         self.points.append(time)
@@ -64,7 +62,7 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     """The communication points of a scene whose `grid` is "windows" and that keeps these signals.
 
     Raises:
-        LoomfmuError: the scene has no shaft or no claim to look for, or an FMU takes equal steps only
+        LoomfmuError: the scene has no shaft or no claims, or an FMU takes only equal steps
     """
     _check(scene)
     fine = period(scene) / scene.steps_per_period
@@ -72,7 +70,9 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     coarse, why = min(_showing(scene))
     unequal = _unequal(needed)
     if unequal:
-        return replace(uniform(scene), notes=(f"steps: the scene's own everywhere ({unequal})",))
+        return replace(
+            uniform(scene), notes=(f'steps: all equal, as with grid = "uniform", because {unequal}',)
+        )
     longest = coarse
     for name, instance in needed.instances.items():
         if instance.fmu.keeps == MOTION and longest > fine:
@@ -80,8 +80,8 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     places, scouted = _scouted(scene, signals, coarse, longest)
     points = _merged(_equal(scene, places.most), places)
     notes = (
-        f"steps: {period(scene) / places.most:.0f} in a revolution{_because(why)}, and landings"
-        f" where the claims look; {scouted} steps of FMUs to find these",
+        f"steps: {period(scene) / places.most:.0f} per revolution{_because(why)}, plus steps that land"
+        f" where the claims look; it took {scouted} FMU steps to find these",
     )
     return chosen(scene, points, notes, scouted)
 
@@ -98,9 +98,8 @@ def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float
         )
         scouted += len(plan.pruned.scene.instances) * steps
         places = Places(period(scene), longest, list(kinks))
-        for claim in scene.claims:
-            arguments = {key: value for key, value in claim.items() if key not in ("kind", "name")}
-            LOOKS.get(claim["kind"], _everywhere)(places, recording, scene, **arguments)
+        for claim in claims_of(scene):
+            _land(places, recording, scene, claim)
         for output in _latched(scene, signals):
             _extremes(places, recording, scene, output)
     return places, scouted
@@ -111,22 +110,21 @@ def _because(why: str) -> str:
 
 
 def _unequal(needed: Scene) -> str:
-    """What in a run takes no steps but equal ones, and why: they might tell it something else.
-
-    A loop, a shaft that feels its load, an FMU that we know nothing of.
-    """
+    """Why a run takes only equal steps, if so: a loop, a shaft that feels its load, a third-party FMU."""
     _order, lagged = step_order(needed.instances, needed.wires)
     if lagged:
         return f"{lagged[0]} closes a loop"
     for name, instance in needed.instances.items():
         component = instance.fmu.component
-        if component is None or (component.keeps == MOTION and turns_others(component)):
+        if component is None:
+            return f"{name} is a third-party FMU, whose results may depend on the steps"
+        if component.keeps == MOTION and turns_others(component):
             return f"{name} integrates"
     return ""
 
 
 def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
-    """The longest steps that show how mechanisms move, how the shaft's speed changes, and why."""
+    """The longest steps that show how mechanisms move and how the shaft's speed changes, and why."""
     fine, turn = period(scene) / scene.steps_per_period, period(scene) / (2.0 * math.pi)
     yield period(scene) / scene.coarse_steps_per_revolution, ""
     for name, each in scene.instances.items():
@@ -142,36 +140,36 @@ def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
 def _check(scene: Scene) -> None:
     where = 'grid = "windows"'
     if not scene.claims:
-        raise LoomfmuError(f"{where}: the scene has no claims, whose windows these could be")
+        raise LoomfmuError(f"{where}: the scene has no claims, so there is nothing to look for")
     if "shaft" not in scene.instances:
-        raise LoomfmuError(f"{where}: the scene has no shaft, along which the claims look")
+        raise LoomfmuError(f"{where}: the scene has no shaft; its windows are in shaft angle")
     if scene.coarse_steps_per_revolution > scene.steps_per_period:
         raise LoomfmuError(
             f"coarse_steps_per_revolution = {scene.coarse_steps_per_revolution} is outside"
-            f" [1, {scene.steps_per_period}], the fine steps_per_revolution"
+            f" [1, {scene.steps_per_period}], its steps_per_revolution"
         )
     for name, instance in scene.instances.items():
         if instance.fmu.fixed_step:
             raise LoomfmuError(
-                f"{where}: {name} takes equal steps only ({instance.fmu.name} has"
+                f"{where}: {name} takes only equal steps ({instance.fmu.name} has"
                 " canHandleVariableCommunicationStepSize = false)"
             )
 
 
 def _equal(scene: Scene, longest: float) -> Floats:
-    """Equal steps no longer than that."""
+    """The points of equal steps that are no longer than that."""
     end = uniform(scene).stop_time
     steps = max(1, math.ceil(end / longest - 1e-9))
     if steps > MOST_STEPS:
         raise LoomfmuError(
-            f'grid = "windows": {steps} steps are more than {MOST_STEPS}, which it keeps in memory;'
-            ' take grid = "uniform" or fewer revolutions'
+            f'grid = "windows": {steps} steps are more than the {MOST_STEPS} that fit into memory;'
+            ' set grid = "uniform" or fewer revolutions'
         )
     return np.linspace(0.0, end, steps + 1)
 
 
 def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
-    """The outputs of an instance that hold an extreme or are followed by one: of which, 1 for its lowest."""
+    """Outputs that hold an extreme, or whose extreme is held: whose it is, and 1 for its lowest, else -1."""
     component = scene.instances[instance].fmu.component
     found: dict[str, tuple[str, float]] = {}
     for variable in variables_of(component) if component else ():
@@ -182,18 +180,18 @@ def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
 
 
 def _latched(scene: Scene, signals: Iterable[str]) -> list[str]:
-    """The signals that hold an extreme so far."""
+    """Those of some signals that hold an extreme so far."""
     parts = [signal.split(".") for signal in signals]
     held = [(name, variable, _extremes_of(scene, name).get(variable)) for name, variable in parts]
     return [f"{name}.{variable}" for name, variable, extreme in held if extreme and extreme[0] != variable]
 
 
 def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
-    """The signals that tell where the claims look, and where what is latched in those kept comes from."""
+    """The signals that show where the claims look, and where the extremes held by the kept signals occur."""
     wanted, owners = list(shaft_angle(scene)), list[str]()
-    for claim in scene.claims:
-        signals = claims.signals_of(claim, scene.instances)
-        wanted += signals if LOOKS.get(claim["kind"]) not in (None, _nowhere) else []
+    for claim in claims_of(scene):
+        signals = claim.signals(scene.instances)
+        wanted += signals if claim.grid == LANDINGS else []
         owners += [signal.split(".")[0] for signal in signals]
     owners += [signal.split(".")[0] for signal in _latched(scene, kept)]
     for owner in dict.fromkeys(owners):
@@ -205,7 +203,7 @@ def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
 
 
 def _merged(equal: Floats, places: Places) -> Floats:
-    """All points in order. Of two that are too close the one that a claim looks for stays."""
+    """All points in order. Of two that are too close, the one that a claim looks for stays."""
     apart = min(APART * places.period, NARROW * float(equal[1] - equal[0]))
     kept = np.empty(0)
     for points in (equal[[0, -1]], _thinned(places.points, apart), _thinned(places.about, apart), equal):
@@ -227,11 +225,28 @@ def _thinned(points: Sequence[float], apart: float) -> Floats:
     return np.array(kept)
 
 
-# ---- where the claims of each kind look
+# ---- where steps land
+
+
+def _land(places: Places, trace: Recording, scene: Scene, claim: Claim) -> None:
+    """Steps where a claim looks: landings, or all of the scene's own."""
+    landings = claim.landings(trace)
+    places.points += landings.times
+    everywhere = claim.grid == EVERY_STEP
+    for signal, sign in landings.extremes:
+        instance, _, variable = signal.partition(".")
+        if variable in _extremes_of(scene, instance):
+            _extremes(places, trace, scene, signal)
+        elif trace.rate(signal) is None:  # it is judged at the samples
+            everywhere = True
+        else:
+            _turns(places, trace, signal, sign)
+    if everywhere:
+        places.most = min(places.most, period(scene) / scene.steps_per_period)
 
 
 def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> None:
-    """The edges of each window, the extreme within once samples show it, else points to see it by."""
+    """Land on the edges of each window and the extreme within; until samples show it, on points around it."""
     instance, _, variable = signal.partition(".")
     followed, sign = _extremes_of(scene, instance)[variable]
     component = scene.instances[instance].fmu.component
@@ -254,7 +269,7 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
 
 
 def _windows(trace: Recording, scene: Scene, instance: str) -> list[tuple[float, float]]:
-    """Where all outputs that bound an instance's windows are positive: splines through the samples tell."""
+    """Where all outputs that bound an instance's windows are positive, on splines through the samples."""
     from scipy.interpolate import CubicSpline
 
     component = scene.instances[instance].fmu.component
@@ -276,26 +291,6 @@ def _lowest_points(time: Floats, values: Floats) -> list[float]:
     return [float(turn) for turn in turns[curve(turns, 2) > 0.0]]
 
 
-def _bounded(sign: float) -> Look:
-    """Looks of a claim that a signal stays on one side: its extremes, and the edges of the claim's window."""
-
-    def look(
-        places: Places, trace: Recording, scene: Scene, signal: str, bound: object,
-        window: Sequence[float | str] | None = None,
-    ) -> None:  # fmt: skip
-        instance, _, variable = signal.partition(".")
-        for edge in window or ():
-            places.points += curves.times_at(trace, units.parse(edge, "rad"))
-        if variable in _extremes_of(scene, instance):
-            _extremes(places, trace, scene, signal)
-        elif trace.rate(signal) is None:
-            _everywhere(places, trace, scene)
-        else:
-            _turns(places, trace, signal, sign)
-
-    return look
-
-
 def _deepest(places: Places, trace: Recording, signal: str, sign: float) -> None:
     """The minima of `sign` times a signal that may be its lowest, and no ripple of a rounding."""
     values = sign * np.asarray(trace[signal], dtype=float)
@@ -312,58 +307,3 @@ def _turns(places: Places, trace: Recording, signal: str, sign: float) -> None:
     for time in _lowest_points(trace.time, sign * trace[signal]):
         place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
         places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
-
-
-def _lowest_margin(places: Places, trace: Recording, scene: Scene, bound: object, belt: str = "belt") -> None:
-    _extremes(places, trace, scene, f"{belt}.lowest_margin")
-
-
-def _dwell(
-    places: Places, trace: Recording, scene: Scene, heald: str, at_least: object,
-    tolerance: float | str = claims.TOLERANCE,
-) -> None:  # fmt: skip
-    stroke = trace.parameter(f"{heald}.stroke")
-    _levels(places, trace, heald, units.parse(tolerance, "1") * stroke)
-
-
-def _clear_shed(
-    places: Places, trace: Recording, scene: Scene, heald: str, clearance: float | str, at_least: object
-) -> None:
-    stroke, ratio = (trace.parameter(f"{heald}.{name}") for name in ("stroke", "warp_ratio"))
-    _levels(places, trace, heald, 0.5 * stroke - units.parse(clearance, "m") / ratio)
-
-
-def _levels(places: Places, trace: Recording, heald: str, distance: float) -> None:
-    """Where a frame passes a distance from the ends of its stroke."""
-    lift = curves.Motion(trace, f"{heald}.lift")
-    stroke = trace.parameter(f"{heald}.stroke")
-    places.points += lift.crossings(distance) + lift.crossings(stroke - distance)
-
-
-def _dwell_contains(
-    places: Places, trace: Recording, scene: Scene, heald: str, angles: Sequence[float | str],
-    tolerance: object = None,
-) -> None:  # fmt: skip
-    for angle in angles:
-        places.points += curves.times_at(trace, units.parse(angle, "rad"))
-
-
-def _nowhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
-    """A claim on what its component latches, on its own continuous curve."""
-
-
-def _everywhere(places: Places, trace: Recording, scene: Scene, **_: object) -> None:
-    """A claim that is judged at the samples needs them all."""
-    places.most = min(places.most, period(scene) / scene.steps_per_period)
-
-
-LOOKS: dict[str, Look] = {
-    "above": _bounded(1.0),
-    "below": _bounded(-1.0),
-    "lowest_margin": _lowest_margin,
-    "dwell": _dwell,
-    "clear_shed": _clear_shed,
-    "dwell_contains": _dwell_contains,
-    "peak_load": _nowhere,
-    "stop_contacts": _nowhere,
-}

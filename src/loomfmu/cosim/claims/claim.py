@@ -1,0 +1,105 @@
+"""What every kind of claim is: one class, which states its arguments, its signals and how it judges them."""
+
+import math
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from typing import ClassVar, NamedTuple
+
+from ...traces import Signals, Verdict
+from . import shaft
+from .arguments import Argument, Name, argument, argument_of
+from .curves import COARSE_NOTE
+
+AT_LEAST, AT_MOST = 1, -1
+
+# units of what is judged: that of the numbers, and the one that people read them in
+ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
+LENGTH, FORCE, SPEED = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min")
+
+# What a claim needs of the window grid: all equal steps, steps that land where `landings` says, or nothing,
+# since its component finds what is judged on its own continuous curve.
+EVERY_STEP, LANDINGS, NOTHING = "every step", "landings", "nothing"
+
+
+class Landings(NamedTuple):
+    """Where steps of the window grid land for a claim.
+
+    `times` are known to be looked at [s]; of each signal in `extremes` the lowest values count, or with -1
+    the highest ones.
+    """
+
+    times: list[float]
+    extremes: list[tuple[str, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(ABC):
+    """A claim with its arguments in SI. Scenes call its kind by the name of the class in snake_case.
+
+    `name` is what its verdict calls it. A kind states which signals it `needs` as "argument.variable", the
+    argument being one that names an instance, and in `reads` the instances of which it needs parameters
+    alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
+    it needs of the window `grid`, which is every step unless it says otherwise.
+    """
+
+    name: str = argument(Name(), "")
+
+    kinds: ClassVar[dict[str, type["Claim"]]] = {}
+    needs: ClassVar[tuple[str, ...]] = ()
+    reads: ClassVar[tuple[str, ...]] = ()
+    sense: ClassVar[int] = AT_LEAST
+    unit: ClassVar[tuple[str, str]] = ONE
+    grid: ClassVar[str] = EVERY_STEP
+
+    def __init_subclass__(cls, kind: bool = True) -> None:
+        if kind:
+            cls.kinds[re.sub("(?<=.)(?=[A-Z])", "_", cls.__name__).lower()] = cls
+
+    @classmethod
+    def declared(cls) -> dict[str, Argument]:
+        """Its arguments as they were declared."""
+        return {each.name: argument_of(each) for each in fields(cls)}
+
+    def signals(self, instances: Iterable[str]) -> list[str]:
+        """The signals that must be recorded for it, in a scene with these instances."""
+        needed = [need.partition(".") for need in self.needs]
+        return [f"{getattr(self, owner)}.{variable}" for owner, _, variable in needed]
+
+    def parameter_owners(self) -> list[str]:
+        """The instances whose parameters it needs, beside those of its signals."""
+        return [getattr(self, owner) for owner in self.reads]
+
+    @abstractmethod
+    def judge(self, trace: Signals) -> Verdict:
+        """Whether it holds."""
+
+    def landings(self, trace: Signals) -> Landings:
+        """Where steps of the window grid must land, as far as a coarse run of its signals tells."""
+        return Landings([], [])
+
+    def verdict(
+        self, trace: Signals, text: str, signal: str, bound: float, worst: float, time: float, *notes: str,
+        holds: bool | None = None, unit: tuple[str, str] | None = None, sense: int | None = None,
+    ) -> Verdict:  # fmt: skip
+        """The verdict, with the place on the shaft at its time.
+
+        Unless `holds` says so, the worst value decides; none, NaN, fails. No claim holds on samples that are
+        too far apart.
+        """
+        turning = shaft.angle(trace)
+        angle, revolution = math.nan, None
+        if turning is not None and math.isfinite(time):
+            angle, revolution = shaft.place(turning, time)
+        if turning is not None and shaft.too_coarse(turning):
+            notes = (*notes, COARSE_NOTE)
+        if holds is None:
+            holds = self.sense * worst >= self.sense * bound
+        holds = bool(holds) and COARSE_NOTE not in notes
+        note = "; ".join(dict.fromkeys(note for note in notes if note))
+        claim = f"{self.name}: {text}" if self.name else text
+        return Verdict(
+            claim, signal, holds, bound, worst, *(unit or self.unit), time, angle, revolution, note,
+            sense=sense or self.sense,
+        )  # fmt: skip

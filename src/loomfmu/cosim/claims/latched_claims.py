@@ -1,0 +1,93 @@
+"""Claims on extremes that a component itself finds on its continuous curve, and keeps."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...traces import Signals, Verdict
+from .arguments import Name, Quantity, argument
+from .claim import AT_MOST, FORCE, LANDINGS, NOTHING, Claim, Landings
+from .curves import Floats
+
+ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
+NO_RISK = "the belt is never at risk in this run"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LowestMargin(Claim):
+    """The belt's margin against buckling never falls below a bound."""
+
+    bound: float = argument(Quantity("1"))
+    belt: str = argument(Name(), "belt")
+
+    needs = ("belt.margin", "belt.lowest_margin")
+    grid = LANDINGS
+
+    def judge(self, trace: Signals) -> Verdict:
+        latch = f"{self.belt}.lowest_margin"
+        worst, time = float(trace[latch][-1]), _reached(trace, latch, trace[f"{self.belt}.margin"])
+        note = NO_RISK if worst >= 1.0 else ""
+        return self.verdict(trace, "lowest margin", latch, self.bound, worst, time, note)
+
+    def landings(self, trace: Signals) -> Landings:
+        return Landings([], [(f"{self.belt}.lowest_margin", 1.0)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class PeakLoad(Claim):
+    """The force that a damper's carrier puts on its frame never exceeds a bound."""
+
+    damper: str = argument(Name())
+    at_most: float = argument(Quantity("N", low=0.0))
+
+    needs = ("damper.transmitted_force", "damper.peak_load")
+    sense, unit, grid = AT_MOST, FORCE, NOTHING
+
+    def judge(self, trace: Signals) -> Verdict:
+        latch, force = f"{self.damper}.peak_load", trace[f"{self.damper}.transmitted_force"]
+        worst, time = float(trace[latch][-1]), _reached(trace, latch, -np.abs(force))
+        return self.verdict(trace, "peak load", latch, self.at_most, worst, time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopContacts(Claim):
+    """A damper's carrier touches its stops no more often than that; the place is that of the last contact."""
+
+    damper: str = argument(Name())
+    at_most: float = argument(Quantity("1", low=0.0))
+
+    needs = ("damper.stop_contacts",)
+    sense, grid = AT_MOST, NOTHING
+
+    def judge(self, trace: Signals) -> Verdict:
+        counter = f"{self.damper}.stop_contacts"
+        counted = trace[counter]
+        worst = float(counted[-1])
+        time = float(trace.time[np.argmax(counted == counted[-1])]) if worst > 0.0 else math.nan
+        return self.verdict(trace, "stop contacts", counter, self.at_most, worst, time)
+
+
+def _reached(trace: Signals, latch: str, followed: Floats) -> float:
+    """When a latched extreme was reached, as well as the samples show it.
+
+    The latch gives the step. Within it, the time is the vertex of the parabola through the lowest samples of
+    what the latch follows.
+
+    Args:
+        latch: the signal that keeps the extreme
+        followed: samples of what it follows, with a sign by which the extreme is the lowest
+    """
+    time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
+    step = int(np.argmax(kept <= ALIKE * np.max(np.abs(followed))))
+    if step == 0:
+        return float(time[0])
+    lowest = step if followed[step] <= followed[step - 1] else step - 1
+    if not 0 < lowest < len(time) - 1:
+        return float(time[lowest])
+    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2] for each in (time, followed))
+    before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
+    if after <= before:
+        return float(time[lowest])
+    turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
+    return float(np.clip(turn, time[step - 1], time[step]))

@@ -1,0 +1,57 @@
+"""What a run gives back: its verdicts, its warnings and its trace."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..traces import Recording, Trace, Verdict
+from .scenes.scene import Scene
+
+
+@dataclass(frozen=True, repr=False)
+class Judged:
+    """A finished run: its verdicts, its warnings, and what it skipped. It is true if all claims hold.
+
+    `skipped` are lines on what was not run or not read, why, and what that saved; `steps` is the number of
+    communication steps. `ended` names the FMU that ended the run early, and when it did.
+    """
+
+    scene: Scene
+    claims: tuple[Verdict, ...]
+    warnings: tuple[str, ...]
+    skipped: tuple[str, ...]
+    steps: int
+    ended: str = field(default="", kw_only=True)
+
+    @property
+    def holds(self) -> bool:
+        """Whether every claim holds."""
+        return all(self.claims)
+
+    def __bool__(self) -> bool:
+        return self.holds
+
+    def __repr__(self) -> str:
+        failing = [verdict for verdict in self.claims if not verdict]
+        summary = f"{len(failing)} of {len(self.claims)} claims fail:" if failing else "all claims hold"
+        if not self.claims:
+            summary = "no claims"
+        listed = "".join(f"\n  {verdict}" for verdict in failing)
+        return f"<{type(self).__name__} {self.scene.name}: {summary}{listed}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Result(Judged):
+    """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
+
+    `path` is where the trace was written. `trace` stays that of this run if another one is written there.
+    """
+
+    path: Path
+    trace: Trace = field(repr=False, compare=False)
+
+
+@dataclass(frozen=True, repr=False)
+class Evaluation(Judged):
+    """A finished run with its trace in memory: `trace["belt.margin"]` are the signal's values in SI."""
+
+    trace: Recording
