@@ -1,4 +1,4 @@
-"""How a run was made, as its trace tells it: enough to see what was run, and to run it again."""
+"""How a run was made, as its trace records it: enough to see what was run, and to run it again."""
 
 import json
 import shlex
@@ -12,10 +12,10 @@ from .scenes.scene import Scene
 
 
 def attributes(plan: Plan, flavour: str) -> dict[str, str]:
-    """What the root of a trace says of the run.
+    """The attributes of a trace's root.
 
-    `files` are the texts of the files that the scene's text names, `set` the values that differ from the
-    scene, as texts that `--set` takes; `command` repeats the run.
+    `files` are the texts of the files that the scene names, `set` the values that differ from the scene, as
+    `--set` takes them; `command` repeats the run.
     """
     scene = plan.scene
     fmus = _fmus(plan.pruned.scene)
@@ -40,15 +40,15 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
 
 
 def groups(plan: Plan) -> dict[str, dict[str, Any]]:
-    """What the group of each instance says: what it is, its values at the start in SI, and their units."""
+    """The attributes of each instance's group: its FMU, its start values in SI, and their units."""
     instances = plan.scene.instances
     return {
-        name: _said(instances[name], list(values)) | values
+        name: _described(instances[name], list(values)) | values
         for name, values in effective(plan.scene, plan.pruned).items()
     }
 
 
-def _said(instance: Instance, values: list[str]) -> dict[str, str]:
+def _described(instance: Instance, values: list[str]) -> dict[str, str]:
     ports = instance.fmu.ports
     units = {name: ports[name].unit for name in values if ports[name].kind == "Real" and ports[name].has_unit}
     return {
@@ -59,7 +59,7 @@ def _said(instance: Instance, values: list[str]) -> dict[str, str]:
 
 
 def _command(scene: Scene, flavour: str) -> dict[str, str]:
-    """The command that repeats a run, if its scene was read from a file."""
+    """The command that repeats the run, if its scene was read from a file."""
     source = scene.package or scene.file
     if source is None:
         return {}
@@ -70,7 +70,7 @@ def _command(scene: Scene, flavour: str) -> dict[str, str]:
 
 
 def _texts(overrides: dict[str, Any]) -> dict[str, str]:
-    """Values that were set, in the one form that the command takes as well."""
+    """Values that were set, as texts that the command takes, too."""
     return {
         key: value if isinstance(value, str) else json.dumps(value, default=_plain)
         for key, value in overrides.items()
@@ -78,12 +78,12 @@ def _texts(overrides: dict[str, Any]) -> dict[str, str]:
 
 
 def _plain(value: Any) -> Any:
-    """A number of numpy as Python's own."""
+    """A NumPy number as a Python one."""
     return value.item()
 
 
 def _fmus(scene: Scene) -> dict[str, Fmu]:
-    """The FMUs of a scene by their names; two that bear one name are told apart by an instance's."""
+    """The FMUs of a scene by name; if two different ones share a name, the instance's is added."""
     found: dict[str, Fmu] = {}
     for name, instance in scene.instances.items():
         fmu = instance.fmu

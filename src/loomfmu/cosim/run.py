@@ -59,8 +59,7 @@ def run(
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     signals = recorded(scene)
     plan = Plan(scene, prune(scene, signals), _grid(scene, signals))
-    _check_target(plan, path, overwrite, progress)
-    target = path.absolute()  # an FMU may change the working directory
+    target = _target(plan, path, overwrite, progress)
     with plan.stepped() as master:
         if master.interrupted.value:
             raise KeyboardInterrupt("interrupted before the first step")
@@ -167,15 +166,14 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
 @contextmanager
 def _kept(writer: TraceWriter, path: Path) -> Iterator[None]:
     """Whatever ends the run early: what was written stays readable, and the message says where it is."""
-    place = path.with_name(writer.partial.name)
     try:
         yield
     except Interrupted:
-        writer.abandon("interrupted")
-        raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {place}") from None
+        kept = path.with_name(writer.abandon("interrupted").name)
+        raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
     except OSError as error:
-        writer.abandon("failed")
-        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {place}") from None
+        kept = path.with_name(writer.abandon("failed").name)
+        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {kept}") from None
     except BaseException:
         writer.abandon("failed")
         raise
@@ -196,8 +194,11 @@ def _finish(scene: Scene, writer: TraceWriter, path: Path, ended: str) -> tuple[
     return verdicts
 
 
-def _check_target(plan: Plan, path: Path, overwrite: bool, report: bool) -> None:
-    """Refuse, before the run, a trace that may not be written there or does not fit; report a large one."""
+def _target(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
+    """The absolute path of the trace, since an FMU may change the working directory.
+
+    Refuses, before the run, a trace that may not be written there or does not fit, and reports a large one.
+    """
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
     if path.suffix.lower() not in SUFFIXES:
@@ -209,6 +210,7 @@ def _check_target(plan: Plan, path: Path, overwrite: bool, report: bool) -> None
         print(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less", file=sys.stderr)
     try:
         check_room(partial_of(path), size)
+        return path.absolute()
     except OSError as error:
         raise cannot_write(path, error) from None
 

@@ -3,7 +3,8 @@
 import json
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,15 @@ from scipy.optimize import brentq
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
 from loomfmu.components import DobbyDrive
 from loomfmu.cosim.claims import curves, shaft
+from loomfmu.cosim.claims.arguments import Name, Quantity, argument
+from loomfmu.cosim.claims.claim import AT_MOST, Claim
+from loomfmu.cosim.claims.claims import KINDS
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
-from loomfmu.traces import Channel, TraceWriter
+from loomfmu.traces import Channel, Signals, TraceWriter
 
 __all__ = ["fmu_cache"]
 
@@ -729,6 +733,70 @@ def test_a_claim_that_cannot_be_judged_is_refused_with_its_name(
     assert str(raised.value).replace(loom().path.name, "loom_0.h5") == said
 
 
+def test_names_that_are_not_are_refused(loom: Callable[..., Trace]) -> None:
+    for healds in (5, "heald_1", [1]):
+        with pytest.raises(LoomfmuError, match=r"healds = .* must be a list of names, such as"):
+            judge(loom(), kind="rapier_in_open_shed", head_height=0.0, healds=healds)
+    with pytest.raises(LoomfmuError, match=r"claim 'dwell': heald = 5 is not a name in quotes"):
+        judge(loom(), kind="dwell", heald=5, at_least=0.0)
+
+
+def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Trace], tmp_path: Path) -> None:
+    trace = loom(shaft__speed="600 rpm")
+    for kind, way in (("above", 1.0), ("below", -1.0)):
+        found = judge(trace, kind=kind, signal="weft.travel", bound="1 m")
+        assert found.distance == way * (found.worst - 1.0)
+        assert bool(found) == (found.distance >= 0.0)
+        assert Verdict.of(json.loads(json.dumps(found.as_dict()))).distance == found.distance
+    # the bound of a share of the stroke is the most that is allowed, that of a margin the least
+    contains = judge(trace, kind="dwell_contains", heald="heald_1", angles=["180 deg"])
+    assert contains.distance == 0.015 - contains.worst > 0.0
+    margin = judge(trace, kind="lowest_margin", bound="90 %")
+    assert margin.distance == margin.worst - 0.9 < 0.0
+    # nothing was judged, or a trace of an earlier version does not say
+    short = judge(loom(90, revolutions=0.2), kind="dwell_contains", heald="heald_1", angles=["180 deg"])
+    assert math.isnan(short.distance)
+    old = {key: value for key, value in margin.as_dict().items() if key != "sense"}
+    assert math.isnan(Verdict.of(old).distance)
+
+
+@pytest.fixture
+def kept_kinds() -> Iterator[None]:
+    """The kinds of claims, as they were after the test."""
+    before = dict(KINDS)
+    yield
+    KINDS.clear()
+    KINDS.update(before)
+
+
+@pytest.mark.usefixtures("kept_kinds", "fmu_cache")
+def test_a_new_kind_of_claim_is_one_class() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class EndsNear(Claim):
+        """A signal of a frame ends near a height."""
+
+        heald: str = argument(Name())
+        height: float = argument(Quantity("m", "mm", usual=0.05, low=0.0))
+
+        needs = ("heald.lift",)
+        sense, unit = AT_MOST, ("m", "mm")
+
+        def judge(self, trace: Signals) -> Verdict:
+            lift = float(trace[f"{self.heald}.lift"][-1])
+            return self.verdict(trace, "ends near", f"{self.heald}.lift", self.height, lift, trace.time[-1])
+
+    claim = '[[claims]]\nkind = "ends_near"\nheald = "heald_1"\nheight = {}\n'
+    text = "record = []\n" + LOOM.format(weave="10/01", rest=claim)
+    found = evaluate(scenes.parse(text.format('"200 mm"')))
+    assert found and found.claims[0].claim == "ends near"
+    assert "heald_1.lift" in found.trace and "heald_2.lift" not in found.trace
+    # its usual value, its unit and its limit are known, and the window grid leaves no step out
+    assert "height = 50" in evaluate(scenes.parse(text.format(50))).warnings[0]
+    with pytest.raises(LoomfmuError, match=r"claim 'ends_near': height: '1 N' is in N, which does not fit m"):
+        evaluate(scenes.parse(text.format('"1 N"')))
+    assert evaluate(scenes.parse(text.format(1)), set={"grid": "windows"}).steps >= 3 * 1440
+
+
 WHOLE_LOOM = """
 revolutions = 1
 steps_per_revolution = 180
@@ -774,6 +842,7 @@ def test_the_rapier_head_needs_its_height_in_the_shed(tmp_path):
     too_high = judged(tmp_path, 'kind = "rapier_in_open_shed"\nhead_height = "20 mm"')
     assert open_enough.holds
     assert not too_high.holds
+    assert re.fullmatch(r"2 \|heald_[12]\.warp_height\|", open_enough.signal)
     # the head enters and leaves at the same distance from the transfer, where the sheds are as open:
     # 0.35 * 98 mm * |1/2 - f| * 2 with the lift fraction f of the law at that angle
     assert open_enough.worst == pytest.approx(too_high.worst, rel=1e-12)
@@ -789,6 +858,7 @@ def test_the_reed_is_clear_of_the_rapier(tmp_path):
     assert judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "40 mm"').holds
     near = judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "60 mm"')
     assert not near.holds
+    assert near.signal == "reed.front_limit - reed.position"
     # the head enters at about 60 deg, when the reed has gone back 53 mm
     assert 0.045 < near.worst < 0.060
     # as much in a run that never comes to the beat-up

@@ -1,0 +1,66 @@
+"""A run as a whole: its trace is safe from what FMUs do, and its result says what happened."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from foreign_motors import FMI3, description2, library, motor2, motor3, packed
+from live_fmus import fmu_cache
+from motor_scenes import LENGTH, MOTOR, ran
+
+from loomfmu import Trace, evaluate, run
+from loomfmu.cosim.scenes import scene as scenes
+
+__all__ = ["fmu_cache"]
+
+CLAIM = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
+
+
+def test_an_fmu_that_crashes_at_its_end_takes_no_verdict_with_it(tmp_path: Path) -> None:
+    motor2(tmp_path, defines=("CRASHES=1",))
+    (tmp_path / "motor.toml").write_text(MOTOR + CLAIM)
+    command = [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--output", "out/motor.h5"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode not in (0, 1)  # the process is gone
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["motor.h5"]
+    with Trace(tmp_path / "out" / "motor.h5") as trace:
+        assert (trace.status, trace.rows) == ("complete", 201)
+        assert [bool(verdict) for verdict in trace.verdicts] == [True]
+
+
+@pytest.mark.parametrize("when", [1, 2])
+def test_an_fmu_that_changes_the_working_directory_moves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, when: int
+) -> None:
+    motor2(tmp_path, defines=(f"MOVES={when}",))
+    monkeypatch.chdir(tmp_path)
+    scene = scenes.parse(MOTOR + CLAIM, "motor")
+    result = run(scene, output="out/motor.h5")
+    assert result.path == Path("out/motor.h5")
+    assert result.trace.rows == 201
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["motor.h5"]
+    assert Path.cwd() == tmp_path
+    assert evaluate(scene)
+    assert Path.cwd() == tmp_path
+
+
+def test_an_fmu_none_of_whose_outputs_can_be_recorded_is_named(tmp_path: Path) -> None:
+    lines = [line for line in FMI3.splitlines() if 'causality="output"' not in line]
+    arrays = "".join(
+        f'<Float64 name="phase {number}" valueReference="{90 + number}" causality="output">'
+        '<Dimension start="3"/></Float64>'
+        for number in range(6)
+    )
+    motor3(tmp_path, description="\n".join(lines).replace("</ModelVariables>", f"{arrays}</ModelVariables>"))
+    text = LENGTH + '[motor]\nfmu = "Motor3.fmu"\n'
+    result = ran(tmp_path, text, tmp_path)
+    assert list(result.trace) == []
+    assert result.warnings == (
+        "motor: no output is recorded, none is a scalar number or a Boolean:"
+        " phase 0, phase 1, phase 2, phase 3, phase 4, ...",
+    )
+    # one that has no outputs at all, or others as well, is as usual
+    sink = description2().replace('causality="output"', 'causality="local"')
+    packed(tmp_path / "Motor.fmu", sink, library("fmi2.c", tmp_path / "Motor.so"), "Motor")
+    assert ran(tmp_path, MOTOR, tmp_path).warnings == ()
