@@ -4,7 +4,6 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -771,7 +770,6 @@ def kept_kinds() -> Iterator[None]:
 
 @pytest.mark.usefixtures("kept_kinds", "fmu_cache")
 def test_a_new_kind_of_claim_is_one_class() -> None:
-    @dataclass(frozen=True, kw_only=True)
     class EndsNear(Claim):
         """A signal of a frame ends near a height."""
 

@@ -79,7 +79,7 @@ class Quantity(Argument):
             low, high = self.between
             raise LoomfmuError(f"{where} = {value:g} is outside ({low:g}, {high:g}) of {self.of}")
         if value < self.low:
-            raise LoomfmuError(f"{where} = {given!r} is negative")
+            raise LoomfmuError(f"{where} = {given!r} must not be negative")
         return value
 
     def doubts(self, given: Any, where: str) -> Iterator[str]:

@@ -5,7 +5,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, dataclass_transform
 
 from ...traces import Signals, Verdict
 from . import shaft
@@ -34,9 +34,10 @@ class Landings(NamedTuple):
     extremes: list[tuple[str, float]]
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(argument,))
 @dataclass(frozen=True, kw_only=True)
 class Claim(ABC):
-    """A claim with its arguments in SI. Scenes call its kind by the name of the class in snake_case.
+    """A claim with its arguments in SI. Each subclass is a kind, called in scenes by its name in snake_case.
 
     `name` is what its verdict calls it. A kind states which signals it `needs` as "argument.variable", the
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
@@ -54,6 +55,7 @@ class Claim(ABC):
     grid: ClassVar[str] = EVERY_STEP
 
     def __init_subclass__(cls, kind: bool = True) -> None:
+        dataclass(frozen=True, kw_only=True)(cls)
         if kind:
             cls.kinds[re.sub("(?<=.)(?=[A-Z])", "_", cls.__name__).lower()] = cls
 

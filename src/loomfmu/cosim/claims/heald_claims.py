@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,7 +16,6 @@ TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim s
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
 
 
-@dataclass(frozen=True, kw_only=True)
 class _Span(Claim, kind=False):
     """Whenever a frame is within a distance from an end of its stroke, it stays there for a shaft angle.
 
@@ -54,7 +52,6 @@ class _Span(Claim, kind=False):
         return Landings(lift.crossings(distance) + lift.crossings(stroke - distance), [])
 
 
-@dataclass(frozen=True, kw_only=True)
 class Dwell(_Span):
     """Every dwell of a frame, within a share of its stroke from an end, lasts a shaft angle."""
 
@@ -70,7 +67,6 @@ class Dwell(_Span):
         return self._judge(trace, text, f"{self.heald}.lift")
 
 
-@dataclass(frozen=True, kw_only=True)
 class ClearShed(_Span):
     """Every time that a frame's warp is beyond a height, either way, lasts a shaft angle."""
 
@@ -92,7 +88,6 @@ class ClearShed(_Span):
         return self._judge(trace, f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_height")
 
 
-@dataclass(frozen=True, kw_only=True)
 class DwellContains(Claim):
     """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
 

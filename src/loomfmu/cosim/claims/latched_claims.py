@@ -1,7 +1,6 @@
 """Claims on extremes that a component itself finds on its continuous curve, and keeps."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +13,6 @@ ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone t
 NO_RISK = "the belt is never at risk in this run"
 
 
-@dataclass(frozen=True, kw_only=True)
 class LowestMargin(Claim):
     """The belt's margin against buckling never falls below a bound."""
 
@@ -34,7 +32,6 @@ class LowestMargin(Claim):
         return Landings([], [(f"{self.belt}.lowest_margin", 1.0)])
 
 
-@dataclass(frozen=True, kw_only=True)
 class PeakLoad(Claim):
     """The force that a damper's carrier puts on its frame never exceeds a bound."""
 
@@ -50,7 +47,6 @@ class PeakLoad(Claim):
         return self.verdict(trace, "peak load", latch, self.at_most, worst, time)
 
 
-@dataclass(frozen=True, kw_only=True)
 class StopContacts(Claim):
     """A damper's carrier touches its stops no more often than that; the place is that of the last contact."""
 

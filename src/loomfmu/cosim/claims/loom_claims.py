@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,6 @@ from .curves import SAME, Motion
 NEVER = "the head never enters the shed in this run"
 
 
-@dataclass(frozen=True, kw_only=True)
 class _InShed(Claim, kind=False):
     """What holds while the rapier head is in the shed, which is while its travel exceeds the idle travel."""
 
@@ -33,7 +31,6 @@ class _InShed(Claim, kind=False):
         return trace.parameter(f"{self.belt}.idle_travel")
 
 
-@dataclass(frozen=True, kw_only=True)
 class RapierInOpenShed(_InShed):
     """While the rapier head is in the shed, every warp sheet leaves it its height.
 
@@ -77,7 +74,6 @@ def _opening(frame: str) -> str:
     return f"2 |{frame}.warp_height|"
 
 
-@dataclass(frozen=True, kw_only=True)
 class ReedClearOfRapier(_InShed):
     """While the rapier head is in the shed, the reed stays a distance behind its front limit."""
 
@@ -98,7 +94,6 @@ class ReedClearOfRapier(_InShed):
         return self.verdict(trace, text, signal, self.clearance, worst, foremost.time, *notes)
 
 
-@dataclass(frozen=True, kw_only=True)
 class LocksInTime(Claim):
     """The pattern locks follow their law and let go within the time that they have.
 

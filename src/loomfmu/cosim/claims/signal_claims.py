@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from ... import units
@@ -14,7 +14,6 @@ from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
 from .curves import Motion
 
 
-@dataclass(frozen=True, kw_only=True)
 class Bounded(Claim, kind=False):
     """A signal stays on one side of a bound: over the whole run, or in a window of shaft angles.
 
