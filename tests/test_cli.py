@@ -516,7 +516,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "claim window": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "belt.margin"\nbound = 1\nwindow = "10..20"\n',
-        "claim 'above': window = '10..20' is not [from, to] in shaft angle",
+        "claim 'above': window = '10..20' must be two shaft angles, such as [\"330 deg\", \"30 deg\"]",
     ),
     "claim window unit": (
         HEAD + LOOM + '[[claims]]\nkind = "above"\nsignal = "weft.travel"\nbound = 1\nwindow = ["1 mm", 2]\n',
@@ -545,15 +545,15 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "claim height": (
         HEAD + LOOM + '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "-5 mm"\n',
-        "claim 'rapier_in_open_shed': head_height = '-5 mm' is negative",
+        "claim 'rapier_in_open_shed': head_height = '-5 mm' must not be negative",
     ),
     "claim count": (
         HEAD + LOOM + '[damper_1]\n[[claims]]\nkind = "stop_contacts"\ndamper = "damper_1"\nat_most = -1\n',
-        "claim 'stop_contacts': at_most = -1 is negative",
+        "claim 'stop_contacts': at_most = -1 must not be negative",
     ),
     "claim tolerance": (
         HEAD + LOOM + '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = 1\ntolerance = 0.9\n',
-        "claim 'dwell': tolerance = 0.9 is outside (0, 0.5), shares of the stroke",
+        "claim 'dwell': tolerance = 0.9 is outside (0, 0.5) of the stroke",
     ),
 }
 
@@ -772,5 +772,5 @@ def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.Cap
     assert main(["run", path, "--set", "shaft.speed=400rpm", "--set", "shaft.speed=500rpm"]) == 2
     assert one_line(capsys) == "--set shaft.speed is given twice: 400rpm and 500rpm"
     assert main(["run", path, "--output", "x.csv"]) == 2
-    assert one_line(capsys) == "x.csv: a trace is HDF5 and takes the name x.h5"
+    assert one_line(capsys) == "x.csv: a trace is an HDF5 file; name it x.h5"
     assert not Path("x.csv").exists()

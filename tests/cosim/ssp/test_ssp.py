@@ -329,7 +329,9 @@ def test_what_others_cannot_set_is_told(demo: Path, tmp_path: Path) -> None:
         " default"
     ]
     assert ssp.export(scenes.load(DEMO, SHORT), tmp_path / "law.ssp", "live") == []  # it is the default
-    with pytest.raises(LoomfmuError, match=r"a system package brings its own FMUs; its flavour is settled$"):
+    with pytest.raises(
+        LoomfmuError, match=r"a system package brings its own FMUs, so no flavour can be chosen$"
+    ):
         run(demo, flavour="native", output=tmp_path / "x.h5")
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from ...errors import LoomfmuError, suggestion
 from ..claims.claim import Claim
@@ -30,7 +31,11 @@ def output_port(scene: Scene, signal: str, where: str) -> Port:
 
 def claims_of(scene: Scene) -> list[Claim]:
     """The scene's claims. Raises LoomfmuError for one that cannot be read."""
-    return [read(table, lambda signal: output_port(scene, signal, "claim").unit) for table in scene.claims]
+    return [read(table, partial(_unit, scene, f"claim {table.get('kind')!r}")) for table in scene.claims]
+
+
+def _unit(scene: Scene, where: str, signal: str) -> str:
+    return output_port(scene, signal, where).unit
 
 
 def checked_claims(scene: Scene) -> Scene:
