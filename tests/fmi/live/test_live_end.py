@@ -104,3 +104,31 @@ def test_the_wrapper_lets_go_of_its_state_once(
         capture_output=True, text=True, timeout=100, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (status, "")
+
+
+AFTER_THE_FORK = {
+    "it ends at once": "",
+    "it runs once more": "with Master(scene) as master:\n        master.initialize()",
+}
+
+
+@pytest.mark.parametrize("child", AFTER_THE_FORK)
+def test_a_process_forked_after_a_run_ends_with_its_own_status(child: str) -> None:
+    script = f"""
+import os, sys
+from loomfmu.cosim.master.master import Master
+from loomfmu.cosim.scenes import scene as scenes
+scene = scenes.parse('[loom]\\nmachine = "WL680-3600"')
+with Master(scene) as master:
+    master.initialize()
+if child := os.fork():
+    sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+else:
+    {AFTER_THE_FORK[child]}
+    print("said last", end="")
+    sys.exit(7)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=100, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (7, "said last", "")

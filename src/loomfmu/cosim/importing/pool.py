@@ -1,6 +1,7 @@
 """The instances of FMUs, kept from one run to the next: what was reset is used again."""
 
 import atexit
+import os
 
 from .fmi3_slave import Fmi3Slave
 from .fmus import Fmu
@@ -38,3 +39,7 @@ def free_all() -> None:
         for slave in slaves:
             slave.free()
     _resting.clear()
+
+
+if hasattr(os, "register_at_fork"):  # a forked child has the memory of the instances, but not their threads
+    os.register_at_fork(after_in_child=_resting.clear)

@@ -53,8 +53,27 @@ def let_go_at_exit(resources: str, name: str) -> None:
     """
     library = f"{resources.rstrip('/').rpartition('/')[0]}/binaries/linux64/{name}.so"
     if sys.platform == "linux" and sys.orig_argv and library not in _libraries:
+        if not _libraries:
+            os.register_at_fork(after_in_child=_forked)
         _libraries.add(library)
         atexit.register(_let_go, library)
+
+
+def _forked() -> None:
+    """In a forked child, leave out all that ends the wrapper: its state waits for a thread that was not forked.
+
+    `exit` calls what was registered last first: it writes what the C library still holds and ends the
+    process with its status, before it comes to the wrapper.
+    """
+    atexit.unregister(_let_go)
+    try:
+        import ctypes
+
+        c_library = ctypes.CDLL(None)
+        c_library.on_exit(c_library._exit, None)
+        c_library.__cxa_atexit(c_library.fflush, None, None)
+    except (ImportError, OSError, AttributeError):  # no ctypes here, or another C library
+        pass
 
 
 def _let_go(library: str) -> None:
