@@ -10,11 +10,13 @@ from ..cosim.importing.fmus import Port
 from ..cosim.scenes.instances import (
     COARSE,
     FILES,
+    ISOLATED,
     PARAMETER_SETS,
     TIMES,
     Instance,
     components,
     overridden,
+    truth,
     unit_of,
 )
 from ..cosim.scenes.scene import Scene, check_free
@@ -109,6 +111,11 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
     name = fmu.name_of(variable)
     if name not in fmu.ports and (variable in (*PARAMETER_SETS, *FILES) or unit_of(variable)):
         return Varied(key, (key,), "Text", "1", "1", variable, _text(key), needs_scene=True)
+    if name not in fmu.ports and variable == ISOLATED:
+        about = "Whether it runs in a process of its own"
+        return Varied(
+            key, (key,), "Boolean", "1", "1", about, lambda given: truth(given, key), needs_scene=True
+        )
     check_free(scene, instance, variable)
 
     def read(given: Any) -> Value:

@@ -240,14 +240,14 @@ def test_a_unit_that_the_fmu_says_is_not_said_again_otherwise(place: Path) -> No
 def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     pool.free_all()
     made: list[str] = []
-    original = pool._opened
-    monkeypatch.setattr(pool, "_opened", lambda fmu, name: made.append(name) or original(fmu, name))
+    original = pool.opened
+    monkeypatch.setattr(pool, "opened", lambda fmu, name: made.append(name) or original(fmu, name))
     yield made
     pool.free_all()
 
 
 def test_they_are_made_anew_for_every_run(place: Path, tmp_path: Path, opened: list[str]) -> None:
-    text = MOTOR + SHAFT3 + "[weft]\n"
+    text = "isolated = false\n" + MOTOR + SHAFT3 + "[weft]\n"
     first, again = (ran(place, text, tmp_path / name).trace for name in ("first", "again"))
     for signal in ("motor.flange_w", "shaft.angle"):
         np.testing.assert_array_equal(again[signal], first[signal])
@@ -258,10 +258,12 @@ def test_one_that_a_process_can_have_once(tmp_path: Path) -> None:
     path = motor2(tmp_path, single=True)
     for _ in range(2):
         assert ran(tmp_path, MOTOR, tmp_path).holds
-    assert refused(tmp_path, MOTOR + '[other]\nfmu = "Motor.fmu"\n') == (
+    two = MOTOR + '[other]\nfmu = "Motor.fmu"\n'
+    assert refused(tmp_path, "isolated = false\n" + two) == (
         f"motor and other: a process can have one instance only of {path}"
-        " (canBeInstantiatedOnlyOncePerProcess)"
+        " (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
     )
+    assert ran(tmp_path, two, tmp_path).holds  # each in a process of its own
 
 
 def test_messages_with_arguments_are_told_whole_and_to_the_right_instance(

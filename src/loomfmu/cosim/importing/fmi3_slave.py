@@ -7,16 +7,18 @@ mode and without early return: it steps as an FMI 2.0 one does.
 import ctypes
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 
 from ...errors import LoomfmuError
-from .fmus import Fmu, Value
 from .foreign_slave import MOST_MESSAGES
-from .ports import CARRIED, RANGES
+from .ports import CARRIED, RANGES, Value
 from .slave import DISCARD, FATAL, REFUSED, WARNING, Call, Slave
+
+if TYPE_CHECKING:
+    from .fmus import Fmu
 
 C_TYPES: dict[str, Any] = {
     "Float64": ctypes.c_double,
@@ -51,7 +53,7 @@ class Fmi3Slave(Slave):
     standard = "fmi3"
     _state_word = "State"
 
-    def __init__(self, fmu: Fmu, name: str):
+    def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
         self.pooled = fmu.ours
         if not fmu.ours:  # it may have threads that log: they need Python's lock

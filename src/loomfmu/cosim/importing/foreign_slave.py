@@ -7,7 +7,7 @@ it is called, since it may have threads of its own that log.
 
 import ctypes
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from fmpy import calloc, free
@@ -24,8 +24,10 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 from ...errors import LoomfmuError
-from .fmus import Fmu
 from .slave import FATAL, WARNING, Slave
+
+if TYPE_CHECKING:
+    from .fmus import Fmu
 
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # of fmi2StatusKind
 MOST_MESSAGES = 50  # the last ones are kept: some FMUs log at every step
@@ -48,7 +50,7 @@ class ForeignSlave(Slave):
 
     pooled = False
 
-    def __init__(self, fmu: Fmu, name: str):
+    def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
         self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
 
@@ -104,5 +106,5 @@ class ForeignSlave(Slave):
         return time.value if ended.value else None
 
 
-def _resources(fmu: Fmu) -> str:
+def _resources(fmu: "Fmu") -> str:
     return (fmu.directory.absolute() / "resources").as_uri()

@@ -2,23 +2,40 @@
 
 import atexit
 import os
+from typing import TYPE_CHECKING
 
 from .fmi3_slave import Fmi3Slave
-from .fmus import Fmu
 from .foreign_slave import ForeignSlave
+from .isolated_slave import IsolatedSlave
+from .process import Limits
 from .slave import Slave
 
-_resting: dict[tuple[str, str], list[Slave]] = {}
+if TYPE_CHECKING:
+    from .fmus import Fmu
+
+Key = tuple[str, str, bool]  # the FMU's hash, the instance's name, whether it has a process of its own
+_resting: dict[Key, list[Slave]] = {}
 
 
-def borrow(fmu: Fmu, name: str) -> Slave:
-    """An instance: one that rests from an earlier run, or a new one."""
-    resting = _resting.get((fmu.sha256, name))
-    return resting.pop() if resting else _opened(fmu, name)
+def borrow(fmu: "Fmu", name: str, limits: Limits | None = None) -> Slave:
+    """An instance: one that rests from an earlier run, or a new one.
+
+    With limits it has a process of its own, which has to keep to them.
+    """
+    resting = _resting.get((fmu.sha256, name, limits is not None), [])
+    while resting:
+        slave = resting.pop()
+        if not isinstance(slave, IsolatedSlave):
+            return slave
+        if limits and slave.alive:
+            slave.limits = limits
+            return slave
+        slave.free()
+    return IsolatedSlave(fmu, name, limits) if limits else opened(fmu, name)
 
 
-def _opened(fmu: Fmu, name: str) -> Slave:
-    """A new instance, of the class that knows its version and what its maker may have left out."""
+def opened(fmu: "Fmu", name: str) -> Slave:
+    """A new instance in this process, of the class that fits its version and its vendor."""
     if fmu.fmi == 3:
         return Fmi3Slave(fmu, name)
     return Slave(fmu, name) if fmu.ours else ForeignSlave(fmu, name)
@@ -27,7 +44,8 @@ def _opened(fmu: Fmu, name: str) -> Slave:
 def give_back(slave: Slave) -> None:
     """Let an instance rest until it is borrowed again."""
     if slave.rest():
-        _resting.setdefault((slave.fmu.sha256, slave.name), []).append(slave)
+        key = slave.fmu.sha256, slave.name, isinstance(slave, IsolatedSlave)
+        _resting.setdefault(key, []).append(slave)
     else:
         slave.free()
 
@@ -41,5 +59,14 @@ def free_all() -> None:
     _resting.clear()
 
 
-if hasattr(os, "register_at_fork"):  # a forked child has the memory of the instances, but not their threads
-    os.register_at_fork(after_in_child=_resting.clear)
+def _forked() -> None:
+    """A forked process has the memory of the instances, but neither their threads nor their processes."""
+    for slaves in _resting.values():
+        for slave in slaves:
+            if isinstance(slave, IsolatedSlave):
+                slave.forsake()
+    _resting.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forked)

@@ -10,7 +10,7 @@ import logging
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import unquote
 
 from fmpy import calloc, free
@@ -27,8 +27,12 @@ from fmpy.fmi2 import (
 )
 
 from ...errors import LoomfmuError
-from .fmus import Fmu, Value
+from .ports import Value
 
+if TYPE_CHECKING:
+    from .fmus import Fmu
+
+SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
 REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
 NEEDS_TOOL = "it says that it needs the tool that made it: needsExecutionTool = true"
@@ -42,6 +46,9 @@ class Ended(LoomfmuError):
     def __init__(self, name: str, time: float):
         super().__init__(f"{name} ended the simulation at {time:.9g} s")
         self.name, self.time = name, time
+
+    def __reduce__(self) -> tuple[type["Ended"], tuple[str, float]]:
+        return Ended, (self.name, self.time)
 
 
 class Call(NamedTuple):
@@ -65,21 +72,25 @@ class Slave:
     pooled = True  # whether it can be reset for another run
     _state_word = "state"
 
-    def __init__(self, fmu: Fmu, name: str):
+    def __init__(self, fmu: "Fmu", name: str):
         self.fmu = fmu
         self.name = name
         self.messages: list[tuple[int, str]] = []
         self.fatal = False
         self.started = False
+        self._connect()
+
+    def _connect(self) -> None:
+        """Load the FMU and instantiate it."""
         self._saved: int | None = None
-        fmu.check_platform(name)
+        self.fmu.check_platform(self.name)
         try:
             with _no_bytecode():
                 self._slave = self._open()
         except Exception as error:
-            hint = f" ({NEEDS_TOOL})" if fmu.needs_tool else ""
+            hint = f" ({NEEDS_TOOL})" if self.fmu.needs_tool else ""
             raise LoomfmuError(
-                f"{name}: {fmu.path} cannot be instantiated: {self._reason(error)}{hint}"
+                f"{self.name}: {self.fmu.path} cannot be instantiated: {self._reason(error)}{hint}"
             ) from None
         self._library: Any = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._component = ctypes.c_void_p(self._slave.component)

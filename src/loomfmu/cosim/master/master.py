@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
 from ..importing.pool import borrow, give_back
-from ..importing.slave import NEEDS_TOOL, Ended, Slave
+from ..importing.process import Limits
+from ..importing.slave import NEEDS_TOOL, SIZES, Ended, Slave
 from ..scenes.graph import step_order
 from ..scenes.scene import ITERATED, Scene
 from .constant_shaft import ConstantShaft
@@ -28,7 +29,6 @@ from .loops import Iteration, Swing
 from .start import Slot, Start
 from .steppers import Action, Driven, Memory, Stepper, stepper
 
-SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}
 PATIENCE = 0.05  # s between looks for Ctrl-C
 
 Reals = NDArray[np.float64]
@@ -114,8 +114,11 @@ class Master:
         self._interrupts = ExitStack()
         self._interrupts.enter_context(_interrupt_fills(self.interrupted))
         try:
+            scene = self.scene
+            self._limits = Limits(scene.step_timeout, scene.run_timeout, self.interrupted)
             for name in self.order:
-                self.slaves[name] = borrow(self.scene.instances[name].fmu, name)
+                limits = self._limits if scene.isolates(name) else None
+                self.slaves[name] = borrow(scene.instances[name].fmu, name, limits)
         except BaseException as error:
             self.__exit__(type(error))
             raise

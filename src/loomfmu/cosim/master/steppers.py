@@ -128,12 +128,9 @@ class PythonStepper:
                 return step, None
             time.value, size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
-            for function, arguments in self._calls:
+            for place, (function, arguments) in enumerate(self._calls):
                 if (status := function(*arguments)) > WARNING:
-                    done = next(
-                        place for place, each in enumerate(self._actions) if each.call.arguments is arguments
-                    )
-                    return stopped(self._actions[done:], status, span, step, memory, reals, integers)
+                    return stopped(self._actions[place:], status, span, step, memory, reals, integers)
             reals[step] = memory.reals
             integers[step] = memory.integers
         return len(span), None

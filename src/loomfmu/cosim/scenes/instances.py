@@ -15,7 +15,9 @@ from . import standard_loom
 from .graph import Wire
 
 COARSE = "coarse_steps_per_revolution"
-WHOLE = ("grid", COARSE, "coupling")  # keys of the scene itself that can be set beside its times
+ISOLATED = "isolated"
+# keys of the scene itself that can be set beside its times
+WHOLE = ("grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
 KEYS = (
     "title",
     "description",
@@ -50,6 +52,7 @@ class Instance:
     """One FMU of a scene with the values that are set at its start (SI).
 
     `published` are the machine and the head that it was told to be of, `doubts` what is odd about values.
+    `isolated` says whether it runs in a process of its own; where it does not, the scene decides.
     """
 
     name: str
@@ -57,6 +60,7 @@ class Instance:
     values: dict[str, Value] = field(default_factory=dict)
     published: dict[str, str] = field(default_factory=dict)
     doubts: dict[str, str] = field(default_factory=dict)
+    isolated: bool | None = None
 
     def set(self, key: str, given: Any) -> None:
         """Set a parameter, the start of an input, or all parameters that a published name stands for.
@@ -72,10 +76,13 @@ class Instance:
             self.values |= standard_loom.pattern(given, f"{self.name}.pattern")
             return
         name = self.fmu.name_of(key)
+        if key == ISOLATED and name not in self.fmu.ports:
+            self.isolated = truth(given, f"{self.name}.{key}")
+            return
         if name not in self.fmu.ports:
             settable = {port.name: port.description for port in self.fmu.ports.values() if _can_be_set(port)}
             extra = PARAMETER_SETS if self.fmu.built else FILES
-            hint = suggestion(key, [*settable, *extra], settable)
+            hint = suggestion(key, [*settable, *extra, ISOLATED], settable)
             if key in KEYS:
                 hint = f": {key} belongs to the scene, write it above the first [table]"
             raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
@@ -124,6 +131,13 @@ class Instance:
                 for idle in when_off if values[switch] else when_on:
                     values.pop(idle, None)
         return values
+
+
+def truth(given: Any, where: str) -> bool:
+    """A truth value as people write it."""
+    if str(given).lower() not in ("true", "false"):
+        raise LoomfmuError(f"{where} = {given!r} must be true or false")
+    return str(given).lower() == "true"
 
 
 def _can_be_set(port: Port) -> bool:

@@ -11,11 +11,13 @@ from typing import Any
 from ... import units
 from ...errors import LoomfmuError, shown, suggestion
 from ...files import text_of
+from ..importing.process import AVAILABLE
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
 from .instances import (
     COARSE,
+    ISOLATED,
     KEYS,
     TIMES,
     Instance,
@@ -24,6 +26,7 @@ from .instances import (
     mixed,
     override,
     own_texts,
+    truth,
 )
 from .wiring import drives_of, wires_of
 
@@ -41,7 +44,8 @@ class Scene:
     `coarse_steps_per_revolution` outside of the windows that the claims look into. `file` or the system
     package `package` is what it was read from, `package_sha256` is the package's, `texts` are those of the
     other files that its text names, `overrides` the values that differ from it, `notes` what the user is to
-    be warned of.
+    be warned of. `isolated` says whether FMUs run in processes of their own; by default third-party ones do.
+    A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s].
     """
 
     title: str
@@ -60,6 +64,9 @@ class Scene:
     coupling: str = LAGGED
     grid: str = UNIFORM
     coarse_steps_per_revolution: int = 24
+    isolated: bool | None = None
+    step_timeout: float = 60.0
+    run_timeout: float = 86400.0
     file: Path | None = None
     package: Path | None = None
     notes: tuple[str, ...] = ()
@@ -69,6 +76,12 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"<Scene {self.name}: {len(self.instances)} instances, {len(self.claims)} claims>"
+
+    def isolates(self, name: str) -> bool:
+        """Whether an instance runs in a process of its own."""
+        instance = self.instances[name]
+        stated = self.isolated if instance.isolated is None else instance.isolated
+        return AVAILABLE and not instance.fmu.ours if stated is None else stated
 
     @property
     def speed(self) -> float:
@@ -159,7 +172,6 @@ def assemble(
     directory: Path,
 ) -> Scene:  # fmt: skip
     """A scene of wired instances, with what else the tables of its text say."""
-    _check_single(instances)
     seconds = _by_seconds(tables)
     if seconds is not None:
         duration, step = seconds
@@ -188,8 +200,12 @@ def assemble(
         coarse_steps_per_revolution=int(
             _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
+        isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
+        step_timeout=_seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
+        run_timeout=_seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
         notes=tuple(_notes(instances, wires, drives, turns)),
     )
+    _check_single(scene)
     _check_time(scene)
     return scene
 
@@ -214,16 +230,16 @@ def _notes(
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 
 
-def _check_single(instances: dict[str, Instance]) -> None:
-    """Refuse a second instance of what a process can have one of."""
+def _check_single(scene: Scene) -> None:
+    """Refuse a second instance in this process of what a process can have one of."""
     found: dict[str, str] = {}
-    for name, each in instances.items():
-        if not each.fmu.single:
+    for name, each in scene.instances.items():
+        if not each.fmu.single or scene.isolates(name):
             continue
         if each.fmu.sha256 in found:
             raise LoomfmuError(
                 f"{found[each.fmu.sha256]} and {name}: a process can have one instance only of"
-                f" {each.fmu.path} (canBeInstantiatedOnlyOncePerProcess)"
+                f" {each.fmu.path} (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
             )
         found[each.fmu.sha256] = name
 
@@ -238,14 +254,16 @@ def _by_seconds(tables: dict[str, Any]) -> tuple[float, float] | None:
             f"{' and '.join(given)}: a scene runs either by duration and step,"
             " or by revolutions and steps_per_revolution"
         )
-    found = []
-    for key in ("duration", "step"):
-        try:
-            value = units.parse(tables[key], "s")
-        except units.UnitError as error:
-            raise LoomfmuError(f"{key}: {error}") from None
-        found.append(_number(value, key, 1e-12, 1e9))
-    return found[0], found[1]
+    return _seconds(tables["duration"], "duration", 1e-12), _seconds(tables["step"], "step", 1e-12)
+
+
+def _seconds(given: Any, key: str, low: float) -> float:
+    """A time within bounds [s]."""
+    try:
+        value = units.parse(given, "s")
+    except units.UnitError as error:
+        raise LoomfmuError(f"{key}: {error}") from None
+    return _number(value, key, low, 1e9)
 
 
 def _check_time(scene: Scene) -> None:

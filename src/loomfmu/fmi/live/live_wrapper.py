@@ -60,7 +60,7 @@ def let_go_at_exit(resources: str, name: str) -> None:
 
 
 def _forked() -> None:
-    """In a forked child, leave out all that ends the wrapper: its state waits for a thread that was not forked.
+    """In a forked child, leave out what ends the wrapper: its state waits for a thread that was not forked.
 
     `exit` calls what was registered last first: it writes what the C library still holds and ends the
     process with its status, before it comes to the wrapper.

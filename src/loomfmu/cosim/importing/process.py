@@ -1,0 +1,190 @@
+"""The process of an isolated FMU as the master sees it: started, asked within limits on time, and ended."""
+
+import contextlib
+import ctypes
+import json
+import math
+import mmap
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...errors import LoomfmuError
+from .messages import PART, complete, framed, write
+
+AVAILABLE = hasattr(select, "poll")  # not on Windows
+LOOK = 100  # ms between looks for Ctrl-C and for the limits
+GRACE = 1.0  # s for a call to return after Ctrl-C, and for a process to end
+START = 120.0  # s for Python to start on a busy machine
+MOST_OUTPUT = 4096  # bytes of what an FMU prints that are kept
+MOST_SHOWN = 200  # letters of it that a message shows
+SCRIPT = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv.pop(1));"
+    " from loomfmu.cosim.importing.worker import main; main()"
+)
+
+
+@dataclass
+class Limits:
+    """How long a call of an isolated FMU and a whole run may take [s]; `interrupted` is set by Ctrl-C."""
+
+    step: float = 60.0
+    run: float = math.inf
+    interrupted: ctypes.c_int32 = field(default_factory=ctypes.c_int32)
+
+    def __post_init__(self) -> None:
+        self._end = time.monotonic() + self.run
+
+    @property
+    def passed(self) -> str:
+        """What to say of a run that has taken too long; nothing while it has not."""
+        return (
+            f"the run took longer than run_timeout = {self.run:g} s" if time.monotonic() > self._end else ""
+        )
+
+
+class Died(LoomfmuError):
+    """The process of an isolated FMU has ended, or had to be ended; the text says why."""
+
+
+class Process:
+    """A process with shared memory and a folder of its own."""
+
+    def __init__(self, size: int):
+        if not AVAILABLE:
+            raise LoomfmuError("isolated = true is not available on this system; set isolated = false")
+        self._folder = Path(tempfile.mkdtemp(prefix="loomfmu-"))
+        (self._folder / "memory").write_bytes(bytes(size))
+        with (self._folder / "memory").open("r+b") as file:
+            self._memory = mmap.mmap(file.fileno(), size)
+        self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
+        theirs, self._requests = os.pipe()
+        self._replies, answers = os.pipe()
+        self._prints, printed = os.pipe()
+        try:
+            path = json.dumps([str(Path(place).absolute()) for place in sys.path])
+            self._popen = subprocess.Popen(
+                [sys.executable, "-c", SCRIPT, path, str(theirs), str(answers)],
+                stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT, cwd=self._folder,
+                pass_fds=(theirs, answers), start_new_session=True,
+            )  # fmt: skip
+        except OSError as error:
+            self._close()
+            os.close(self._prints)
+            shutil.rmtree(self._folder, ignore_errors=True)
+            raise LoomfmuError(f"no process for an isolated FMU: {error.strerror or error}") from None
+        finally:
+            os.close(theirs)
+            os.close(answers)
+            os.close(printed)
+        self._poll = select.poll()
+        self._poll.register(self._replies, select.POLLIN)
+        self._output = b""
+        self._reader = threading.Thread(target=self._follow, daemon=True)
+        self._reader.start()
+
+    def _follow(self) -> None:
+        """Read what the FMU prints, so that it does not have to wait, and keep the end of it."""
+        while part := os.read(self._prints, PART):
+            self._output = (self._output + part)[-MOST_OUTPUT:]
+        os.close(self._prints)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still runs."""
+        return self._popen.poll() is None
+
+    def ask(self, content: bytes, limits: Limits, action: Callable[[], str]) -> bytes:
+        """Send a message and wait for the answer; `action` names what the FMU is doing meanwhile.
+
+        Raises:
+            Died: there was no answer within the limits, or after Ctrl-C; the process has ended
+        """
+        data = b""
+        try:
+            write(self._requests, framed(content))
+            while not complete(data):
+                if not self._poll.poll(LOOK):
+                    self._wait(limits, action)
+                part = os.read(self._replies, PART)
+                if not part:
+                    raise BrokenPipeError
+                data += part
+        except OSError:
+            raise self._died(action()) from None
+        return data[4:]
+
+    def _wait(self, limits: Limits, action: Callable[[], str]) -> None:
+        """Wait until there is something to read."""
+        begun = time.monotonic()
+        interrupted = math.inf
+        while not self._poll.poll(LOOK):
+            now = time.monotonic()
+            if not self.alive:
+                raise BrokenPipeError
+            if limits.interrupted.value:
+                interrupted = min(interrupted, now)
+            if now - interrupted > GRACE:
+                reason = f"interrupted in {action()}"
+            elif now - begun > limits.step:
+                reason = f"{action()} did not return within step_timeout = {limits.step:g} s"
+            else:
+                reason = limits.passed
+            if reason:
+                self.end(grace=0.0)
+                raise Died(reason + self._printed())
+
+    def _died(self, action: str) -> Died:
+        """What to say of a process that answers no more."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._popen.wait(GRACE)
+        status = self._popen.returncode
+        self.end(grace=0.0)
+        if status is None:
+            reason = f"{action} closed the connection to the master"
+        elif status < 0:
+            reason = f"{action} crashed its process ({signal.Signals(-status).name})"
+        else:
+            reason = f"{action} ended its process (exit status {status})"
+        return Died(reason + self._printed())
+
+    def _printed(self) -> str:
+        """The last line that the FMU printed, as the end of a message."""
+        self._reader.join(GRACE)
+        lines = self._output.decode(errors="replace").split("\n")
+        texts = [
+            "".join(letter if letter.isprintable() else " " for letter in line).strip() for line in lines
+        ]
+        last = next(filter(None, reversed(texts)), "")
+        return f"; it printed: {last[:MOST_SHOWN]}" if last else ""
+
+    def end(self, grace: float = GRACE) -> None:
+        """End it, and whatever it has started."""
+        self._close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._popen.wait(grace)
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._popen.pid, signal.SIGKILL)
+        self._popen.wait()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def forsake(self) -> None:
+        """In a forked process: leave it to the process that started it."""
+        self._close()
+        self._popen.returncode = 0  # it is not ours to wait for
+
+    def _close(self) -> None:
+        """Close the pipes: it ends by itself when nobody else has them."""
+        for pipe in (self._requests, self._replies):
+            with contextlib.suppress(OSError):
+                os.close(pipe)
+        self._requests = self._replies = -1

@@ -1,0 +1,140 @@
+"""The process of an isolated FMU: it makes the calls that the master sends, until the master is gone."""
+
+import ctypes
+import mmap
+import os
+import pickle
+import select
+import shutil
+import sys
+import threading
+from array import array
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from ...errors import LoomfmuError
+from .messages import CALLS, DONE, PART, PLACE, SIZE, TIME, Answer, complete, framed, write
+from .pool import opened
+from .slave import WARNING, Call, Slave
+
+Prepared = list[tuple[int, Callable[..., int], tuple[Any, ...]]]
+
+
+class Worker:
+    """Serves one instance of an FMU after the other, of one FMU, in a folder of its own."""
+
+    def __init__(self, requests: int, replies: int):
+        self._requests, self._replies = requests, replies
+        self._folder = Path.cwd()
+        with Path("memory").open("r+b") as file:
+            self._memory = mmap.mmap(file.fileno(), 0)
+        self._time = ctypes.c_double.from_buffer(self._memory, TIME)
+        self._size = ctypes.c_double.from_buffer(self._memory, SIZE)
+        self._place = ctypes.c_int64.from_buffer(self._memory, PLACE)
+        self._start = ctypes.addressof(self._time)
+        self._logged: list[tuple[int, str]] = []  # as the master knows it
+        self._slave: Slave
+        self._calls: list[Call] = []
+        self._batches: dict[bytes, Prepared] = {}
+
+    def serve(self) -> None:
+        """Answer requests until the master closes its end."""
+        done = framed(DONE)
+        while request := self._read():
+            if request[:1] == CALLS:
+                failed, error = self._make(request[1:]), None
+                if failed is None and self._slave.messages == self._logged:
+                    write(self._replies, done)
+                    continue
+                value: Any = failed
+            else:
+                value, error = self._perform(*pickle.loads(request))
+            self._logged = list(self._slave.messages)
+            answer = Answer(value, error, self._logged, self._slave.fatal)
+            write(self._replies, framed(pickle.dumps(tuple(answer))))
+
+    def _read(self) -> bytes:
+        data = b""
+        while not complete(data):
+            part = os.read(self._requests, PART)
+            if not part:
+                return b""
+            data += part
+        return data[4:]
+
+    def _make(self, numbers: bytes) -> tuple[int, int] | None:
+        """Make prepared calls up to the first that fails; its place among them and its status."""
+        if numbers not in self._batches:
+            calls = [self._calls[number] for number in array("I", numbers)]
+            self._batches[numbers] = [
+                (place, call.function, call.arguments) for place, call in enumerate(calls)
+            ]
+        for place, function, arguments in self._batches[numbers]:
+            self._place.value = place
+            if (status := function(*arguments)) > WARNING:
+                return place, status
+        return None
+
+    def _perform(self, method: str, arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
+        """Call a method of this object, or else of the instance."""
+        try:
+            found = getattr(self, method, None) or getattr(self._slave, method)
+            return found(*arguments), None
+        except LoomfmuError as error:
+            return None, error
+        except Exception as error:
+            return None, LoomfmuError(f"{type(error).__name__}: {error}")
+
+    # ---- what the master sends beside the methods of `Slave`
+
+    def instantiate(self, facts: dict[str, Any], name: str) -> None:
+        """Load an FMU and instantiate it."""
+        os.chdir(self._folder)  # the one before may have left it
+        self._calls.clear()
+        self._batches.clear()
+        self._slave = SimpleNamespace(messages=[], fatal=False)  # type: ignore[assignment]
+        self._slave = opened(SimpleNamespace(**facts, check_platform=lambda _name: None), name)  # type: ignore[arg-type]
+
+    def prepare(self, action: str, kind: str, references: list[int], offset: int) -> str:
+        """Prepare a call that moves values to or from a place in the shared memory; the function's name."""
+        return self._prepared(self._slave.value_call(action, kind, references, self._start + offset))
+
+    def prepare_step(self) -> str:
+        """Prepare the call that takes a step; the function's name."""
+        return self._prepared(self._slave.step_call(self._time, self._size))
+
+    def _prepared(self, call: Call) -> str:
+        self._calls.append(call)
+        return call.name
+
+    def terminate(self) -> bool:
+        """Terminate and free the instance; whether another one may follow."""
+        self._slave.rest()
+        failed = self._slave.fatal
+        self._slave.free()
+        return not failed
+
+
+def main() -> None:
+    """Serve the pipes that the arguments name."""
+    requests, replies = map(int, sys.argv[1:])
+    folder = Path.cwd()
+    threading.Thread(target=_end_with_master, args=(requests, folder), daemon=True).start()
+    Worker(requests, replies).serve()
+    _end(folder)
+
+
+def _end_with_master(requests: int, folder: Path) -> None:
+    """Wait until the master is gone, even if the FMU is in a call that does not return."""
+    poll = select.poll()
+    poll.register(requests, 0)
+    poll.poll()
+    _end(folder)
+
+
+def _end(folder: Path) -> None:
+    """End the process without what libraries would do at its end."""
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(0)
