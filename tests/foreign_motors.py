@@ -158,6 +158,13 @@ def motor2(
     return packed(directory / f"{name}.fmu", description2(name, **options), binary, "Motor")  # type: ignore[arg-type]
 
 
+def misbehaving(directory: Path, what: str, where: str = "STEP") -> Path:
+    """The motor as an FMI 2.0 FMU that crashes, hangs, ... as `misbehaves.c` says; in mode 2 it does not."""
+    macros = [f"-DMISBEHAVES={what}", f"-DWHERE={where}"]
+    binary = library("misbehaves.c", directory / "Motor.so", *macros)
+    return packed(directory / "Motor.fmu", description2(), binary, "Motor")
+
+
 def motor3(directory: Path, *, defines: tuple[str, ...] = (), description: str = FMI3) -> Path:
     """The motor as an FMI 3.0 FMU."""
     binary = library("fmi3.c", directory / "Motor3.so", *(f"-D{macro}" for macro in defines))

@@ -16,6 +16,7 @@ from odd_components import odd
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.importing import fmus, pool, slave
+from loomfmu.cosim.importing.process import Limits
 from loomfmu.cosim.master.master import Master
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
@@ -319,10 +320,10 @@ def test_instances_are_given_back_when_one_cannot_be_made(
     scene = small(90)
     borrowed = pool.borrow
 
-    def failing(fmu: fmus.Fmu, name: str) -> slave.Slave:
+    def failing(fmu: fmus.Fmu, name: str, limits: Limits | None) -> slave.Slave:
         if name == "belt":
             raise LoomfmuError("no belt")
-        return borrowed(fmu, name)
+        return borrowed(fmu, name, limits)
 
     monkeypatch.setattr("loomfmu.cosim.master.master.borrow", failing)
     master = Master(scene)

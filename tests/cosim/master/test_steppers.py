@@ -234,7 +234,7 @@ def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatc
         master.initialize()
         assert type(master._stepper) is steppers.PythonStepper
     with (
-        pytest.raises(LoomfmuError, match="the compiled stepper is not to be had"),
+        pytest.raises(LoomfmuError, match="the compiled stepper is not available"),
         Master(small(90), compiled=True) as master,
     ):
         master.initialize()

@@ -1,7 +1,7 @@
 """Wires that close a loop: watched while they carry the value of the step before, or iterated.
 
 A shaft that feels the torque of its mechanisms, whose torque depends on its acceleration, is such a loop.
-With the value of the step before it swings up where the mechanisms' inertia exceeds the shaft's, however
+With the value of the step before it is unstable where the mechanisms' inertia exceeds the shaft's, however
 small the step. Iterated, every step is repeated from a saved state until both ends of the loop agree.
 """
 
@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
+from ..importing.slave import Ended
 from ..scenes.graph import Wire
 from .grid import Span
-from .steppers import Action, Advanced, Driven, Memory, perform
+from .steppers import Action, Advanced, Driven, Memory, take
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -22,10 +23,10 @@ Integers = NDArray[np.int32]
 MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or three where the loop is linear
 TOLERANCE = 1e-11  # of the largest value on a wire so far: what rounding leaves of a loop with a gain of 1e4
 FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
-HISTORY = 256  # samples over which a swing is followed
+HISTORY = 256  # samples over which an oscillation is followed
 FLIPS = 10  # in a row, each larger than the one before: an extremum of a smooth signal gives one
-GROWTH = 30.0  # from which on a swing is one, and not noise
-NOTICED = 1e-6  # share of the largest value from which on a swing is told
+GROWTH = 30.0  # from which on it is an oscillation, and not noise
+NOTICED = 1e-6  # share of the largest value from which on it is reported
 
 
 class Broyden:
@@ -102,39 +103,42 @@ class Iteration:
             self._time.value, self._size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
             try:
-                self._step()
+                ended = self._step(float(span.ends[step]))
             except LoomfmuError as failure:
                 return step, failure
             reals[step] = memory.reals
             integers[step] = memory.integers
+            if ended:
+                return step + 1, ended
         return len(span), None
 
-    def _step(self) -> None:
-        """Take one step. Raises LoomfmuError where an FMU fails or the loops do not settle."""
+    def _step(self, end: float) -> Ended | None:
+        """Take one step; the FMU that ends the simulation with it. Raises LoomfmuError where that fails."""
         time = self._time.value
-        perform(self._before, time)
+        ended = take(self._before, time, end)
         for slave in self._slaves:
             slave.save()
         stepped = False
+        ended_in_loop: Ended | None = None
 
         def exchange() -> None:
-            nonlocal stepped
+            nonlocal stepped, ended_in_loop
             if stepped:
                 for slave in self._slaves:
                     slave.restore()
             stepped = True
-            perform(self._looped, time)
+            ended_in_loop = take(self._looped, time, end)
 
         if not self._solver.settle(exchange):
             raise LoomfmuError(
-                f"loop: {self._wires}: no values found at {time:.9g} s with which it agrees,"
-                f" in {MOST_EXCHANGES} exchanges"
+                f"loop: {self._wires}: did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
             )
-        perform(self._after, time)
+        after = take(self._after, time, end)
+        return ended or ended_in_loop or after
 
 
-class Swing:
-    """Watches the wires that carry the value of the step before for a loop that swings up."""
+class Growth:
+    """Watches the wires that carry the value of the step before for an unstable loop."""
 
     def __init__(self, lagged: Sequence[Wire], slots: Sequence[int]):
         self._wires = ", ".join(str(wire) for wire in lagged)
@@ -164,7 +168,7 @@ class Swing:
             if end - start >= FLIPS and last > GROWTH * first and last > NOTICED * largest:
                 factor = (last / first) ** (1.0 / (end - start))
                 raise LoomfmuError(
-                    f"loop: {self._wires}: with the value of the step before it swings up, {factor:.3g}"
-                    f' times a step from {self._times[start]:.6g} s on; set coupling = "iterated"'
+                    f"loop: {self._wires}: unstable: grows by a factor of {factor:.3g} per step from"
+                    f' {self._times[start]:.6g} s on; set coupling = "iterated"'
                 )
             start = end + 1

@@ -7,10 +7,8 @@ of the step before, or are iterated until both ends agree (`coupling = "iterated
 
 import ctypes
 import math
-import signal
-import threading
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Collection, Mapping
+from contextlib import ExitStack
 from time import perf_counter
 from typing import Any
 
@@ -25,7 +23,8 @@ from ..scenes.graph import step_order
 from ..scenes.scene import ITERATED, Scene
 from .constant_shaft import ConstantShaft
 from .grid import Grid, Span, uniform
-from .loops import Iteration, Swing
+from .guards import directory_kept, exit_named, interrupt_fills
+from .loops import Growth, Iteration
 from .start import Slot, Start
 from .steppers import Action, Driven, Memory, Stepper, stepper
 
@@ -74,7 +73,7 @@ class Master:
         self.ended: Ended | None = None
         self._start_warnings: list[str] = []
         self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
-        self._swing = Swing(self.lagged, self._lagged_slots())
+        self._growth = Growth(self.lagged, self._lagged_slots())
 
     def _slots(self, fetched: Collection[tuple[str, str]] | None) -> dict[tuple[str, str], Slot]:
         """Where the value of each output stands: reals in one vector, integers and booleans in another.
@@ -111,29 +110,47 @@ class Master:
     # ---- life cycle
 
     def __enter__(self) -> "Master":
-        self._interrupts = ExitStack()
-        self._interrupts.enter_context(_interrupt_fills(self.interrupted))
+        self._guards = ExitStack()
+        self._guards.enter_context(interrupt_fills(self.interrupted))
         try:
             scene = self.scene
             self._limits = Limits(scene.step_timeout, scene.run_timeout, self.interrupted)
+            inside = [name for name in self.order if not scene.isolates(name)]
+            self._guards.enter_context(exit_named(inside))
             for name in self.order:
-                limits = self._limits if scene.isolates(name) else None
-                self.slaves[name] = borrow(scene.instances[name].fmu, name, limits)
+                limits = None if name in inside else self._limits
+                with directory_kept():
+                    self.slaves[name] = borrow(scene.instances[name].fmu, name, limits)
         except BaseException as error:
             self.__exit__(type(error))
             raise
         return self
 
     def __exit__(self, kind: type[BaseException] | None = None, *_: Any) -> None:
-        for slave in self.slaves.values():
-            give_back(slave)
+        with directory_kept():
+            for slave in self.slaves.values():
+                give_back(slave)
         self.slaves.clear()
-        self._interrupts.close()
+        self._guards.close()
         if kind is None and self.interrupted.value:  # it came when nobody looked any more
             raise KeyboardInterrupt("interrupted")
 
     def initialize(self) -> None:
-        """Set all values, exchange the outputs at the start until they settle, prepare the calls."""
+        """Set all values, exchange the outputs at the start until they settle, prepare the calls.
+
+        Raises:
+            LoomfmuError: an FMU refuses its values, or fails
+            KeyboardInterrupt: Ctrl-C while an isolated FMU did not answer
+        """
+        try:
+            with directory_kept():
+                self._initialize()
+        except LoomfmuError:
+            if self.interrupted.value:
+                raise KeyboardInterrupt("interrupted before the first step") from None
+            raise
+
+    def _initialize(self) -> None:
         for name in self.order:
             self.slaves[name].start(self.scene.instances[name].values, self.grid.stop_time)
         driven = self._driven(np.zeros(1))
@@ -245,7 +262,7 @@ class Master:
         """Step to the end, the run's or that which an FMU makes of it; hand over every `rows` samples.
 
         Raises:
-            LoomfmuError: an FMU failed, or gave a value that is not finite, or a loop swings up
+            LoomfmuError: an FMU failed, or gave a value that is not finite, or a loop is unstable
             Interrupted: Ctrl-C, after the step under way
         """
         times = np.empty(rows)
@@ -282,7 +299,11 @@ class Master:
 
     def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
-        taken, failure = self._stepper.advance(span, self._driven(span.turns), reals, integers)
+        driven = self._driven(span.turns)
+        with directory_kept():
+            taken, failure = self._stepper.advance(span, driven, reals, integers)
+        if failure is None and (reason := self._limits.passed):
+            failure = LoomfmuError(f"{self.scene.name} at {span.ends[taken - 1]:.9g} s: {reason}")
         self._turn_shafts((span.starts + span.sizes)[:taken], reals[:taken])
         return taken, failure
 
@@ -291,7 +312,7 @@ class Master:
         sound = _finite_rows(reals)
         if sound:
             write(times[:sound], reals[:sound], integers[:sound])
-        self._swing.check(times, reals)
+        self._growth.check(times, reals)
         if sound < len(reals):
             column = int(np.flatnonzero(~np.isfinite(reals[sound]))[0])
             name = next(".".join(key) for key, slot in self.slots.items() if slot == ("Real", column))
@@ -321,20 +342,3 @@ def _finite_rows(reals: Reals) -> int:
             return len(reals)
     bad = np.flatnonzero(~np.isfinite(reals).all(axis=1))
     return int(bad[0]) if len(bad) else len(reals)
-
-
-@contextmanager
-def _interrupt_fills(flag: ctypes.c_int32) -> Iterator[None]:
-    """Ctrl-C sets a flag instead of raising: an exception inside a live FMU would be fatal to it."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def fill(_number: int, _frame: Any) -> None:
-        flag.value = 1
-
-    previous = signal.signal(signal.SIGINT, fill)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)

@@ -64,6 +64,24 @@ def perform(actions: Iterable[Action], time: float) -> None:
             raise action.slave.failed(status, action.call.name, time)
 
 
+def take(actions: Iterable[Action], time: float, end: float, status: int | None = None) -> Ended | None:
+    """Make calls of a step from `time` to `end`; `status` is that of the first where it was made before.
+
+    Where an FMU ends the simulation at the end of the step the others still make it, and it counts. Raises
+    LoomfmuError for another failure, and for an FMU that ends within the step.
+    """
+    ended: Ended | None = None
+    for action in actions:
+        found = action.call.function(*action.call.arguments) if status is None else status
+        status = None
+        if found > WARNING:
+            failure = action.slave.failed(found, action.call.name, time)
+            if not _at_end(failure, time, end):
+                raise failure
+            ended = ended or cast(Ended, failure)
+    return ended
+
+
 @dataclass
 class Memory:
     """What a master shares with its stepper: values of all outputs, where driven inputs stand, the flag."""
@@ -86,27 +104,21 @@ def stopped(
     actions: Sequence[Action], status: int, span: Span, step: int, memory: Memory, reals: Floats,
     integers: Integers,
 ) -> Advanced:  # fmt: skip
-    """What comes of a step one of whose calls had a status that is not OK; that call and those after it.
-
-    Where an FMU ends the simulation at the end of the step the others still make it: it counts. Else it does
-    not.
-    """
-    failures = []
-    for place, action in enumerate(actions):
-        status = action.call.function(*action.call.arguments) if place else status
-        if status > WARNING:
-            failures.append(action.slave.failed(status, action.call.name, float(span.starts[step])))
-            if not _at_end(failures[-1], span, step):
-                return step, failures[-1]
+    """What comes of a step one of whose calls had a status that is not OK; that call and those after it."""
+    try:
+        ended = take(actions, float(span.starts[step]), float(span.ends[step]), status)
+    except LoomfmuError as failure:
+        return step, failure
     reals[step] = memory.reals
     integers[step] = memory.integers
-    return step + 1, failures[0]
+    return step + 1, ended
 
 
-def _at_end(failure: LoomfmuError, span: Span, step: int) -> bool:
+def _at_end(failure: LoomfmuError, start: float, end: float) -> bool:
     """Whether it is an FMU that ended the simulation at the end of a step."""
-    size, end = float(span.sizes[step]), float(span.ends[step])
-    return isinstance(failure, Ended) and math.isclose(failure.time, end, rel_tol=1e-9, abs_tol=1e-6 * size)
+    return isinstance(failure, Ended) and math.isclose(
+        failure.time, end, rel_tol=1e-9, abs_tol=1e-6 * (end - start)
+    )
 
 
 class PythonStepper:
@@ -230,14 +242,14 @@ def stepper(
     actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double,
     compiled: bool | None = None,
 ) -> Stepper:  # fmt: skip
-    """The compiled stepper where it can be had and the FMUs let it, unless told which one to take.
+    """The compiled stepper where it is available and fits the FMUs, unless `compiled` chooses one.
 
-    Raises LoomfmuError where the compiled one is wanted and cannot be had.
+    Raises LoomfmuError where the compiled one is required and not available.
     """
     plain = all(action.call.plain for action in actions)
     library = _library() if compiled or (compiled is None and plain) else None
     if compiled and (library is None or not plain):
-        raise LoomfmuError("the compiled stepper is not to be had: pip install 'loomfmu[native]'")
+        raise LoomfmuError("the compiled stepper is not available: pip install 'loomfmu[native]'")
     if library:
         return CompiledStepper(library, actions, memory, time, size)
     return PythonStepper(actions, memory, time, size)

@@ -1,0 +1,257 @@
+"""FMUs that misbehave, in processes of their own: one line for each, and nothing else comes to harm."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from foreign_motors import misbehaving, motor2, motor3
+from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran
+
+import loomfmu
+from loomfmu import LoomfmuError, Trace
+from loomfmu.cosim.importing import pool
+from loomfmu.cosim.importing.isolated_slave import IsolatedSlave
+from loomfmu.cosim.run import evaluate
+from loomfmu.cosim.scenes import scene as scenes
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the misbehaving FMU is compiled for Linux")
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left() -> Iterator[None]:
+    yield
+    processes = [each._process for slaves in pool._resting.values() for each in slaves if isolated(each)]
+    pool.free_all()
+    assert not any(process.alive or process._folder.exists() for process in processes)
+
+
+def isolated(slave: object) -> bool:
+    return isinstance(slave, IsolatedSlave)
+
+
+# ---- results
+
+LOOPED = (
+    MOTOR
+    + '[other]\nfmu = "Motor3.fmu"\n[weft]\n[wires]\n"weft.shaft_angle" = "motor.flange.phi"\n'
+    + '"other.load" = "weft.shaft_torque"\n"motor.load.tau" = "weft.shaft_torque"\n'
+)
+
+
+@pytest.mark.parametrize("text", [LOOPED, MOTOR + SHAFT3 + WEFT])
+def test_results_are_equal_to_the_bit(tmp_path: Path, text: str) -> None:
+    motor2(tmp_path), motor3(tmp_path)
+    found = {each: ran(tmp_path, text, tmp_path / str(each), isolated=each) for each in (True, False)}
+    assert list(found[True].trace) == list(found[False].trace)
+    for signal_ in found[True].trace:
+        np.testing.assert_array_equal(found[True].trace[signal_], found[False].trace[signal_])
+    assert found[True].warnings == found[False].warnings
+
+
+LOOM = """
+revolutions = 0.5
+steps_per_revolution = 360
+coupling = "iterated"
+[loom]
+machine = "WL680-3600"
+[shaft]
+component = "DrivenShaft"
+inertia = "0.1 kg.m2"
+"""
+
+
+@pytest.mark.parametrize("flavour", ["live", "native"])
+def test_ours_can_be_isolated_too_also_in_an_iterated_loop(flavour: str) -> None:
+    found = [
+        evaluate(scenes.parse(LOOM, "loom", {"isolated": each}), flavour=flavour, values=["belt.margin"])
+        for each in (True, False)
+    ]
+    np.testing.assert_array_equal(found[0].trace["belt.margin"], found[1].trace["belt.margin"])
+
+
+def test_which_are_isolated(tmp_path: Path) -> None:
+    motor2(tmp_path)
+    both = MOTOR + "[weft]\n"
+
+    def isolates(text: str, **overrides: object) -> list[bool]:
+        scene = scenes.parse(text, "x", {k.replace("__", "."): v for k, v in overrides.items()}, tmp_path)
+        return [scene.isolates(name) for name in ("motor", "weft")]
+
+    assert isolates(both) == [True, False]
+    assert isolates(both, isolated="false") == [False, False]
+    assert isolates("isolated = true\n" + both, motor__isolated=False) == [False, True]
+    for key in ("isolated", "motor.isolated"):
+        with pytest.raises(LoomfmuError, match=rf"^{key} = 5 must be true or false$"):
+            scenes.parse(both, "x", {key: 5}, tmp_path)
+    with pytest.raises(LoomfmuError, match=r"^step_timeout: '5 m' is in m, which does not fit s$"):
+        scenes.parse(both, "x", {"step_timeout": "5 m"}, tmp_path)
+
+
+def test_a_process_serves_the_next_run_too(tmp_path: Path) -> None:
+    motor2(tmp_path)
+    scene = scenes.parse(MOTOR, directory=tmp_path)
+    first = evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"]
+    (one,) = [each for slaves in pool._resting.values() for each in slaves if isolated(each)]
+    assert evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"].tolist() == first.tolist()
+    assert [each for slaves in pool._resting.values() for each in slaves if isolated(each)] == [one]
+    one._process._popen.kill()
+    one._process._popen.wait()
+    assert evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"].tolist() == first.tolist()
+
+
+# ---- failures
+
+IN_A_STEP = {
+    "CRASH": r"fmi2DoStep crashed its process \(SIGSEGV\)",
+    "HANG": r"fmi2DoStep did not return within step_timeout = 0.5 s",
+    "EXIT": r"fmi2DoStep ended its process \(exit status 0\)",
+    "ABORT": r"fmi2DoStep crashed its process \(SIGABRT\); it printed: motor:  \[31massertion failed",
+    "FLOOD": r"fmi2DoStep did not return within step_timeout = 0.5 s; it printed: the motor turns.*",
+    "CLOSE": r"fmi2DoStep closed the connection to the master",
+    "CHILD": r"fmi2DoStep crashed its process \(SIGSEGV\)",
+}
+
+
+@pytest.mark.parametrize("what", IN_A_STEP)
+def test_one_that_fails_in_a_step_is_named_and_the_trace_kept(tmp_path: Path, what: str) -> None:
+    misbehaving(tmp_path, what)
+    with pytest.raises(LoomfmuError, match=rf"^motor at 0.05 s: {IN_A_STEP[what]}$"):
+        ran(tmp_path, MOTOR + WEFT, tmp_path, step_timeout="0.5 s")
+    with Trace(tmp_path / "motor.h5.partial") as trace:
+        assert trace.rows == 51  # 0 to 0.05 s
+        np.testing.assert_allclose(trace["motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
+def test_one_that_fails_in_initialization_is_named(tmp_path: Path, what: str) -> None:
+    misbehaving(tmp_path, what, "INITIALIZATION")
+    said = IN_A_STEP[what].replace("fmi2DoStep", "initialization")
+    with pytest.raises(LoomfmuError, match=rf"^motor: {said}$"):
+        ran(tmp_path, MOTOR, tmp_path, step_timeout="0.5 s")
+
+
+@pytest.mark.parametrize("where", ["TERMINATE", "FREE"])
+@pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
+def test_what_fails_after_the_last_step_costs_nothing(tmp_path: Path, what: str, where: str) -> None:
+    misbehaving(tmp_path, what, where)
+    for _ in range(2):
+        result = ran(tmp_path, MOTOR, tmp_path, step_timeout="0.5 s")
+        assert result.holds and result.trace.rows == 201
+
+
+@pytest.mark.parametrize("what", ["MOVE", "PRINT", "LOG"])
+def test_what_disturbs_others_disturbs_nobody(
+    tmp_path: Path, what: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    misbehaving(tmp_path, what)
+    result = ran(tmp_path, MOTOR, Path(), duration="0.06 s")
+    assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
+    assert capfd.readouterr() == ("", "")
+    assert len(result.warnings) == (50 if what == "LOG" else 0)
+
+
+def test_a_run_that_takes_too_long_is_ended(tmp_path: Path) -> None:
+    misbehaving(tmp_path, "HANG")
+    said = r"^motor at 0.05 s: the run took longer than run_timeout = 1 s$"
+    with pytest.raises(LoomfmuError, match=said):
+        ran(tmp_path, MOTOR, tmp_path, run_timeout="1 s")
+    motor2(tmp_path)
+    said = r"^motor at [\d.]+ s: the run took longer than run_timeout = 0.5 s$"
+    with pytest.raises(LoomfmuError, match=said):
+        ran(tmp_path, MOTOR, tmp_path, run_timeout="0.5 s", duration="100000 s")
+
+
+def test_ctrl_c_ends_a_hang(tmp_path: Path) -> None:
+    for where in ("STEP", "INITIALIZATION"):
+        misbehaving(tmp_path, "HANG", where)
+        timer = threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with pytest.raises(KeyboardInterrupt) as raised:
+            ran(tmp_path, MOTOR, tmp_path)
+        timer.join()
+        if where == "STEP":
+            assert str(raised.value).startswith("interrupted; 51 samples are in ")
+
+
+def test_the_processes_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
+    misbehaving(tmp_path, "HANG")
+    (tmp_path / "motor.toml").write_text(MOTOR)
+    (tmp_path / "tmp").mkdir()
+    ours = subprocess.Popen(
+        [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
+        cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
+    )  # fmt: skip
+    trace = tmp_path / "results" / "motor.h5.partial"
+    until(lambda: trace.exists() and list((tmp_path / "tmp").glob("loomfmu-*")))
+    ours.kill()
+    ours.wait()
+    until(lambda: not list((tmp_path / "tmp").glob("loomfmu-*")))  # the last that they do
+
+
+def until(found: object) -> None:
+    """Wait for something, for as long as a busy machine may need."""
+    end = time.monotonic() + 60.0
+    while not found():  # type: ignore[operator]
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+SWEEP = """
+scene = "motor.toml"
+values = ["motor.flange_w"]
+[grid]
+"motor.mode" = ["both_ways", "no_way_back"]
+"motor.J" = [0.5, 0.6]
+"""
+
+
+@pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
+def test_other_rows_of_a_sweep_are_unharmed(tmp_path: Path, what: str) -> None:
+    misbehaving(tmp_path, what)
+    (tmp_path / "motor.toml").write_text('step_timeout = "0.5 s"\n' + MOTOR)
+    (tmp_path / "sweep.toml").write_text(SWEEP)
+    found = loomfmu.sweep(tmp_path / "sweep.toml", output=tmp_path / "out", processes=1)
+    rows = found.table.to_pylist()
+    said = IN_A_STEP[what].replace("\\", "")
+    assert [row["error"] for row in rows] == [f"motor at 0.05 s: {said}"] * 2 + [None] * 2
+    for row in rows[2:]:
+        constant = row["motor.J"] * 60.0 / 100.0
+        assert row["motor.flange_w"] == pytest.approx(60.0 * (1.0 - np.exp(-0.2 / constant)), rel=1e-12)
+
+
+# ---- not isolated
+
+IN_THIS_PROCESS = "isolated = false\n" + LENGTH + '[motor]\nfmu = "Motor.fmu"\n'
+
+
+def test_exit_in_our_process_is_a_failure(tmp_path: Path) -> None:
+    misbehaving(tmp_path, "EXIT")
+    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
+    done = subprocess.run(
+        [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "loomfmu: an FMU ended the process (exit) before the run was finished, one of motor;"
+        " isolated = true says which one and keeps the trace\n"
+    )
+    assert not (tmp_path / "results" / "motor.h5").exists()
+
+
+@pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])
+def test_a_changed_working_directory_is_changed_back(
+    tmp_path: Path, where: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    misbehaving(tmp_path, "MOVE", where)
+    result = ran(tmp_path, IN_THIS_PROCESS, Path())
+    assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
