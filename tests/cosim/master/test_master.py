@@ -193,7 +193,7 @@ carrier_mass = 0.1105 # the head's own: the belt's force is 5 N more than what i
 "damper_1.warp_force" = "belt.axial_force"
 """
     result = run(small(2, revolutions=0.5, rest=rest), output=tmp_path / "loop.h5")
-    assert "loop: the values at the start have not settled after 50 exchanges" in result.warnings
+    assert "loop: the start values did not converge in 50 exchanges" in result.warnings
 
 
 # ---- instances are reused, and given back

@@ -1,8 +1,8 @@
 """Bringing the instances of a scene to the start of a run.
 
-Sources leave initialization before their sinks, and their outputs are read after that: many FMUs of other
-makers compute these only then. A sink takes them while it is still in initialization itself, since FMI lets
-nobody set an input and read an output afterwards without a step between.
+Sources leave initialization before their sinks, and their outputs are read after that: many third-party
+FMUs compute these only then. A sink takes them while it is still in initialization itself, since FMI does
+not allow an output to be read after an input was set, without a step between.
 """
 
 import math
@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from ..importing.slave import Slave
 from ..scenes.graph import Wire, step_order
 from .loops import MOST_EXCHANGES, TOLERANCE, Broyden
+from .signals import Slot
 from .steppers import Action, perform
-
-Slot = tuple[str, int]
 
 
 @dataclass
@@ -50,11 +49,11 @@ class Start:
     def _leave_loops(self, names: Sequence[str]) -> None:
         """Instances from the first loop on agree before each of them leaves, if something has changed.
 
-        What may change by leaving leaves first: FMUs of other makers.
+        FMUs whose outputs may change as they leave go first: third-party ones.
         """
-        theirs_first = sorted(names, key=lambda name: self.slaves[name].fmu.ours)
+        third_party_first = sorted(names, key=lambda name: self.slaves[name].fmu.ours)
         within = [wire for wire in self.wires if wire.sink[0] in names and wire.source[0] in names]
-        leaving, _ = step_order(theirs_first, within)
+        leaving, _ = step_order(third_party_first, within)
         handed: dict[Wire, float] = {}
         settled = changed = True
         for place, name in enumerate(leaving):
@@ -63,12 +62,10 @@ class Start:
             handed |= {wire: self._value(wire) for wire in within if wire.sink[0] == name}
             changed = self._leave(name)
         if not settled:
-            self.warnings.append(
-                f"loop: the values at the start have not settled after {MOST_EXCHANGES} exchanges"
-            )
+            self.warnings.append(f"loop: the start values did not converge in {MOST_EXCHANGES} exchanges")
         self.warnings += [
             f"loop: {wire} changed after {wire.sink[0]} had left initialization:"
-            f" its sample at 0 s is from the value before"
+            f" its sample at 0 s is based on the old value"
             for wire, value in handed.items()
             if not math.isclose(value, self._value(wire), rel_tol=TOLERANCE)
         ]
@@ -93,13 +90,13 @@ class Start:
         if not lagged:
             return True
         first = self.reals.copy(), self.integers.copy()
-        told = {name: len(self.slaves[name].messages) for name in names}
+        known = {name: len(self.slaves[name].messages) for name in names}
         slots = dict.fromkeys(self.slots[wire.source] for wire in lagged)
         solver = Broyden(self.reals, self.integers, [slot for kind, slot in slots if kind == "Real"])
         if solver.settle(lambda: perform(calls, 0.0)):
             return True
         self.reals[:], self.integers[:] = first
         perform(calls, 0.0)
-        for name, count in told.items():
+        for name, count in known.items():
             del self.slaves[name].messages[count:]  # of values that were only tried
         return False

@@ -1,0 +1,134 @@
+"""Where the values of a run are, and the calls that move them between the FMUs."""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..importing.slave import SIZES, Slave
+from ..scenes.graph import Wire
+from ..scenes.scene import Scene
+from .constant_shaft import ConstantShaft
+from .steppers import Action, Driven
+
+Floats = NDArray[np.float64]
+Slot = tuple[str, int]  # the type of a value and its place among those of the type
+
+
+class Signals:
+    """The values of all outputs, of driven inputs and of shafts that need no FMU.
+
+    `reals` and `integers` hold them, booleans among the integers; `slots` says where each is.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        order: Sequence[str],
+        fetched: Collection[tuple[str, str]] | None,
+        shafts: Mapping[str, ConstantShaft],
+    ):
+        self._scene, self._order, self._shafts = scene, order, shafts
+        self.slots = self._slots(fetched)
+        reals = sum(kind == "Real" for kind, _ in self.slots.values())
+        self.reals = np.zeros(max(1, reals))
+        self.integers = np.zeros(max(1, len(self.slots) - reals), dtype=np.int32)
+
+    def _slots(self, fetched: Collection[tuple[str, str]] | None) -> dict[tuple[str, str], Slot]:
+        """Where the value of each output is: reals in one vector, integers and booleans in another.
+
+        Outputs of one instance and type are side by side in the order of their value references.
+        """
+        slots: dict[tuple[str, str], Slot] = {}
+        taken = {"Real": 0, "Integer": 0}
+
+        def take(instance: str, variable: str, kind: str) -> None:
+            vector = "Real" if kind == "Real" else "Integer"
+            slots[instance, variable] = (kind, taken[vector])
+            taken[vector] += 1
+
+        for name in self._order:
+            ports = self._scene.instances[name].fmu.ports.values()
+            for kind in SIZES:
+                for port in ports:
+                    wanted = fetched is None or (name, port.name) in fetched
+                    if port.causality == "output" and port.kind == kind and wanted:
+                        take(name, port.name, kind)
+        for drive in self._scene.drives:
+            take(drive.instance, drive.variable, drive.kind)
+        for name in self._shafts:
+            for variable in ("angle", "velocity", "acceleration"):
+                take(name, variable, "Real")
+        return slots
+
+    def real_slots(self, wires: Sequence[Wire]) -> list[int]:
+        """Where the real values of some wires are."""
+        slots = dict.fromkeys(self.slots[wire.source] for wire in wires)
+        return [slot for kind, slot in slots if kind == "Real"]
+
+    def driven_slots(self, *, real: bool) -> list[int]:
+        """Where the driven inputs are among the reals, or among the integers."""
+        slots = [self.slots[drive.instance, drive.variable] for drive in self._scene.drives]
+        return [slot for kind, slot in slots if (kind == "Real") is real]
+
+    def driven(self, turns: Floats) -> Driven:
+        """The driven inputs at numbers of revolutions, along the columns those of `_driven_slots`."""
+        reals = [drive.along(turns) for drive in self._scene.drives if drive.kind == "Real"]
+        integers = [drive.along(turns) for drive in self._scene.drives if drive.kind != "Real"]
+        return Driven(
+            np.array(reals, dtype=float).reshape(len(reals), len(turns)).T.copy(),
+            np.array(integers, dtype=np.int32).reshape(len(integers), len(turns)).T.copy(),
+        )
+
+    def turn_shafts(self, times: Floats, rows: Floats) -> None:
+        """Write the values of the shafts that need no FMU at these times."""
+        for name, shaft in self._shafts.items():
+            for variable in ("angle", "velocity", "acceleration"):
+                rows[:, self.slots[name, variable][1]] = shaft.values(variable, times)
+
+    def _address(self, kind: str, slot: int) -> int:
+        vector: NDArray[Any] = self.reals if kind == "Real" else self.integers
+        return int(vector.ctypes.data) + slot * SIZES[kind]
+
+    def inputs(self, name: str, slave: Slave) -> list[Action]:
+        """Calls that hand over an instance's wired inputs, straight from where their sources wrote them.
+
+        Sources that are side by side go in one call.
+        """
+        instance = self._scene.instances[name]
+        wired = [
+            (*self.slots[wire.source], instance.fmu.ports[wire.sink[1]].reference)
+            for wire in self._scene.wires
+            if wire.sink[0] == name
+        ] + [
+            (*self.slots[name, drive.variable], instance.fmu.ports[drive.variable].reference)
+            for drive in self._scene.drives
+            if drive.instance == name
+        ]
+        runs: list[tuple[str, int, list[int]]] = []
+        for kind, slot, reference in sorted(wired):
+            if runs and runs[-1][0] == kind and runs[-1][1] + len(runs[-1][2]) == slot:
+                runs[-1][2].append(reference)
+            else:
+                runs.append((kind, slot, [reference]))
+        return [
+            Action(slave, slave.value_call("Set", kind, references, self._address(kind, slot)))
+            for kind, slot, references in runs
+        ]
+
+    def outputs(self, name: str, slave: Slave) -> list[Action]:
+        """Calls that fetch an instance's outputs, one for each type."""
+        ports = self._scene.instances[name].fmu.ports
+        actions = []
+        for kind in SIZES:
+            mine = [
+                (slot, ports[variable].reference)
+                for (instance, variable), (its_kind, slot) in self.slots.items()
+                if instance == name and its_kind == kind and ports[variable].causality == "output"
+            ]
+            if mine:
+                address = self._address(kind, mine[0][0])
+                call = slave.value_call("Get", kind, [reference for _, reference in mine], address)
+                actions.append(Action(slave, call))
+        return actions
