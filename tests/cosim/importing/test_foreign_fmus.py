@@ -106,7 +106,7 @@ def test_a_loop_with_an_fmu_that_keeps_no_state_cannot_be_iterated(
     text += "".join(f'"weft.{to}" = "motor.{name}"\n' for to, name in zip(inputs, names[1:], strict=True))
     with pytest.raises(LoomfmuError) as raised:
         ran(place, text, tmp_path)
-    assert str(raised.value).startswith("motor: it cannot keep its state, which an iterated loop needs: ")
+    assert str(raised.value).startswith("motor: it cannot save its state, which an iterated loop requires: ")
     assert "\n" not in str(raised.value)
 
 
@@ -305,7 +305,7 @@ def torques(scene: Scene) -> list[float]:
 def test_one_that_says_it_needs_its_tool_is_tried(tmp_path: Path) -> None:
     motor2(tmp_path, flags='needsExecutionTool="true"')
     result = ran(tmp_path, MOTOR, tmp_path)
-    said = "it says that it needs the tool that made it: needsExecutionTool = true"
+    said = "it says that it needs the tool that created it (needsExecutionTool = true)"
     assert result.holds and result.warnings == (f"motor: {said}",)
     with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
         description = archive.read("modelDescription.xml").decode()
@@ -319,7 +319,8 @@ def test_one_that_says_it_needs_its_tool_is_tried(tmp_path: Path) -> None:
 def test_what_they_refuse_is_told_in_one_line(place: Path, tmp_path: Path) -> None:
     for text, said in {
         MOTOR + "J = -1\n": "motor: J = -1 kg.m2 is not above 0",
-        MOTOR + '"load.tau" = 200\n': "motor at 0 s: fmi2DoStep gave fmi2Discard: stalled by 200 N.m at 0 s",
+        MOTOR
+        + '"load.tau" = 200\n': "motor at 0 s: fmi2DoStep returned fmi2Discard: stalled by 200 N.m at 0 s",
         LENGTH + SHAFT3 + "J = -1\n": "shaft: J is not above 0",
     }.items():
         with pytest.raises(LoomfmuError) as raised:

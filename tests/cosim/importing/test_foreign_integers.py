@@ -65,10 +65,10 @@ def test_what_a_wired_input_cannot_hold_ends_the_run(place: Path, tmp_path: Path
     text = LENGTH + SHAFT3 + OTHER + '[wires]\n"other.to_UInt8" = "shaft.{}"\n'
     with pytest.raises(LoomfmuError) as raised:
         ran(place, text.format("Int16"), tmp_path, shaft__to_Int16=-1)
-    assert str(raised.value) == "other at 0 s: to_UInt8 = -1 is outside [0, 255], what UInt8 holds"
+    assert str(raised.value) == "other at 0 s: to_UInt8 = -1 is outside [0, 255], the range of UInt8"
     with pytest.raises(LoomfmuError) as raised:
         ran(place, text.format("steps"), tmp_path, duration="0.3 s")
-    assert str(raised.value) == "other at 0.255 s: to_UInt8 = 256 is outside [0, 255], what UInt8 holds"
+    assert str(raised.value) == "other at 0.255 s: to_UInt8 = 256 is outside [0, 255], the range of UInt8"
 
 
 @pytest.mark.parametrize(("each", "value"), [("UInt32", 2**31), ("UInt64", 2**64 - 1)])
@@ -80,7 +80,7 @@ def test_what_a_run_cannot_carry_ends_it_unless_it_is_left_out(
         ran(place, LENGTH + SHAFT3, tmp_path, **changed)
     assert str(raised.value) == (
         f"shaft at 0 s: {each} = {value} is outside [-2147483648, 2147483647],"
-        " the integers that a run carries; leave it out of record"
+        " the range of 32-bit integers; leave it out of record"
     )
     trace = ran(place, 'record = ["shaft.velocity"]\n' + LENGTH + SHAFT3, tmp_path, **changed).trace
     assert f"shaft.{each}" not in trace and trace.rows == 201

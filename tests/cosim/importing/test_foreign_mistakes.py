@@ -17,11 +17,11 @@ __all__ = ["fmu_cache"]
 
 THIRD = FMI3.format(fixed=FIXED)
 FILES = {
-    "an FMI 1.0 FMU; only FMI 2.0 and 3.0 are run": (
+    "an FMI 1.0 FMU; only FMI 2.0 and 3.0 are supported": (
         '<fmiModelDescription fmiVersion="1.0" modelName="M" modelIdentifier="M" guid="g"'
         ' numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables/></fmiModelDescription>'
     ),
-    "it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run": THIRD.replace(
+    "not a co-simulation FMU; only FMI 2.0 and 3.0 co-simulation is supported": THIRD.replace(
         "<CoSimulation", "<ModelExchange"
     ),
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
@@ -55,7 +55,7 @@ def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
     scene = 'record = ["weft.*"]\n' + MOTOR + "[weft]\n"  # nothing recorded depends on the motor
     with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
         archive.writestr("binaries/other64/NotIt.so", b"")
-    for folder, known in (("", "none at all"), ("win64", "win64"), ("darwin64", "darwin64, win64")):
+    for folder, known in (("", "none"), ("win64", "win64"), ("darwin64", "darwin64, win64")):
         if folder:
             with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
                 archive.writestr(f"binaries/{folder}/Motor.dll", b"")

@@ -288,7 +288,7 @@ def test_an_exception_in_a_component_is_told_in_one_line(tmp_path: Path, counted
     with pytest.raises(LoomfmuError) as raised:
         traced(odd_scene("Raising"), tmp_path)
     said = str(raised.value)
-    assert said.startswith("odd at 0.10005 s: fmi2DoStep gave fmi2Fatal: at 0.100")
+    assert said.startswith("odd at 0.10005 s: fmi2DoStep returned fmi2Fatal: at 0.100")
     assert said.endswith("ZeroDivisionError: float division by zero")
     with Trace(tmp_path / "odd.h5.partial") as kept:
         assert kept.status == "failed"
@@ -367,7 +367,7 @@ def test_an_instance_that_ended_fatally_is_neither_reused_nor_freed(
     broken = pool.borrow(fmu, "fatal")
     freed: list[str] = []
     monkeypatch.setattr(broken._slave, "freeInstance", lambda: freed.append("freed"))
-    assert "fmi2DoStep gave fmi2Fatal" in str(broken.failed(4, "fmi2DoStep", 0.0))
+    assert "fmi2DoStep returned fmi2Fatal" in str(broken.failed(4, "fmi2DoStep", 0.0))
     pool.give_back(broken)
     assert freed == []
     assert pool.borrow(fmu, "fatal") is not broken
@@ -408,7 +408,7 @@ start_rate = 1000.0
 stop_stiffness = 1e12
 """
     with pytest.raises(
-        LoomfmuError, match=r"belt at .* s: fmi2DoStep gave fmi2Fatal: yarn_tension = "
+        LoomfmuError, match=r"belt at .* s: fmi2DoStep returned fmi2Fatal: yarn_tension = "
     ) as raised:
         traced(small(360, rest=rest), tmp_path)
     assert str(raised.value).endswith("is outside [-1e+08, 1e+08] cN")

@@ -147,9 +147,9 @@ class Fmi3Slave(Slave):
         for reference, value in zip(references, source, strict=True):
             if value < low or value > high:
                 whose = (
-                    f"what {base_type} holds"
+                    f"the range of {base_type}"
                     if base_type
-                    else "the integers that a run carries; leave it out of record"
+                    else "the range of 32-bit integers; leave it out of record"
                 )
                 self.messages.append(
                     (REFUSED, f"{self._names[reference]} = {value} is outside [{low}, {high}], {whose}")
@@ -171,7 +171,7 @@ class Fmi3Slave(Slave):
             if terminate.value:
                 self._reached = reached.value
             elif early.value:
-                self.messages.append((DISCARD, "it returned before the end of the step, which it must not"))
+                self.messages.append((DISCARD, "it returned early, which was not allowed"))
             return max(status, DISCARD) if terminate.value or early.value else status
 
         arguments = (self._component, time, step_size, ctypes.c_bool(True), *told)

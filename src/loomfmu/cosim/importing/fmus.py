@@ -122,7 +122,7 @@ class Fmu:
             libraries = [PurePosixPath(name) for name in archive.namelist()]
         matching = [each for each in libraries if each.match(f"binaries/*/{self.identifier}.*")]
         found = sorted({each.parent.name for each in matching})
-        known = f"it has {', '.join(found)}" if found else "it has none at all"
+        known = f"it has {', '.join(found)}" if found else "it has none"
         raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
 
     def name_of(self, variable: str) -> str:
@@ -238,8 +238,8 @@ def _check_runnable(path: Path, description: Any) -> None:
     """Refuse what the master cannot step."""
     version, kind = description.fmiVersion, description.coSimulation
     if version == "1.0":
-        raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are run")
+        raise LoomfmuError(f"{path}: an FMI 1.0 FMU; only FMI 2.0 and 3.0 are supported")
     if kind is None:
         raise LoomfmuError(
-            f"{path}: it is no FMU for co-simulation; only FMI 2.0 and 3.0 co-simulation is run"
+            f"{path}: not a co-simulation FMU; only FMI 2.0 and 3.0 co-simulation is supported"
         )

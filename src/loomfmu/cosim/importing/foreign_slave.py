@@ -1,8 +1,8 @@
-"""An instance of an FMI 2.0 FMU of another maker.
+"""An instance of a third-party FMI 2.0 FMU.
 
-It is taken at its status codes, not at its log; its messages come as printf formats with arguments; it is
-made anew for every run, since few tools make FMUs that can be reset; and Python's lock is released while
-it is called, since it may have threads of its own that log.
+Its status codes count, not its log; its messages come as printf formats with arguments; it is instantiated
+anew for every run, since few tools make FMUs that can be reset; and Python's lock is released while it is
+called, since it may have threads of its own that log.
 """
 
 import ctypes

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
 WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
 REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
-NEEDS_TOOL = "it says that it needs the tool that made it: needsExecutionTool = true"
+NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
 
@@ -190,14 +190,14 @@ class Slave:
         state = ctypes.c_void_p(self._saved)
         if self._state_function("Get")(self._component, ctypes.byref(state)) > WARNING:
             raise LoomfmuError(
-                f"{self.name}: it cannot keep its state, which an iterated loop needs: {self._reason()}"
+                f"{self.name}: it cannot save its state, which an iterated loop requires: {self._reason()}"
             )
         self._saved = state.value
 
     def restore(self) -> None:
         """Go back to the state that was kept last."""
         if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) > WARNING:
-            raise LoomfmuError(f"{self.name}: it cannot go back to a state of its own: {self._reason()}")
+            raise LoomfmuError(f"{self.name}: it cannot restore a state that it saved: {self._reason()}")
 
     def forget(self) -> None:
         """Free the state that was kept."""
@@ -222,7 +222,7 @@ class Slave:
             if ended is not None:
                 return Ended(self.name, ended if ended >= time else time)
         kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
-        return LoomfmuError(f"{self.name} at {time:.9g} s: {action} gave {kind}: {self._reason()}")
+        return LoomfmuError(f"{self.name} at {time:.9g} s: {action} returned {kind}: {self._reason()}")
 
     def _ended(self) -> float | None:
         """When the FMU ended the simulation, if that is why it has not made a step: ours never do."""

@@ -186,7 +186,7 @@ class CompiledStepper:
         self, library: Path, actions: Sequence[Action], memory: Memory, time: ctypes.c_double,
         size: ctypes.c_double,
     ):  # fmt: skip
-        # Python's lock is kept, unless an FMU of another maker may have threads that log
+        # Python's lock is kept, unless a third-party FMU may have threads that log
         ours = all(action.slave.fmu.ours for action in actions)
         self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
         self._advance.restype = ctypes.c_int64
