@@ -1,10 +1,8 @@
 """Stepping a scene with only what some signals need, and keeping these signals."""
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -40,27 +38,10 @@ class Plan:
 
     @contextmanager
     def stepped(self) -> Iterator[Master]:
-        """The master of the run, initialized. The working directory stays as it was, whatever FMUs do."""
-        with (
-            _same_directory(),
-            Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts) as master,
-        ):
+        """The master of the run, initialized."""
+        with Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts) as master:
             master.initialize()
             yield master
-
-
-@contextmanager
-def _same_directory() -> Iterator[None]:
-    """Go back to the working directory, which an FMU may change; it may also be gone already."""
-    try:
-        before = Path.cwd()
-    except OSError:
-        yield
-        return
-    try:
-        yield
-    finally:
-        os.chdir(before)
 
 
 def channels(plan: Plan, master: Master) -> list[Channel]:
