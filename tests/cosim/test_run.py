@@ -17,12 +17,16 @@ __all__ = ["fmu_cache"]
 CLAIM = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
 
 
-def test_an_fmu_that_crashes_at_its_end_takes_no_verdict_with_it(tmp_path: Path) -> None:
+@pytest.mark.parametrize("isolated", ["true", "false"])
+def test_an_fmu_that_crashes_at_its_end_takes_no_verdict_with_it(tmp_path: Path, isolated: str) -> None:
     motor2(tmp_path, defines=("CRASHES=1",))
-    (tmp_path / "motor.toml").write_text(MOTOR + CLAIM)
+    (tmp_path / "motor.toml").write_text(f"isolated = {isolated}\n" + MOTOR + CLAIM)
     command = [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--output", "out/motor.h5"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode not in (0, 1)  # the process is gone
+    if isolated == "true":
+        assert done.returncode == 0
+    else:
+        assert done.returncode not in (0, 1)  # the process is gone
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["motor.h5"]
     with Trace(tmp_path / "out" / "motor.h5") as trace:
         assert (trace.status, trace.rows) == ("complete", 201)
@@ -35,7 +39,7 @@ def test_an_fmu_that_changes_the_working_directory_moves_nothing(
 ) -> None:
     motor2(tmp_path, defines=(f"MOVES={when}",))
     monkeypatch.chdir(tmp_path)
-    scene = scenes.parse(MOTOR + CLAIM, "motor")
+    scene = scenes.parse("isolated = false\n" + MOTOR + CLAIM, "motor")
     result = run(scene, output="out/motor.h5")
     assert result.path == Path("out/motor.h5")
     assert result.trace.rows == 201
