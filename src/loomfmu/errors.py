@@ -1,4 +1,4 @@
-"""What goes wrong by a user's hand: always one line that says what, where and what would be right."""
+"""Errors that a user can make: always one line that says what is wrong, where, and what would be right."""
 
 import difflib
 import os
@@ -9,10 +9,27 @@ from pathlib import Path
 
 MOST_SHOWN = 16  # names that a message lists
 MOST_LETTERS = 60  # of a value that a message shows
+LONGEST_LINE = 2000  # characters of a message
+LONGEST_NAME = 1000  # characters of a title, a name or a path
+FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")  # characters in XML 1.0
+
+
+def one_line(text: str) -> str:
+    """A text as one line that a terminal can show: control characters escaped, the middle of a long one cut.
+
+    >>> one_line("two\\nlines and an \\x1b[1mescape")
+    'two\\\\nlines and an \\\\x1b[1mescape'
+    """
+    if len(text) > LONGEST_LINE:
+        text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 class LoomfmuError(Exception):
     """Bad input, or an FMU that failed; its text is the one line that a user sees."""
+
+    def __init__(self, text: str = ""):
+        super().__init__(one_line(text))
 
 
 def shown(value: object) -> str:
@@ -21,13 +38,26 @@ def shown(value: object) -> str:
     >>> shown({"a": 1})
     "{'a': 1}"
     """
-    text = " ".join((str(value) if isinstance(value, date | time) else repr(value)).split())
+    try:
+        text = " ".join((str(value) if isinstance(value, date | time) else repr(value)).split())
+    except (ValueError, RecursionError):  # an integer of thousands of digits, lists thousands deep
+        return f"that {type(value).__name__}"
     return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}..."
+
+
+def check_text(text: str, where: str, most: int = LONGEST_NAME) -> str:
+    """A text that goes into traces and packages. Raises LoomfmuError for one that these cannot hold."""
+    found = FORBIDDEN.search(text)
+    if found:
+        raise LoomfmuError(f"{where} contains the control character U+{ord(found[0]):04X}; remove it")
+    if len(text) > most:
+        raise LoomfmuError(f"{where} has {len(text)} characters; at most {most} are possible")
+    return text
 
 
 def path_of(given: object, what: str) -> Path:
     """A path that a caller gave. Raises LoomfmuError for what is none."""
-    if not isinstance(given, str | os.PathLike) or "\n" in str(given):
+    if not isinstance(given, str | os.PathLike) or re.search("[\x00\n]", str(given)):
         raise LoomfmuError(f"{what} = {shown(given)} is not a path")
     return Path(given)
 
@@ -41,6 +71,8 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     "; did you mean 'reduction'?"
     """
     known = list(known)
+    if len(name) > MOST_LETTERS:  # far from any name, and slow to compare
+        return ""
     word = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
     described = [each for each, text in (descriptions or {}).items() if name and word.search(text)]
     # a slip of spelling first, then a word that was meant, then a distant likeness

@@ -93,7 +93,8 @@ QUANTITIES = {
 
 ALIASES = {"": "1", "-": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
 
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+# possessive: nothing is tried twice, so that the time grows with the length alone
+_QUANTITY = re.compile(r"\s*+([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?+)\s*+(\S*+)\s*+")
 _COMMA = re.compile(r"\s*[-+]?\d*,\d")
 
 
@@ -108,22 +109,24 @@ def canonical(name: str) -> str:
     return ALIASES.get(bare, bare)
 
 
-def unit(name: str) -> Unit:
+def unit(name: str, like: str = "") -> Unit:
     """The unit of that name.
 
     Raises:
-        UnitError: there is none; the message names the nearest.
+        UnitError: there is none; the message names the nearest, of the dimension of the unit `like` if given.
     """
     known = UNITS.get(canonical(name))
     if known is None:
-        raise UnitError(f"unknown unit {name!r}{suggestion(name, [*UNITS, *ALIASES])}")
+        names = filter(None, [*UNITS, *ALIASES])
+        fitting = [n for n in names if not like or unit(n).dimension == unit(like).dimension]
+        raise UnitError(f"unknown unit {shown(name)}{suggestion(name, fitting)}")
     return known
 
 
 def parse(quantity: str | float, target: str) -> float:
     """A quantity as people write it, in the unit `target`.
 
-    A bare number counts as SI already. Raises UnitError for a text that is no quantity, an unknown
+    A bare number counts as SI already. Raises UnitError for a text that is not a quantity, an unknown
     unit, or one of another dimension than `target`.
 
     >>> round(parse("685 rpm", "rad/s"), 4)
@@ -141,33 +144,34 @@ def parse(quantity: str | float, target: str) -> float:
         except OverflowError:
             raise UnitError(f"{shown(quantity)} is too large") from None
     if _COMMA.match(quantity):
-        raise UnitError(f'{quantity!r} has a decimal comma: write "{quantity.strip().replace(",", ".", 1)}"')
+        meant = quantity.strip().replace(",", ".", 1)
+        raise UnitError(f'{shown(quantity)} has a decimal comma: write "{meant}"')
     match = _QUANTITY.fullmatch(quantity)
     if match is None:
-        raise UnitError(f'{quantity!r} is not a quantity such as "685 rpm"')
+        raise UnitError(f'{shown(quantity)} is not a quantity such as "685 rpm"')
     number, name = match.groups()
     if name == "" and target != "1":
         return float(number)  # SI, as for a bare number
-    given, wanted = unit(name), unit(target)
+    wanted = unit(target)
+    given = unit(name, like=target)
     if given.dimension != wanted.dimension:
-        raise UnitError(f"{quantity!r} is in {name or '1'}, which does not fit {fitted(target)}")
+        raise UnitError(f"{shown(quantity)} is in {name or '1'}, which does not fit {fitted(target)}")
     return float(number) * given.factor / wanted.factor
 
 
 def fitted(target: str) -> str:
-    """What a quantity would have to fit, as a message says it."""
+    """What a quantity has to fit, in the words of a message."""
     return "a number without a unit" if target == "1" else target
 
 
 class Si(float):
-    """A number that is known to be meant in SI: nothing doubts it."""
+    """A number that is known to be meant in SI: no warning asks whether another unit was meant."""
 
 
 def doubt(quantity: Any, target: str, display: str, usual: float) -> str:
-    """What is odd about a number without unit, or an empty text.
+    """A warning about a number without unit that was probably meant in `display`, or an empty text.
 
-    It is odd where it lies far from the usual value (SI) as it is read, but near to it if its unit was to be
-    that in which people read such values.
+    That is so where the number, read as SI, lies far from the usual value (SI), and near it if read in `display`.
 
     >>> doubt(480, "rad/s", "rev/min", 42.0)
     'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
