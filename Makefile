@@ -10,7 +10,7 @@ PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generat
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 
-.PHONY: demo test check stress bench docs validation wheel pins clean
+.PHONY: demo test check stress attack bench docs validation wheel pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu build
@@ -28,6 +28,10 @@ check: .venv/installed-for-tests
 # the stress tests, the long ones included
 stress: .venv/installed-for-tests
 	$(BIN)/python -m pytest tests/stress -m "slow or not slow"
+
+# hostile scenes, packages, FMUs and weaves from a generator, the long sets included
+attack: .venv/installed-for-tests
+	$(BIN)/python -m pytest tests/attack -s -m "slow or not slow"
 
 # run time against error, side by side with other masters: about half an hour
 bench: .venv/installed-for-tests

@@ -57,7 +57,10 @@ def test_quantities(quantity, target, value):
         ("-,5", "m", 'write "-.5"'),
         (10**400, "m", ".. is too large"),
         ("5 rmp", "rad/s", "did you mean 'rpm'?"),
-        ("5 parsec", "m", "unknown unit 'parsec'"),
+        ("5 parsec", "m", "unknown unit 'parsec'; known: m, mm, cm"),
+        ("5 Nn", "N", "unknown unit 'Nn'; did you mean 'N'?"),
+        ("5 rads", "rad", "unknown unit 'rads'; did you mean 'rad'?"),
+        ("1" * 1_000_000 + " x y", "m", "... is not a quantity"),  # for ever, were anything tried twice
         ("5 kg", "m", "'5 kg' is in kg, which does not fit m"),
         ("5 rad", "1", "'5 rad' is in rad, which does not fit a number without a unit"),
         ("5 mm", "rad/s", "which does not fit rad/s"),

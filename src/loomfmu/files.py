@@ -6,9 +6,9 @@ import stat
 import zipfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from .errors import LoomfmuError
+from .errors import LoomfmuError, shown
 
 NOT_A_FILE = "it is a device or a pipe, not a file"
 
@@ -54,6 +54,35 @@ def zip_with(name: str, member: str) -> Kind:
             return False
 
     return Kind(name, ours)
+
+
+MOST_UNPACKED = 2_000_000_000  # bytes of all files of an archive: one at a time is held in memory
+MOST_MEMBERS = 20_000  # of an archive
+
+
+def check_archive(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
+    """The files of an archive by their names. Raises ValueError for one too large to unpack.
+
+    A member gives no more than its stated size: reading it ends there, and its checksum fails.
+    """
+    members = archive.infolist()
+    if len(members) > MOST_MEMBERS:
+        raise ValueError(f"it has {len(members)} files; at most {MOST_MEMBERS} are unpacked")
+    size = sum(each.file_size for each in members)
+    if size > MOST_UNPACKED:
+        raise ValueError(
+            f"it unpacks to {size / 1e9:.3g} GB; at most {MOST_UNPACKED / 1e9:.3g} GB are unpacked"
+        )
+    named: dict[str, zipfile.ZipInfo] = {}
+    for each in members:
+        if each.is_dir():
+            continue
+        if named.setdefault(each.filename, each) is not each:
+            raise ValueError(f"it has two files called {shown(each.filename)}")
+    folders = {str(folder) for name in named for folder in PurePosixPath(name).parents}
+    for name in folders & named.keys():
+        raise ValueError(f"{shown(name)} is both a file and a folder in it")
+    return named
 
 
 def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:

@@ -171,7 +171,8 @@ class Si(float):
 def doubt(quantity: Any, target: str, display: str, usual: float) -> str:
     """A warning about a number without unit that was probably meant in `display`, or an empty text.
 
-    That is so where the number, read as SI, lies far from the usual value (SI), and near it if read in `display`.
+    That is so where the number lies far from the usual value (SI) if it is read as SI, and near it if it is
+    read in `display`.
 
     >>> doubt(480, "rad/s", "rev/min", 42.0)
     'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'

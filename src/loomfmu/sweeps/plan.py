@@ -13,6 +13,7 @@ from ..cosim.importing.fmus import FLAVOURS, Port
 from ..cosim.planning.requested import checked_claims, output_port
 from ..cosim.scenes import scene as scenes
 from ..cosim.scenes.scene import Scene
+from ..cosim.scenes.tables import toml
 from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of
@@ -108,7 +109,7 @@ def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
 
 
 def _parse(text: str, path: Path) -> SweepPlan:
-    tables = scenes.toml(text)
+    tables = toml(text)
     for key in tables:
         if key not in KEYS:
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")

@@ -7,18 +7,8 @@ from typing import Any
 
 from .. import units
 from ..cosim.importing.fmus import Port
-from ..cosim.scenes.instances import (
-    COARSE,
-    FILES,
-    ISOLATED,
-    PARAMETER_SETS,
-    TIMES,
-    Instance,
-    components,
-    overridden,
-    truth,
-    unit_of,
-)
+from ..cosim.scenes.instances import COARSE, FILES, ISOLATED, PARAMETER_SETS, TIMES, Instance, truth
+from ..cosim.scenes.overrides import components, overridden, unit_of
 from ..cosim.scenes.scene import Scene, check_free
 from ..errors import LoomfmuError
 from ..machines import TAKERS, named
@@ -116,7 +106,7 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
         return Varied(
             key, (key,), "Boolean", "1", "1", about, lambda given: truth(given, key), needs_scene=True
         )
-    check_free(scene, instance, variable)
+    check_free(scene, [(instance, variable)])
 
     def read(given: Any) -> Value:
         probe = Instance(instance, fmu)

@@ -229,7 +229,7 @@ def test_a_unit_that_the_fmu_says_is_not_said_again_otherwise(place: Path) -> No
     assert scenes.parse(MOTOR + 'units = {flange_w = "rad/s"}\n', directory=place)
     said = refused(place, MOTOR + 'units = {flange_w = "m/s"}\n')
     assert said == "motor.units.flange_w = 'm/s': the FMU itself says rad/s"
-    assert refused(place, MOTOR + "units = 5\n") == 'motor.units = 5 is no table of variable = "unit"'
+    assert refused(place, MOTOR + "units = 5\n") == 'motor.units = 5 must be a table of variable = "unit"'
     assert "motor.units: Motor has no variable 'x'" in refused(place, MOTOR + 'units = {x = "m"}\n')
 
 

@@ -1,5 +1,7 @@
 """The order of stepping, for any wiring."""
 
+import itertools
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -84,3 +86,33 @@ def test_what_a_loop_feeds_comes_after_it() -> None:
     order, lagged = step_order(["c", "a", "b"], wiring)
     assert order == ["a", "c", "b"]
     assert [str(wire) for wire in lagged] == ["b.y -> a.u"]
+
+
+def plainly(scene: list[str], pairs: list[tuple[str, str]]) -> list[str]:
+    """The order as it is defined, without any thought of speed."""
+    left, order = list(scene), []
+    while left:
+        feeding = {name: {a for a, b in pairs if b == name and a != name and a in left} for name in left}
+        for _ in left:  # all that feeds an instance, near or far
+            feeding = {name: each.union(*(feeding[a] for a in each)) for name, each in feeding.items()}
+        free = [name for name in left if not feeding[name]]
+        loops = [name for name in left if all(name in feeding[other] for other in feeding[name])]
+        order.append((free or loops)[0])
+        left.remove(order[-1])
+    return order
+
+
+@given(wirings, st.permutations(NAMES))
+def test_the_order_is_as_defined(pairs: list[tuple[str, str]], scene: list[str]) -> None:
+    assert step_order(scene, wires(pairs))[0] == plainly(scene, pairs)
+
+
+def test_ten_thousand_instances_have_an_order() -> None:
+    names = [f"i{number}" for number in range(10_000)]
+    chain = list(itertools.pairwise(names))
+    assert step_order(names[::-1], wires(chain)) == (names, [])
+    couples = [
+        (one, other) for a, b in zip(names[::2], names[1::2], strict=True) for one, other in ((a, b), (b, a))
+    ]
+    order, lagged = step_order(names, wires(couples))
+    assert (order, len(lagged)) == (names, 5000)

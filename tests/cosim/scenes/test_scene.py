@@ -268,7 +268,7 @@ def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
         (LOOM, {"machine": "WL45-3600"}, "there is no machine 'WL45-3600'; did you mean 'WL450-3600'?"),
         (LOOM, {"machine": 5}, "weft.machine = 5 is not a name in quotes"),
         (LOOM, {"loom.weave": "10"}, "loom.weave cannot be set; known: machine, head"),
-        (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft takes nothing from a machine"),
+        (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft has no machine"),
         ("[shaft]", {"machine": "WL450-3600"}, "machine: the scene has no WeftInsertion or BeltMonitor"),
     ],
 )  # fmt: skip

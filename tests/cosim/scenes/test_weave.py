@@ -19,7 +19,7 @@ PLAIN = "[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n[THREADING]\n1=1\n2=2\n3=1\n"
 
 def write(tmp_path: Path, text: str) -> Path:
     path = tmp_path / "weave.wif"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return path
 
 
@@ -64,10 +64,23 @@ def test_pegs_as_a_list_and_as_a_text():
         (HEAD.format(rising="true", shafts=0, picks=2) + PLAIN, "[WEAVING] Shafts = '0'"),
         (HEAD.format(rising="true", shafts=2, picks="x") + PLAIN, "[WEFT] Threads = 'x'"),
         (HEAD.format(rising="true", shafts=2, picks=2), "neither [LIFTPLAN] nor [TIEUP]"),
-        (HEAD.format(rising="true", shafts=1, picks=2) + PLAIN, "frame 2 is raised, but [WEAVING] S"),
+        (
+            HEAD.format(rising="true", shafts=1, picks=2) + PLAIN,
+            "[TIEUP] raises frame 2, but [WEAVING] S",
+        ),
         (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=one\n", "[LIFTPLAN] has a line"),
         (HEAD.format(rising="true", shafts=21, picks=2) + PLAIN, "has 21 frames; the dobby has 20"),
         (HEAD.format(rising="true", shafts=2, picks=129) + PLAIN, "has 129 picks; the dobby holds 128"),
+        # more than memory could hold: counted before anything is built
+        (HEAD.format(rising="true", shafts="9" * 9, picks=2) + PLAIN, "has 999999999 frames"),
+        (HEAD.format(rising="false", shafts=2, picks="9" * 9) + PLAIN, "has 999999999 picks"),
+        (
+            HEAD.format(rising="true", shafts="9" * 5000, picks=2) + PLAIN,
+            "not a whole number of 1 or more",
+        ),
+        (HEAD.format(rising="true", shafts="\u00b2", picks=2) + PLAIN, "[WEAVING] Shafts = '\u00b2' is not"),
+        (HEAD.format(rising="true", shafts=2, picks="\uff12") + PLAIN, "[WEFT] Threads = '\uff12' is not"),
+        (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=1_0\n", "[LIFTPLAN] has a line"),
     ],
 )
 def test_a_bad_wif_is_refused_in_one_line(tmp_path, text, message):
@@ -88,3 +101,18 @@ def test_bad_pegs_are_refused(given):
 def test_a_missing_wif_names_its_path():
     with pytest.raises(LoomfmuError, match=r"nowhere.wif: cannot be read \(No such file"):
         weave.parse("nowhere.wif", Path())
+
+
+def test_a_mark_of_the_encoding_is_skipped(tmp_path):
+    text = "\ufeff" + HEAD.format(rising="true", shafts=2, picks=2) + PLAIN
+    assert weave.read_wif(write(tmp_path, text)).pegs == ("10", "01")
+
+
+def test_a_file_too_large_for_a_weave_is_refused(tmp_path):
+    with pytest.raises(LoomfmuError, match=r"weave\.wif: is larger than 4 MB, the most for a WIF file$"):
+        weave.read_wif(write(tmp_path, ";" * (weave.MOST_BYTES + 1)))
+
+
+def test_a_name_with_nul_is_refused():
+    with pytest.raises(LoomfmuError, match=r"cannot be read \(embedded null byte\)"):
+        weave.parse("a\0.wif", Path())

@@ -155,9 +155,19 @@ def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
         for name, kind in (("gain", "Real"), ("label", "String"), ("flange.phi", "Real"))
     )
     assert ran(tmp_path, more=more).warnings == (
-        "drive_motor.gain of the package is no variable of Motor: it is left out",
-        "drive_motor.label of the package is a text: it is left out",
-        "drive_motor.flange.phi of the package is neither parameter nor input: it is left out",
+        "drive_motor.gain of the package is ignored: Motor has no such variable",
+        "drive_motor.label of the package is ignored: it is a text",
+        "drive_motor.flange.phi of the package is ignored: it is neither a parameter nor an input",
+    )
+
+
+def test_a_value_for_a_component_that_does_not_exist_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    more = '<ssv:Parameter name="lft head.crank_length"><ssv:Real value="1"/></ssv:Parameter>'
+    monkeypatch.setitem(SETS, "outer", SETS["outer"] + more)
+    assert ran(tmp_path).warnings == (
+        "lft head.crank_length of the package is ignored: there is no such component",
     )
 
 
@@ -236,8 +246,8 @@ LINEAR = '<ssc:LinearTransformation factor="2"/>'
 MISTAKES = {
     "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
     "duration: a scene runs either by duration and step, or by revolutions and": {"algorithm": ""},
-    "there is no shaft whose speed sets the step: say duration": {"algorithm": "", "experiment": ""},
-    "connection drive.motor.flange.phi -> drive.phi transforms its value: that is not done": {
+    "there is no shaft whose speed sets the step: add duration": {"algorithm": "", "experiment": ""},
+    "connection drive.motor.flange.phi -> drive.phi transforms its value; transformations are": {
         "transformed": LINEAR
     },
     "resources/none.fmu is not in the package": {
@@ -248,10 +258,10 @@ MISTAKES = {
         "other": '<ssd:Component name="x" source="http://host/x.fmu"/>'
     },
     "Component has no source": {"other": '<ssd:Component name="x"/>'},
-    "bus is a SignalDictionaryReference: only FMUs and systems are run": {
+    "bus is a SignalDictionaryReference: only FMUs and systems are supported": {
         "other": '<ssd:SignalDictionaryReference name="bus" dictionary="d"/>'
     },
-    "x: a.ssp is no FMU but application/x-ssp-package": {
+    "x: 'a.ssp' is not an FMU but 'application/x-ssp-package'": {
         "other": '<ssd:Component name="x" source="a.ssp" type="application/x-ssp-package"/>'
     },
     "left_head.shaft_angle is connected to 2 outputs": {
@@ -262,6 +272,27 @@ MISTAKES = {
         "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
         ' endElement="left head" endConnector="shaft_acceleration"/>'
     },
+    "connection to 'lft head.travel': there is no element 'lft head'; did you mean 'left head'?": {
+        "connection": '<ssd:Connection startElement="lft head" startConnector="travel"'
+        ' endElement="drive" endConnector="free"/>'
+    },
+    "connection to 'drive.fre': there is no connector of a system 'fre'; did you mean 'free'?": {
+        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
+        ' endElement="drive" endConnector="fre"/>'
+    },
+    "connection to 'lod': there is no connector of a system 'lod'; did you mean 'load'?": {
+        "connection": '<ssd:Connection startConnector="lod" endElement="drive" endConnector="free"/>'
+    },
+    "there are two elements called 'left head'": {
+        "other": '<ssd:Component name="left head" source="resources/Motor.fmu"/>'
+    },
+    "drive_motor.verbose = 'yes' is neither true nor false": {
+        "more": '<ssv:Parameter name="verbose"><ssv:Boolean value="yes"/></ssv:Parameter>'
+    },
+    "drive_motor.mode = 99999999999999999999 is outside [1, 2]": {
+        "more": '<ssv:Parameter name="mode"><ssv:Integer value="99999999999999999999"/></ssv:Parameter>'
+    },
+    "DefaultExperiment stopTime = 'late' is not a finite number": {"experiment": 'stopTime="late"'},
     "connection to left_head: WeftInsertion has no variable 'travl'; did you mean 'travel'?": {
         "connection": '<ssd:Connection startElement="left head" startConnector="travl"'
         ' endElement="left head" endConnector="shaft_acceleration"/>'

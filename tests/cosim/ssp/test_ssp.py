@@ -2,6 +2,7 @@
 
 import itertools
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -341,7 +342,7 @@ CASES = {
     "no structure": (["run", "empty.ssp"], "empty.ssp: SystemStructure.ssd is not in the package"),
     "no XML": (
         ["run", "broken.ssp"],
-        "broken.ssp: SystemStructure.ssd: it is no valid XML (unclosed token: line 1, column 0)",
+        "broken.ssp: SystemStructure.ssd: not valid XML (unclosed token: line 1, column 0)",
     ),
     "set": (
         ["run", "good.ssp", "--set", "belt.travl=1"],
@@ -382,3 +383,17 @@ def test_a_package_is_not_packed_again(demo: Path, tmp_path: Path) -> None:
     result = run(demo, output=tmp_path / "x.h5")
     with pytest.raises(LoomfmuError, match="is a system package already"):
         ssp.export(result.scene, tmp_path / "x.ssp", "live")
+
+
+def test_what_xml_cannot_hold_is_refused_and_nothing_is_written(tmp_path: Path) -> None:
+    scene = scenes.load(DEMO, SHORT)
+    for changed, said in (
+        (
+            replace(scene, title="a\0b"),
+            "SystemStructureDescription description contains the control character U+0000",
+        ),
+        (replace(scene, text="# \uffff"), "Scene text contains the control character U+FFFF"),
+    ):
+        with pytest.raises(LoomfmuError, match=said.replace("+", r"\+")):
+            ssp.export(changed, tmp_path / "x.ssp", "live")
+    assert list(tmp_path.iterdir()) == []

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from ... import units
+from ...errors import LONGEST_NAME, check_text, shown
 from ...variables import Component, variables_of
-from .ports import BASES, Definition, Port, Value, own_definition, own_name, shown_in
+from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
 KINDS = {
@@ -31,6 +32,8 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
 
     `component` is the one that the FMU was made of, if it is known.
     """
+    check_text(description.modelName or "", "modelName")
+    _check(description.modelVariables)
     known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
     names = dict(zip((v.name for v in known), plain_names(v.name for v in known), strict=True))
     if component is not None:
@@ -48,6 +51,21 @@ def unsupported_outputs(description: Any) -> tuple[str, ...]:
     return tuple(v.name for v in outputs if v.type not in KINDS or v.dimensions)
 
 
+def _check(variables: Iterable[Any]) -> None:
+    """Refuse what would let a value go to another variable. Raises ValueError."""
+    names: set[str] = set()
+    for variable in variables:
+        name = variable.name
+        if name in names:
+            raise ValueError(f"two variables are called {shown(name)}")
+        if not name or len(name) > LONGEST_NAME:
+            raise ValueError(f"the name {shown(name)} has {len(name)} characters, not 1 to {LONGEST_NAME}")
+        if not 0 <= variable.valueReference < 2**32:
+            reference = shown(variable.valueReference)
+            raise ValueError(f"{shown(name)} has the value reference {reference}, not a number of 32 bits")
+        names.add(name)
+
+
 def plain_names(names: Iterable[str]) -> list[str]:
     """Names of letters, digits and _, a letter first, all different.
 
@@ -55,14 +73,15 @@ def plain_names(names: Iterable[str]) -> list[str]:
     ['phi', 'body_phi', 'der_w', 'x_1', 'x_1_2', 'time_']
     """
     found: dict[str, None] = {}
+    numbers: dict[str, int] = {}  # the last one that was tried for a name
     for name in names:
         plain = re.sub("[^A-Za-z0-9_]+", "_", name).strip("_") or "unnamed"
         plain = plain if plain[0].isalpha() else f"v_{plain}"
         plain = "time_" if plain == "time" else plain  # each group of a trace has a time of its own
-        number, free = 1, plain
+        free = plain
         while free in found:
-            number += 1
-            free = f"{plain}_{number}"
+            numbers[plain] = numbers.get(plain, 1) + 1
+            free = f"{plain}_{numbers[plain]}"
         found[free] = None
     return list(found)
 
@@ -107,7 +126,7 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         display=shown_in(unit or "1", said("displayUnit") or ""),
         minimum=min(values) if values else _limit(kind, said("min")),
         maximum=max(values) if values else _limit(kind, said("max")),
-        start=None if variable.start is None else _start(kind, variable.start),
+        start=None if variable.start is None else _start(variable.type, variable.start),
         description=variable.description or "",
         choices=tuple(item.name for item in items) if in_a_row else (),
         first_choice=values[0] if values else 1,
@@ -129,7 +148,14 @@ def _limit(kind: str, text: str | None) -> float | None:
     return None if value is None or math.isinf(value) else value
 
 
-def _start(kind: str, text: str) -> Value:
+def _start(base_type: str, text: str) -> Value:
+    """A start value. Raises ValueError for an integer that the type cannot hold."""
+    kind = KINDS[base_type]
     if kind == "Boolean":
         return text in ("true", "1")
-    return int(text) if kind == "Integer" else float(text)
+    if kind == "Real":
+        return float(text)
+    value, (low, high) = int(text), RANGES[base_type]
+    if not low <= value <= high:
+        raise ValueError(f"{shown(value)} is outside of what an {base_type} holds")
+    return value

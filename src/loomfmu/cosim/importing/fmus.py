@@ -12,7 +12,7 @@ import fmpy
 
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
-from ...files import source
+from ...files import check_archive, source
 from ...fmi import builder
 from ...fmi.cache_entries import FMUS, UNPACKED, folder, made_file
 from ...fmi.description.model_description import model_description
@@ -129,7 +129,12 @@ class Fmu:
         """What scenes call a variable, given that name or the FMU's own."""
         if variable in self.ports:
             return variable
-        return next((port.name for port in self.ports.values() if port.own == variable), variable)
+        return self._plain_names.get(variable, variable)
+
+    @cached_property
+    def _plain_names(self) -> dict[str, str]:
+        """What scenes call the variables, by the FMU's own names; the first of two that have one name."""
+        return {port.own: port.name for port in reversed(self.ports.values())}
 
     def port(self, name: str, where: str) -> Port:
         """A variable by name. Raises LoomfmuError, naming the nearest."""
@@ -185,12 +190,13 @@ def file_of(component: type[Component], flavour: str, platforms: tuple[str, ...]
 def load(path: Path) -> Fmu:
     """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
     try:
-        content = source(path).read_bytes()
-        sha256 = hashlib.sha256(content).hexdigest()
-        with zipfile.ZipFile(BytesIO(content)) as archive:
-            # compared with the FMU at each start: what runs is what the hash names
-            names = list(filter(_is_run, archive.namelist()))
-            directory = folder(UNPACKED, sha256, names, archive.read)
+        with source(path).open("rb") as file:
+            sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+            with zipfile.ZipFile(file) as archive:
+                # compared with the FMU at each start: what runs is what the hash names
+                check_archive(archive)
+                names = list(filter(_is_run, archive.namelist()))
+                directory = folder(UNPACKED, sha256, names, archive.read)
         found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:
         raise LoomfmuError(f"{path}: there is no such FMU") from None

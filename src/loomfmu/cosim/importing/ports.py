@@ -9,7 +9,7 @@ from ... import units
 from ...errors import LoomfmuError, shown, suggestion
 
 Value = float | int | bool
-_WHOLE = re.compile(r"\s*[-+]?\d+\s*")
+_WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
 CARRIED = (-(2**31), 2**31 - 1)  # the integers that a master carries: those of FMI 2.0
 # what variables of an FMI type can hold; the others hold any finite number
 RANGES: dict[str, tuple[float, float]] = {
@@ -29,6 +29,10 @@ class Definition:
     exponents: tuple[int, ...]
     factor: float = 1.0
     offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.factor == 0.0 or not math.isfinite(self.factor) or not math.isfinite(self.offset):
+            raise ValueError(f"a unit has the factor {self.factor:g} and the offset {self.offset:g}")
 
     def agrees(self, other: "Definition") -> bool:
         """Whether both mean the same; factors are printed with ten digits or more."""

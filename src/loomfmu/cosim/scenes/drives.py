@@ -10,6 +10,7 @@ from ...errors import LoomfmuError, shown, suggestion
 from ..importing.fmus import Port, Value
 
 Floats = NDArray[np.float64]
+LATEST = 1e9  # revolutions or seconds: no scene is longer
 
 
 @dataclass(frozen=True)
@@ -49,23 +50,22 @@ def drive(name: str, port: Port, table: Any) -> Drive:
     if port.causality != "input":
         raise LoomfmuError(f"{where}: {port.name} is not an input")
     if not isinstance(table, list) or not table:
-        raise LoomfmuError(f'{where} = {table!r} is not a list such as [[0, "0.3 mm"], [10, "1 mm"]]')
+        raise LoomfmuError(f'{where} = {shown(table)} is not a list such as [[0, "0.3 mm"], [10, "1 mm"]]')
     revolutions: list[float] = []
     values: list[Value] = []
     doubts: list[str] = []
     for row in table:
         if not isinstance(row, list) or len(row) != 2 or isinstance(row[0], bool):
-            raise LoomfmuError(f"{where}: {row!r} is not a pair [revolution, value]")
+            raise LoomfmuError(f"{where}: {shown(row)} is not a pair [revolution, value]")
         if not isinstance(row[0], int | float):
             raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not a number")
         if revolutions and not row[0] > revolutions[-1]:
             raise LoomfmuError(
                 f"{where}: the revolutions must increase: {shown(row[0])} follows {revolutions[-1]:g}"
             )
-        try:
-            revolutions.append(float(row[0]))
-        except OverflowError:
-            raise LoomfmuError(f"{where}: revolution {shown(row[0])} is too large") from None
+        if not abs(row[0]) <= LATEST:
+            raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not within {LATEST:g}")
+        revolutions.append(float(row[0]))
         values.append(port.value(row[1], where))
         doubts.append(port.doubt(row[1], where))
     instance = name.partition(".")[0]

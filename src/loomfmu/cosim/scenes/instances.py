@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import machines
-from ...errors import LoomfmuError, suggestion
+from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
 from ...own import load
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
@@ -51,7 +51,7 @@ SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "a
 class Instance:
     """One FMU of a scene with the values that are set at its start (SI).
 
-    `published` are the machine and the head that it was told to be of, `doubts` what is odd about values.
+    `published` are the machine and the head that its values come from, `doubts` warnings about its values.
     `isolated` says whether it runs in a process of its own; where it does not, the scene decides.
     """
 
@@ -98,10 +98,10 @@ class Instance:
         """Take all that a published machine or head gives this component."""
         where = f"{self.name}.{kind}"
         if not isinstance(given, str):
-            raise LoomfmuError(f"{where} = {given!r} is not a name in quotes")
+            raise LoomfmuError(f"{where} = {shown(given)} is not a name in quotes")
         if self.fmu.name not in machines.TAKERS[kind]:
             takers = " or a ".join(machines.TAKERS[kind])
-            raise LoomfmuError(f"{where}: a {self.fmu.name} takes nothing from a {kind}, only a {takers}")
+            raise LoomfmuError(f"{where}: a {self.fmu.name} has no {kind}, only a {takers} has")
         found = machines.parameters(self.fmu.name, **{kind: given})
         for key in found:
             self.fmu.port(key, self.name)  # an FMU of another version may lack it
@@ -109,18 +109,18 @@ class Instance:
         self.published[kind] = given
 
     def settle(self) -> None:
-        """What our FMUs are told of our master: it works in dependency order."""
+        """Have our own FMUs take inputs as those of a step's end: our master works in dependency order."""
         if self.fmu.ours and "inputs_at_step_end" in self.fmu.ports:
             self.values.setdefault("inputs_at_step_end", True)
 
     def follow(self, wire: Wire) -> None:
-        """A mechanism whose shaft angle is wired follows it, and a frame the lift of its dobby."""
+        """Let a mechanism follow the shaft whose angle is wired to it, and a frame the lift of its dobby."""
         switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
         if self.fmu.ours and switch in self.fmu.ports:
             self.values.setdefault(switch, True)
 
     def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
-        """Its parameters and inputs at the start, without what is fed and what has no effect."""
+        """Its parameters and inputs at the start, without inputs that are fed and values without effect."""
         values: dict[str, Value] = {}
         for port in self.fmu.ports.values():
             start = self.values.get(port.name, port.start)
@@ -147,23 +147,26 @@ def _can_be_set(port: Port) -> bool:
 def check_name(name: str) -> None:
     """Refuse what cannot be the name of an instance."""
     if not NAME.fullmatch(name):
-        raise LoomfmuError(f"instance name {name!r} is not letters, digits and _, a letter first")
+        raise LoomfmuError(f"instance name {shown(name)} must be letters, digits and _, with a letter first")
+    if len(name) > LONGEST_NAME:
+        raise LoomfmuError(f"instance name {shown(name)} has {len(name)} characters; at most {LONGEST_NAME}")
     if name in TAKEN:
-        raise LoomfmuError(f"instance name {name!r} is taken: a trace has its own {name}")
+        raise LoomfmuError(f"instance name {name!r} is taken: every trace has a {name} of its own")
 
 
 def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """The table of each instance: the standard loom's, then what the scene says of each."""
     given = _loom(tables, directory)
-    groups: list[str] = []
+    groups: set[str] = set()
+    of_loom = {standard_loom.stem(name) for name in given if standard_loom.is_numbered(name)}
+    numbered = of_loom | {standard_loom.stem(name) for name in tables if standard_loom.is_numbered(name)}
     for key, table in tables.items():
         if key in KEYS:
             continue
         if not isinstance(table, dict):
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
-        siblings = [] if "component" in table else [name for name in tables if name != key]
-        if key not in given and members(key, [*given, *siblings]):
-            groups.append(key)
+        if key not in given and key in (of_loom if "component" in table else numbered):
+            groups.add(key)
             continue
         known = standard_loom.COMPONENT_OF
         named = "component" in table or "fmu" in table
@@ -172,9 +175,10 @@ def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[s
             raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
         check_name(key)
         given[key] = given.get(key, {}) | table
-    for key in groups:  # a table for all members says less than a member's own
-        for member in members(key, given):
-            given[member] = given[member] | tables[key] | tables.get(member, {})
+    for name in given:  # a table for all members says less than a member's own
+        group = standard_loom.stem(name)
+        if group in groups and standard_loom.is_numbered(name):
+            given[name] = given[name] | tables[group] | tables.get(name, {})
     return given
 
 
@@ -184,80 +188,13 @@ def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     if loom is None:
         return {} if "duration" in tables or "step" in tables else {"shaft": {}}
     if not isinstance(loom, dict):
-        raise LoomfmuError(f"loom = {loom!r} is no table")
+        raise LoomfmuError(f"loom = {shown(loom)} must be a table [loom]")
     return standard_loom.loom(loom, directory)
-
-
-def members(key: str, given: Iterable[str]) -> list[str]:
-    """The numbered instances that a name without number stands for."""
-    if key in given:
-        return []
-    return [name for name in given if standard_loom.stem(name) == key]
-
-
-def override(
-    tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any, directory: Path
-) -> None:
-    """Let one value of the scene be another."""
-
-    def component(name: str) -> str:
-        fmu = _fmu(name, given[name], directory)
-        return fmu.name if fmu.ours else ""
-
-    for member, variable in overridden(given, key, component):
-        about = unit_of(variable)
-        if about:
-            stated = given[member].get("units", {})
-            value = {**stated, about: value} if isinstance(stated, dict) else stated
-            given[member] = given[member] | {"units": value}
-        elif member:
-            given[member] = given[member] | {variable: value}
-        else:
-            tables[variable] = value
-
-
-def unit_of(key: str) -> str:
-    """The variable whose unit a key of an instance states, such as `units.flange.w`; nothing for others."""
-    return key.removeprefix("units.") if key.startswith("units.") else ""
-
-
-def components(instances: dict[str, Instance]) -> Callable[[str], str]:
-    """What tells the component of each instance; nothing for an FMU of another maker."""
-    return lambda name: instances[name].fmu.name if instances[name].fmu.ours else ""
-
-
-def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) -> list[tuple[str, str]]:
-    """What a key of `--set` or of a sweep stands for, as (instance, variable).
-
-    The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
-    instances that take something of it.
-    """
-    given = list(given)
-    instance, dot, variable = key.partition(".")
-    if instance == "loom" and "loom" not in given:
-        if variable not in machines.TAKERS:
-            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, machines.TAKERS)}")
-        key, dot = variable, ""
-    if key in machines.TAKERS:
-        takers = machines.TAKERS[key]
-        found = [name for name in given if component(name) in takers]
-        if not found:
-            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} that would take it")
-        return [(name, key) for name in found]
-    if not dot:
-        if key not in (*TIMES, *WHOLE):
-            known = [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in given)]
-            raise LoomfmuError(f"{key!r} cannot be set{suggestion(key, known)}")
-        return [("", key)]
-    found = [instance] if instance in given else members(instance, given)
-    if not found:
-        raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, given)}")
-    return [(member, variable) for member in found]
 
 
 def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
     """An instance with its values checked and in SI: a value of its own prevails over its machine's."""
-    fmu = _fmu(name, table, directory)
+    fmu = fmu_of(name, table, directory)
     found = Instance(name, fmu)
     for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
         if key != "component" and (key not in FILES or fmu.built):
@@ -267,7 +204,7 @@ def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
 
 
 def mixed(instances: dict[str, Instance]) -> list[str]:
-    """What tells of a loom whose instances are not all of one machine, or not all of one head."""
+    """Warnings about a loom whose instances are not all of one machine, or not all of one head."""
     notes = []
     for kind, takers in machines.TAKERS.items():
         fitted = [each for each in instances.values() if each.fmu.ours and each.fmu.name in takers]
@@ -291,20 +228,20 @@ def _is(each: Instance, kind: str, name: str) -> bool:
     return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
 
 
-def _fmu(name: str, table: dict[str, Any], directory: Path) -> Fmu:
+def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     """The FMU that a table names: a file, or one of our components."""
     for key in ("component", "fmu"):
         if not isinstance(table.get(key, ""), str):
-            raise LoomfmuError(f"{name}.{key} = {table[key]!r} is not a name in quotes")
+            raise LoomfmuError(f"{name}.{key} = {shown(table[key])} is not a name in quotes")
     component = str(table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name))))
     if "fmu" not in table:
         fmu = _of_component(name, component, directory)
         if name == "shaft" and not (fmu.component and standard_loom.turns_others(fmu.component)):
             shafts = " or a ".join(standard_loom.shafts())
-            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene is a {shafts}")
+            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {shafts}")
         return fmu
     if "component" in table:
-        raise LoomfmuError(f"{name} has both a component and an fmu; it is one of them")
+        raise LoomfmuError(f"{name} has both a component and an fmu; keep one of them")
     try:
         fmu = with_units(fmus.load(directory / table["fmu"]), table.get("units", {}), name)
     except LoomfmuError as error:
@@ -331,9 +268,9 @@ def own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, st
 
 
 def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
-    """An FMU with the units that a scene says its variables have, where it says none itself."""
+    """An FMU with the units that a scene states for its variables, where the FMU states none."""
     if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
-        raise LoomfmuError(f'{name}.units = {stated!r} is no table of variable = "unit"')
+        raise LoomfmuError(f'{name}.units = {shown(stated)} must be a table of variable = "unit"')
     ports = dict(fmu.ports)
     for key, unit in stated.items():
         port = fmu.port(fmu.name_of(key), f"{name}.units")
@@ -342,7 +279,7 @@ def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
 
 
 def as_shaft(fmu: Fmu) -> Fmu:
-    """An FMU in the place of the main shaft: it tells the angle, and its other outputs are its rates."""
+    """An FMU in the place of the main shaft: it outputs the angle, and its other outputs are the rates."""
     ports = dict(fmu.ports)
     for variable, (unit, rate) in SHAFT.items():
         port = ports.get(variable)
@@ -350,5 +287,5 @@ def as_shaft(fmu: Fmu) -> Fmu:
         if port is not None and fits:
             ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
         elif variable == "angle":
-            raise LoomfmuError(f"{fmu.path}: the shaft of a scene has an output angle in rad")
+            raise LoomfmuError(f"{fmu.path}: the shaft of a scene must have an output angle in rad")
     return replace(fmu, ports=ports)

@@ -2,35 +2,25 @@
 
 import fnmatch
 import math
-import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ... import units
-from ...errors import LoomfmuError, shown, suggestion
-from ...files import text_of
+from ... import files
+from ...errors import LoomfmuError, check_text, shown, suggestion
+from ..importing.ports import Port
 from ..importing.process import AVAILABLE
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
-from .instances import (
-    COARSE,
-    ISOLATED,
-    KEYS,
-    TIMES,
-    Instance,
-    instance,
-    instance_tables,
-    mixed,
-    override,
-    own_texts,
-    truth,
-)
+from .instances import COARSE, ISOLATED, KEYS, Instance, instance, instance_tables, mixed, own_texts, truth
+from .overrides import override
+from .tables import choice, number, toml
+from .tables import text as text_of
+from .times import check_times, seconds, times_of
 from .wiring import drives_of, wires_of
 
-ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 
@@ -105,7 +95,7 @@ class Scene:
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """Read a scene from a TOML file. Raises LoomfmuError naming the file and what is wrong."""
     path = Path(path)
-    text = text_of(path)
+    text = files.text_of(path)
     try:
         return replace(parse(text, path.stem, overrides, path.parent), file=path)
     except LoomfmuError as error:
@@ -136,35 +126,26 @@ def parse(
     scene = replace(scene, overrides=dict(overrides or {}), texts=texts)
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
-    for owner, table in given.items():
-        for key in table:
-            check_free(scene, owner, key)
+    check_free(scene, [(owner, key) for owner, table in given.items() for key in table])
     return scene
 
 
-def check_free(scene: Scene, instance: str, key: str) -> None:
-    """Refuse a value for an input that has another source: an input has one."""
-    name = f"{instance}.{key}"
-    variable = scene.instances[instance].fmu.name_of(key)
-    for each in scene.wires:
-        if each.sink == (instance, variable):
-            cut = f'; to set it, cut the wire: [wires] "{instance}.{variable}" = false'
+def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
+    """Refuse values for inputs that have another source; `keys` are pairs of instance and key."""
+    wired = {each.sink: ".".join(each.source) for each in scene.wires}
+    driven = {(each.instance, each.variable) for each in scene.drives}
+    for owner, key in keys:
+        sink = (owner, scene.instances[owner].fmu.name_of(key))
+        if sink in wired:
+            cut = f'; to set it, cut the wire: [wires] "{".".join(sink)}" = false'
             raise LoomfmuError(
-                f"{name} cannot be set, it is wired to {'.'.join(each.source)}"
+                f"{owner}.{key} cannot be set, it is wired to {wired[sink]}"
                 f"{cut if scene.package is None else ' in the package'}"
             )
-    if any((each.instance, each.variable) == (instance, variable) for each in scene.drives):
-        raise LoomfmuError(
-            f"{name} cannot be set, it is driven along a table; to set it, take it out of [inputs]"
-        )
-
-
-def toml(text: str) -> dict[str, Any]:
-    """The tables of a scene's text."""
-    try:
-        return tomllib.loads(text)
-    except ValueError as error:  # also for an integer that has more digits than Python reads
-        raise LoomfmuError(f"not valid TOML: {error}") from None
+        if sink in driven:
+            raise LoomfmuError(
+                f"{owner}.{key} cannot be set, it is driven along a table; to set it, remove it from [inputs]"
+            )
 
 
 def assemble(
@@ -172,42 +153,39 @@ def assemble(
     directory: Path,
 ) -> Scene:  # fmt: skip
     """A scene of wired instances, with what else the tables of its text say."""
-    seconds = _by_seconds(tables)
-    if seconds is not None:
-        duration, step = seconds
-        turns, steps = duration, 1.0 / step
-    else:
-        turns = _number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9)
-        most = tables.get("steps_per_revolution", 1440)
-        steps = int(_number(most, "steps_per_revolution", 1, 1e9, whole=True))
+    times = times_of(tables)
     drives = drives_of(instances, wires, tables.get("inputs", {}))
     scene = Scene(
-        title=str(tables.get("title", name)),
-        description=str(tables.get("description", "")).strip(),
+        title=check_text(text_of(tables, "title", name), "title"),
+        description=text_of(tables, "description").strip(),
         name=name,
         text=text,
         directory=directory,
-        periods=turns,
-        steps_per_period=steps,
+        periods=times.periods,
+        steps_per_period=times.steps_per_period,
         instances=instances,
         wires=wires,
         drives=drives,
         record=_record(instances, tables.get("record", ["*"])),
         claims=_claims(tables.get("claims", [])),
-        step=seconds[1] if seconds is not None else None,
-        coupling=_choice(tables, "coupling", COUPLINGS),
-        grid=_choice(tables, "grid", GRIDS),
+        step=times.step,
+        coupling=choice(tables, "coupling", COUPLINGS),
+        grid=choice(tables, "grid", GRIDS),
         coarse_steps_per_revolution=int(
-            _number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
+            number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
         isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
-        step_timeout=_seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
-        run_timeout=_seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
-        notes=tuple(_notes(instances, wires, drives, turns)),
+        step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
+        run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
+        notes=tuple(_notes(instances, wires, drives, times.periods)),
     )
     _check_single(scene)
-    _check_time(scene)
+    check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
     return scene
+
+
+def _shaft_ports(instances: dict[str, Instance]) -> dict[str, Port]:
+    return instances["shaft"].fmu.ports if "shaft" in instances else {}
 
 
 def _notes(
@@ -244,95 +222,16 @@ def _check_single(scene: Scene) -> None:
         found[each.fmu.sha256] = name
 
 
-def _by_seconds(tables: dict[str, Any]) -> tuple[float, float] | None:
-    """Duration and step of a scene that runs by seconds [s]."""
-    given = [key for key in TIMES if key in tables]
-    if not {"duration", "step"} & set(given):
-        return None
-    if set(given) != {"duration", "step"}:
-        raise LoomfmuError(
-            f"{' and '.join(given)}: a scene runs either by duration and step,"
-            " or by revolutions and steps_per_revolution"
-        )
-    return _seconds(tables["duration"], "duration", 1e-12), _seconds(tables["step"], "step", 1e-12)
-
-
-def _seconds(given: Any, key: str, low: float) -> float:
-    """A time within bounds [s]."""
-    try:
-        value = units.parse(given, "s")
-    except units.UnitError as error:
-        raise LoomfmuError(f"{key}: {error}") from None
-    return _number(value, key, low, 1e9)
-
-
-def _check_time(scene: Scene) -> None:
-    """Refuse a scene that has no step, or whose duration is none."""
-    shaft = scene.instances.get("shaft")
-    if scene.step is not None:
-        if scene.steps < 1:
-            raise LoomfmuError(
-                f"duration = {scene.periods:g} s in steps of {scene.step:g} s is less than one step"
-            )
-        _check_whole(scene, "duration", " s", f"{scene.step:g} s")
-        return
-    if shaft is None or "speed" not in shaft.fmu.ports:
-        raise LoomfmuError(
-            'there is no shaft whose speed sets the step: say duration = "2 s" and step = "1 ms"'
-        )
-    if scene.speed == 0.0:
-        raise LoomfmuError("shaft.speed = 0 rev/min: the shaft's speed sets the step, it may not be 0")
-    if scene.steps < 1:
-        raise LoomfmuError(
-            f"revolutions = {scene.periods:g} at {scene.steps_per_period} steps each is less than one step"
-        )
-    _check_whole(scene, "revolutions", "", f"1/{scene.steps_per_period:g} revolution")
-
-
-def _check_whole(scene: Scene, key: str, unit: str, step: str) -> None:
-    """Refuse a duration that does not end with a step: the run would be shorter or longer."""
-    wanted = scene.periods * scene.steps_per_period
-    if abs(wanted - scene.steps) > ROUNDING * wanted:
-        fitting = [n / scene.steps_per_period for n in (math.floor(wanted), math.ceil(wanted)) if n]
-        raise LoomfmuError(
-            f"{key} = {scene.periods:.10g}{unit} is {wanted:.7g} steps of {step}, not a whole number of"
-            f" steps; these would fit: {' or '.join(f'{each:.10g}{unit}' for each in fitting)}"
-        )
-
-
-def _choice(tables: dict[str, Any], key: str, known: tuple[str, ...]) -> str:
-    """One of some words; the first one by default."""
-    given = tables.get(key, known[0])
-    if given not in known:
-        raise LoomfmuError(f"{key} = {given!r} is unknown{suggestion(str(given), known)}")
-    return str(given)
-
-
-def _number(given: Any, where: str, low: float, high: float, whole: bool = False) -> float:
-    """A plain number within bounds."""
-    try:
-        value = float(given if not isinstance(given, bool) else "")
-    except (TypeError, ValueError):
-        raise LoomfmuError(f"{where} = {shown(given)} is not a number") from None
-    except OverflowError:
-        raise LoomfmuError(f"{where} = {shown(given)} is outside [{low:g}, {high:g}]") from None
-    if not low <= value <= high:
-        raise LoomfmuError(f"{where} = {value:g} is outside [{low:g}, {high:g}]")
-    if whole and value != int(value):
-        raise LoomfmuError(f"{where} = {value:g} is not a whole number")
-    return value
-
-
 def _record(instances: dict[str, Instance], patterns: Any) -> list[str]:
     """The outputs that match one of the patterns, in the order of the scene."""
     if not isinstance(patterns, list):
-        raise LoomfmuError(f'record = {patterns!r} is not a list such as ["belt.*", "weft.travel"]')
-    outputs = list(_outputs(instances.values()))
+        raise LoomfmuError(f'record = {shown(patterns)} is not a list such as ["belt.*", "weft.travel"]')
+    outputs = dict.fromkeys(_outputs(instances.values()))
     wanted: set[str] = set()
-    for pattern in patterns:
-        matched = fnmatch.filter(outputs, str(pattern))
+    for pattern in map(str, patterns):
+        matched = [pattern] if pattern in outputs else fnmatch.filter(outputs, pattern)
         if not matched and (outputs or pattern != "*"):
-            raise LoomfmuError(f"record: no output is called {pattern!r}{suggestion(str(pattern), outputs)}")
+            raise LoomfmuError(f"record: no output is called {shown(pattern)}{suggestion(pattern, outputs)}")
         wanted.update(matched)
     return [output for output in outputs if output in wanted]
 

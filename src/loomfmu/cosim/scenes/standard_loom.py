@@ -1,14 +1,14 @@
 """The loom that a scene need not spell out: its instances, their components and their wiring."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ...components import COMPONENTS
 from ...components.shaft_driven import ShaftDriven
 from ...components.terminals import SHAFT
-from ...errors import LoomfmuError, suggestion
+from ...errors import LoomfmuError, shown, suggestion
 from ...variables import Component, Terminal, variables_of
 from . import weave as weaves
 
@@ -41,6 +41,18 @@ PICKS_IN_A_WORD = 16
 def stem(instance: str) -> str:
     """An instance's name without its number: `heald_3` is a `heald`."""
     return re.sub(r"_\d+$", "", instance)
+
+
+def is_numbered(instance: str) -> bool:
+    """Whether an instance's name ends with a number, as `heald_3` does."""
+    return stem(instance) != instance
+
+
+def members(key: str, given: Iterable[str]) -> list[str]:
+    """The numbered instances that a name without number stands for."""
+    if key in given:
+        return []
+    return [name for name in given if stem(name) == key]
 
 
 def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
@@ -85,7 +97,7 @@ def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:
 def _wanted(table: dict[str, Any], key: str) -> bool:
     wanted = table.get(key, False)
     if not isinstance(wanted, bool):
-        raise LoomfmuError(f"loom.{key} = {wanted!r} is neither true nor false")
+        raise LoomfmuError(f"loom.{key} = {shown(wanted)} is neither true nor false")
     return wanted
 
 
@@ -103,30 +115,32 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
-def wires(instance: str, components: Mapping[str, type[Component]]) -> dict[str, str]:
-    """Where the inputs of an instance are usually wired to, by its declarations and by those of the others.
+def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
+    """Where inputs such as `belt.travel` are usually wired to, by the declarations of all instances.
 
     Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
     """
-    number = instance.removeprefix(stem(instance))
-    component = components[instance]
-    found = {v.name: v.source for v in variables_of(component) if v.causality == "input" and v.source}
-    for terminal in _terminals(component, "input"):
-        offering = {
-            name: end.variables
-            for name, each in components.items()
-            for end in _terminals(each, "output")
-            if end.name == terminal.name and len(end.variables) == len(terminal.variables)
-        }
-        if terminal.name in SOURCES:
-            owner = SOURCES[terminal.name].replace("_#", number)
-            if owner not in components:  # another maker's FMU in its place names its outputs as it does
-                offering |= {owner: _usual(terminal, owner)}
-        else:
-            owner = next(iter(offering)) if len(offering) == 1 else ""
-        pairs = zip(terminal.variables, offering.get(owner, ()), strict=False)
-        found |= {sink: f"{owner}.{output}" for sink, output in pairs}
-    return {name: source.replace("_#", number) for name, source in found.items()}
+    offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
+    for name, component in components.items():
+        for end in _terminals(component, "output"):
+            offered.setdefault((end.name, len(end.variables)), {})[name] = end.variables
+    found: dict[str, str] = {}
+    for name, component in components.items():
+        number = name.removeprefix(stem(name))
+        for v in variables_of(component):
+            if v.causality == "input" and v.source:
+                found[f"{name}.{v.name}"] = v.source.replace("_#", number)
+        for terminal in _terminals(component, "input"):
+            offering = offered.get((terminal.name, len(terminal.variables)), {})
+            if terminal.name in SOURCES:
+                owner = SOURCES[terminal.name].replace("_#", number)
+                # another vendor's FMU in its place has outputs of the same names
+                outputs = offering.get(owner, ()) if owner in components else _usual(terminal, owner)
+            else:
+                owner, outputs = next(iter(offering.items())) if len(offering) == 1 else ("", ())
+            pairs = zip(terminal.variables, outputs, strict=False)
+            found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
+    return found
 
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:

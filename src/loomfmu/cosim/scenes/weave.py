@@ -9,11 +9,13 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, shown
 from ...files import source
 
 MOST_FRAMES = 20  # of the KRU-20 dobby
 MOST_PICKS = 128  # that a heald frame's pattern holds
+MOST_BYTES = 4_000_000  # of a WIF file: thousands of ends and all their colours take a tenth
+_WHOLE = re.compile(r"\s*-?[0-9]{1,9}\s*")
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class Weave:
 def parse(given: object, directory: Path) -> Weave:
     """A weave as a scene writes it: a list of pegs, pegs joined by `/`, or the name of a WIF file.
 
-    Raises LoomfmuError for what is none, or is more than the dobby holds.
+    Raises LoomfmuError for what is not a weave, or is more than the dobby holds.
 
     >>> parse("10/01", Path()).pegs
     ('10', '01')
@@ -45,10 +47,11 @@ def parse(given: object, directory: Path) -> Weave:
         return read_wif(directory / str(given))
     pegs = given.split("/") if isinstance(given, str) else given
     if not isinstance(pegs, list) or not pegs:
-        raise LoomfmuError(f'weave = {given!r} is neither pegs such as "10/01" nor the name of a WIF file')
-    for number, frame in enumerate(pegs, start=1):
-        check_pegs(frame, f"weave, frame {number}")
-    return _within_the_dobby(Weave(tuple(pegs)), "weave")
+        raise LoomfmuError(
+            f'weave = {shown(given)} is neither pegs such as "10/01" nor the name of a WIF file'
+        )
+    _check_frames(len(pegs), "weave")
+    return Weave(tuple(check_pegs(frame, f"weave, frame {number}") for number, frame in enumerate(pegs, 1)))
 
 
 def is_wif(given: object) -> bool:
@@ -59,18 +62,19 @@ def is_wif(given: object) -> bool:
 def check_pegs(pegs: object, where: str) -> str:
     """Pegs of one frame, checked: 1 raised, 0 lowered."""
     if not isinstance(pegs, str) or not re.fullmatch("[01]+", pegs):
-        raise LoomfmuError(f'{where} = {pegs!r} is not a string of pegs such as "1010"')
-    if len(pegs) > MOST_PICKS:
-        raise LoomfmuError(f"{where} has {len(pegs)} picks; the dobby holds {MOST_PICKS}")
+        raise LoomfmuError(f'{where} = {shown(pegs)} is not a string of pegs such as "1010"')
+    _check_picks(len(pegs), where)
     return pegs
 
 
-def _within_the_dobby(weave: Weave, where: str) -> Weave:
-    if len(weave.pegs) > MOST_FRAMES:
-        raise LoomfmuError(f"{where} has {len(weave.pegs)} frames; the dobby has {MOST_FRAMES}")
-    if weave.picks > MOST_PICKS:
-        raise LoomfmuError(f"{where} has {weave.picks} picks; the dobby holds {MOST_PICKS}")
-    return weave
+def _check_frames(frames: int, where: str) -> None:
+    if frames > MOST_FRAMES:
+        raise LoomfmuError(f"{where} has {frames} frames; the dobby has {MOST_FRAMES}")
+
+
+def _check_picks(picks: int, where: str) -> None:
+    if picks > MOST_PICKS:
+        raise LoomfmuError(f"{where} has {picks} picks; the dobby holds {MOST_PICKS}")
 
 
 def read_wif(path: Path) -> Weave:
@@ -81,9 +85,13 @@ def read_wif(path: Path) -> Weave:
 def wif_text(path: Path) -> str:
     """The text of a WIF file. Raises LoomfmuError where it cannot be read."""
     try:
-        return source(path).read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise LoomfmuError(f"{path}: cannot be read ({error.strerror})") from None
+        with source(path).open("rb") as file:
+            content = file.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:  # a name with a NUL is a ValueError
+        raise LoomfmuError(f"{path}: cannot be read ({getattr(error, 'strerror', error)})") from None
+    if len(content) > MOST_BYTES:
+        raise LoomfmuError(f"{path}: is larger than {MOST_BYTES // 1_000_000} MB, the most for a WIF file")
+    return content.decode("utf-8-sig", errors="replace")
 
 
 def of_wif(text: str, path: Path) -> Weave:
@@ -100,62 +108,75 @@ def of_wif(text: str, path: Path) -> Weave:
     if "WIF" not in sections:
         raise LoomfmuError(f"{path}: not a WIF file (it has no section [WIF])")
     try:
-        return _within_the_dobby(_weave(sections), str(path))
-    except _WifError as error:
+        return _weave(sections)
+    except LoomfmuError as error:
         raise LoomfmuError(f"{path}: {error}") from None
-
-
-class _WifError(Exception):
-    """What is wrong inside a WIF file."""
 
 
 def _weave(sections: dict[str, dict[str, str]]) -> Weave:
     weaving = sections.get("WEAVING", {})
     frames = _count(weaving, "WEAVING", "shafts")
     picks = _count(sections.get("WEFT", {}), "WEFT", "threads")
-    raised = _raised(sections)
+    _check_frames(frames, "it")
+    _check_picks(picks, "it")
+    raised = _raised(sections, frames, picks)
     if weaving.get("rising shed", "true").strip().lower() in ("false", "no", "off", "0"):
         everything = set(range(1, frames + 1))
-        raised = {pick: everything - raised.get(pick, set()) for pick in range(1, picks + 1)}
-    highest = max((frame for frames_up in raised.values() for frame in frames_up), default=0)
-    if highest > frames:
-        raise _WifError(f"frame {highest} is raised, but [WEAVING] Shafts = {frames}")
+        raised = {pick: everything - up for pick, up in raised.items()}
     pegs = tuple(
-        "".join("1" if frame in raised.get(pick, set()) else "0" for pick in range(1, picks + 1))
-        for frame in range(1, frames + 1)
+        "".join("1" if frame in up else "0" for up in raised.values()) for frame in range(1, frames + 1)
     )
     threading = _numbers(sections.get("THREADING", {}), "THREADING")
     ends = tuple(min(threading[end]) for end in sorted(threading) if threading[end])
     return Weave(pegs, ends)
 
 
-def _raised(sections: dict[str, dict[str, str]]) -> dict[int, set[int]]:
+def _raised(sections: dict[str, dict[str, str]], frames: int, picks: int) -> dict[int, set[int]]:
     """Raised frames (of a rising shed: else the sunk ones) of each pick, counted from 1."""
-    if "LIFTPLAN" in sections:
-        return _numbers(sections["LIFTPLAN"], "LIFTPLAN")
-    if "TIEUP" not in sections or "TREADLING" not in sections:
-        raise _WifError("it has neither [LIFTPLAN] nor [TIEUP] with [TREADLING]")
-    tie_up = _numbers(sections["TIEUP"], "TIEUP")
+    direct = "LIFTPLAN" in sections
+    if not direct and not {"TIEUP", "TREADLING"} <= set(sections):
+        raise LoomfmuError("it has neither [LIFTPLAN] nor [TIEUP] with [TREADLING]")
+    lifted = "LIFTPLAN" if direct else "TIEUP"
+    frames_of = _numbers(sections[lifted], lifted)
+    highest = max((frame for each in frames_of.values() for frame in each), default=0)
+    if highest > frames:
+        raise LoomfmuError(f"[{lifted}] raises frame {highest}, but [WEAVING] Shafts = {frames}")
+    numbers = range(1, picks + 1)
+    if direct:
+        return {pick: frames_of.get(pick, set()) for pick in numbers}
     treadling = _numbers(sections["TREADLING"], "TREADLING")
+    none: set[int] = set()
     return {
-        pick: set().union(*(tie_up.get(treadle, set()) for treadle in treadles))
-        for pick, treadles in treadling.items()
+        pick: none.union(*(frames_of.get(treadle, none) for treadle in treadling.get(pick, none)))
+        for pick in numbers
     }
 
 
 def _numbers(section: dict[str, str], name: str) -> dict[int, set[int]]:
     """A section of lines `number=number,number`; 0 stands for none."""
+    lines = {key: value.split(";")[0].split(",") for key, value in section.items()}
     try:
         return {
-            int(key): {int(part) for part in value.split(";")[0].split(",") if part.strip() and int(part) > 0}
-            for key, value in section.items()
+            _whole(key): {_whole(part) for part in parts if part.strip() and _whole(part) > 0}
+            for key, parts in lines.items()
         }
     except ValueError:
-        raise _WifError(f"[{name}] has a line that is not number=number,number") from None
+        raise LoomfmuError(f"[{name}] has a line that is not number=number,number") from None
 
 
 def _count(section: dict[str, str], name: str, key: str) -> int:
     text = section.get(key, "")
-    if not text.strip().isdigit() or int(text) == 0:
-        raise _WifError(f"[{name}] {key.title()} = {text!r} is no number of 1 or more")
+    try:
+        count = _whole(text)
+    except ValueError:
+        count = 0
+    if count < 1:
+        raise LoomfmuError(f"[{name}] {key.title()} = {shown(text)} is not a whole number of 1 or more")
+    return count
+
+
+def _whole(text: str) -> int:
+    """A whole number in plain digits. Raises ValueError for anything else, also what `int` would read."""
+    if not _WHOLE.fullmatch(text):
+        raise ValueError
     return int(text)

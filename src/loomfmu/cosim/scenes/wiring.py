@@ -13,13 +13,10 @@ from .instances import Instance
 def wires_of(instances: dict[str, Instance], spelt_out: Any) -> list[Wire]:
     """The standard loom's wires where both ends are there, and those that the scene spells out."""
     if not isinstance(spelt_out, dict):
-        raise LoomfmuError('wires is no table of "instance.input" = "instance.output"')
-    sources: dict[str, str] = {}
+        raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
-    for name in components:
-        for sink, source in standard_loom.wires(name, components).items():
-            if source.split(".")[0] in instances:
-                sources[f"{name}.{sink}"] = source
+    usual = standard_loom.wires(components)
+    sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     for sink, source in dotted(spelt_out).items():
         if source is False:
             if sources.pop(sink, None) is None:
@@ -51,8 +48,8 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
             raise LoomfmuError(f"{where}: there is no instance {name!r}{suggestion(name, instances)}")
         fmu = instances[name].fmu
         variable = fmu.name_of(variable)
-        fitting = [port.name for port in fmu.ports.values() if port.causality == causality]
-        if variable not in fitting:
+        if variable not in fmu.ports or fmu.ports[variable].causality != causality:
+            fitting = [port.name for port in fmu.ports.values() if port.causality == causality]
             raise LoomfmuError(
                 f"{where}: {name} has no {causality} {variable!r}{suggestion(variable, fitting)}"
             )
@@ -69,12 +66,13 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
 def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
     """The inputs that the scene drives along tables; an input has one source."""
     if not isinstance(table, dict):
-        raise LoomfmuError('inputs is no table of "instance.input" = [[revolution, value], ...]')
+        raise LoomfmuError('inputs must be a table of "instance.input" = [[revolution, value], ...]')
     drives = []
+    wired = {each.sink for each in wires}
     for name, rows in dotted(table).items():
         owner, variable = split(name, instances)
         variable = instances[owner].fmu.name_of(variable)
-        if any(each.sink == (owner, variable) for each in wires):
+        if (owner, variable) in wired:
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
         drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
     return drives

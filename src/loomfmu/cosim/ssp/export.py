@@ -165,7 +165,7 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
         description=scene.title, generationTool=f"loomfmu {builder.version()}",
     )  # fmt: skip
     system = SubElement(document, "ssd:System", name=scene.name, description=scene.title)
-    ports = {name: _connectors(scene, instance) for name, instance in scene.instances.items()}
+    ports = _connectors(scene)
     boxes = layout(
         list(scene.instances), scene.wires,
         {name: ([p.name for p in ins], [p.name for p in outs]) for name, (ins, outs) in ports.items()},
@@ -183,18 +183,22 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
     return document
 
 
-def _connectors(scene: Scene, instance: Instance) -> tuple[list[Port], list[Port]]:
-    """Inputs and outputs that are shown.
+def _connectors(scene: Scene) -> dict[str, tuple[list[Port], list[Port]]]:
+    """Inputs and outputs of each instance that are shown.
 
     Inputs are those that are wired: fmpy wires one that is left open to the source it has last met.
     Enumerations are shown where they are wired, as integers, since libcosim knows no enumeration.
     """
-    ports = instance.fmu.ports
-    inputs = [wire.sink[1] for wire in scene.wires if wire.sink[0] == instance.name]
-    wired = {wire.source[1] for wire in scene.wires if wire.source[0] == instance.name}
-    outputs = [port for port in ports.values() if port.causality == "output"]
-    shown = [port for port in outputs if port.base_type != "Enumeration" or port.name in wired]
-    return [ports[name] for name in inputs], shown
+    wired = {wire.source for wire in scene.wires}
+    shown: dict[str, tuple[list[Port], list[Port]]] = {}
+    for name, instance in scene.instances.items():
+        outputs = [port for port in instance.fmu.ports.values() if port.causality == "output"]
+        kept = [port for port in outputs if port.base_type != "Enumeration" or (name, port.name) in wired]
+        shown[name] = [], kept
+    for wire in scene.wires:
+        owner, variable = wire.sink
+        shown[owner][0].append(scene.instances[owner].fmu.ports[variable])
+    return shown
 
 
 def _component(

@@ -55,9 +55,11 @@ def columns(names: Sequence[str], wires: Sequence[Wire]) -> dict[str, int]:
     """
     order, lagged = step_order(names, wires)
     depths: dict[str, int] = {}
+    before: dict[str, list[str]] = {name: [] for name in order}
+    for wire in dict.fromkeys(wires).keys() - set(lagged):
+        before[wire.sink[0]].append(wire.source[0])
     for name in order:
-        before = [wire.source[0] for wire in wires if wire.sink[0] == name and wire not in lagged]
-        depths[name] = max((depths[source] + 1 for source in before if source in depths), default=0)
+        depths[name] = max((depths[source] + 1 for source in before[name] if source in depths), default=0)
     return depths
 
 

@@ -1,98 +1,63 @@
-"""System packages (SSP 1.0) as scenes: our own, to the last bit, and those of other makers.
+"""System packages (SSP 1.0) as scenes: our own, to the last bit, and those of other tools.
 
 A package is read from its structure: elements, connections, parameter sets. What a structure cannot say,
 such as claims and what is recorded, is in the text of the scene that our own packages carry; another
-maker's package runs by seconds and records all outputs.
+tool's package runs by seconds and records all outputs.
 """
 
-import hashlib
-import posixpath
-import zipfile
-import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote, urlsplit
-from xml.etree.ElementTree import Element, ParseError, fromstring
+from xml.etree.ElementTree import Element
 
-from ...errors import LoomfmuError
-from ...files import source as readable
-from ...fmi.cache_entries import PACKAGES, folder
+from ...errors import LoomfmuError, shown
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.graph import Wire
-from ..scenes.instances import (
-    PARAMETER_SETS,
-    TIMES,
-    Instance,
-    as_shaft,
-    check_name,
-    components,
-    overridden,
-    override,
-    unit_of,
-    with_units,
-)
-from ..scenes.scene import Scene, assemble, check_free, toml
-from ..scenes.wiring import wire
-from .values import apply, bound
-from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, said
+from ..scenes.instances import PARAMETER_SETS, TIMES, Instance, as_shaft, check_name, with_units
+from ..scenes.overrides import components, overridden, override, unit_of
+from ..scenes.scene import Scene, assemble, check_free
+from ..scenes.tables import DEEPEST, toml
+from .connections import wires_of
+from .package import Package
+from .values import Given, apply, bound
+from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
+
+KEPT = ("title", "description", "record", "inputs", "claims")  # keys of a scene that no structure can hold
+Names = Mapping[tuple[str, ...], str]
 
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     """A scene from a system package. Raises LoomfmuError naming the file and what is wrong."""
     path = Path(path)
     try:
-        return _Package(path).scene(overrides or {})
-    except (OSError, zipfile.BadZipFile, zlib.error, RuntimeError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise LoomfmuError(f"{path}: cannot be read ({reason})") from None
+        with Package(path) as package:
+            return _Reader(package).scene(overrides or {})
+    except OSError as error:
+        raise LoomfmuError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except ValueError as error:
+        raise LoomfmuError(f"{path}: cannot be read ({error})") from None
     except LoomfmuError as error:
         raise LoomfmuError(f"{path}: {error}") from None
 
 
-KEPT = ("title", "description", "record", "inputs", "claims")  # keys of a scene that no structure can hold
-
-
 @dataclass(frozen=True)
 class _Found:
-    """A component: the names of the systems around it and its own, its element, and those around it."""
+    """A component: the names of the systems around it and its own, and its element."""
 
     path: tuple[str, ...]
     element: Element
-    around: tuple[Element, ...]
 
 
-class _Package:
+class _Reader:
     """A package under reading."""
 
-    def __init__(self, path: Path):
-        self.path = path
-        content = readable(path).read_bytes()
-        self.sha256 = hashlib.sha256(content).hexdigest()
-        with zipfile.ZipFile(path) as archive:
-            self.files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+    def __init__(self, package: Package):
+        self.package = package
         self.notes: list[str] = []
-        self.root = self.read(SSD_FILE)
+        self.root = package.root(SSD_FILE)
         self.units = read_units(self.root.iterfind(full("ssd:Units")))
-
-    def read(self, source: str) -> Element:
-        """The root of an XML file of the package."""
-        name = self.member(source)
-        try:
-            return fromstring(self.files[name])
-        except ParseError as error:
-            raise LoomfmuError(f"{name}: it is no valid XML ({error})") from None
-
-    def member(self, source: str) -> str:
-        """The name of a file of the package, given as the structure refers to it."""
-        name = posixpath.normpath(unquote(source))
-        outside = bool(urlsplit(source).scheme) or name.startswith(("..", "/"))
-        if outside or name not in self.files:
-            raise LoomfmuError(f"{source or 'a parameter set'} is not in the package")
-        return name
 
     def scene(self, overrides: dict[str, Any]) -> Scene:
         """The scene that the package describes, with some values changed."""
@@ -100,25 +65,26 @@ class _Package:
         system = self.root.find(full("ssd:System"))
         if system is None:
             raise LoomfmuError(f"{SSD_FILE} describes no system")
-        found = list(_components(system))
-        names = _names(found)
+        found = _names(list(_components(system)))
+        names = {each.path: name for name, each in found.items()}
         text = None if annotation is None else toml(annotation.text or "")
-        stated = _stated(names, text or {}, overrides)
+        stated = _stated(found, text or {}, overrides)
+        values = self._values(system, found, names)
         instances = {
-            name: self._instance(name, each, stated[name], ours=text is not None)
-            for name, each in names.items()
+            name: self._instance(name, each.element, stated[name], values[name], ours=text is not None)
+            for name, each in found.items()
         }
-        wires = _wires(system, instances, {each.path: name for name, each in names.items()})
+        wires = wires_of(system, instances, names)
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
         changed = _override(tables, instances, overrides)
-        written = self.files[SSD_FILE].decode(errors="replace") if annotation is None else annotation.text
-        made = assemble(tables, instances, wires, self.path.stem, written or "", self.path.parent)
+        written = self.package.text(SSD_FILE) if annotation is None else annotation.text
+        path = self.package.path
+        made = assemble(tables, instances, wires, path.stem, written or "", path.parent)
         made = replace(
-            made, package=self.path, package_sha256=self.sha256, notes=(*self.notes, *made.notes),
+            made, package=path, package_sha256=self.package.sha256, notes=(*self.notes, *made.notes),
             overrides=dict(overrides),
         )  # fmt: skip
-        for name, variable in changed:
-            check_free(made, name, variable)
+        check_free(made, changed)
         return made
 
     def _scene_of_ours(self) -> Element | None:
@@ -130,34 +96,42 @@ class _Package:
 
     # ---- instances
 
-    def _instance(self, name: str, found: _Found, stated: Any, ours: bool) -> Instance:
-        """An instance with its values; `stated` are units, `ours` tells whether we made the package."""
-        element = found.element
+    def _values(self, system: Element, found: Mapping[str, _Found], names: Names) -> dict[str, list[Given]]:
+        """The values of each instance in the order they are set: those of outer systems last."""
+        values = {name: list(bound(each.element, self.package.root)) for name, each in found.items()}
+        dotted = {".".join(path): name for path, name in names.items()}
+        most = max(name.count(".") for name in dotted) + 1
+        for path, element in reversed(list(_systems(system))):  # the outermost last: it prevails
+            for given in bound(element, self.package.root):
+                parts = (*path, *given.name.split(".", most))
+                heads = ((".".join(parts[:end]), end) for end in range(len(path) + 1, len(parts)))
+                name, end = next(((dotted[head], end) for head, end in heads if head in dotted), ("", 0))
+                if name:
+                    values[name].append(replace(given, name=".".join(parts[end:])))
+                else:
+                    self.notes.append(
+                        f"{'.'.join(parts)} of the package is ignored: there is no such component"
+                    )
+        return values
+
+    def _instance(
+        self, name: str, element: Element, stated: Any, values: Iterable[Given], ours: bool
+    ) -> Instance:
+        """An instance with its values; `stated` are units, `ours` says whether we made the package."""
         check_name(name)
-        source = said(element, "source")
+        source = required(element, "source")
         if element.get("type", FMU) != FMU:
-            raise LoomfmuError(f"{name}: {source} is no FMU but {element.get('type')}")
-        fmu = self._with_units(with_units(self._fmu(source), stated, name), element, name)
+            raise LoomfmuError(f"{name}: {shown(source)} is not an FMU but {shown(element.get('type'))}")
+        loaded = fmus.load(self.package.unpacked(source))
+        fmu = self._with_units(with_units(loaded, stated, name), element, name)
         if name == "shaft" and "angle" in fmu.ports:
             fmu = as_shaft(fmu)
         instance = Instance(name, fmu)
-        for depth, level in enumerate((element, *reversed(found.around))):
-            start = ".".join(found.path[len(found.path) - depth :]) + "." if depth else ""
-            for given in bound(level, self.read):
-                if given.name.startswith(start):
-                    own = replace(given, name=given.name.removeprefix(start))
-                    self.notes += [note for note in [apply(instance, own)] if note]
+        self.notes += filter(None, [apply(instance, given) for given in values])
         if fmu.ours and not ours:  # whatever was meant for another master: ours works in dependency order
             instance.values.pop("inputs_at_step_end", None)
         instance.settle()
         return instance
-
-    def _fmu(self, source: str) -> Fmu:
-        """An FMU of the package, put where it can be read from."""
-        name = self.member(source)
-        content, file = self.files[name], posixpath.basename(name)
-        key = hashlib.sha256(content).hexdigest()
-        return fmus.load(folder(PACKAGES, key, [file], lambda _: content) / file)
 
     def _with_units(self, fmu: Fmu, element: Element, name: str) -> Fmu:
         """The units that connectors state, where the FMU itself states none."""
@@ -165,7 +139,7 @@ class _Package:
         for connector in element.iterfind(f"{full('ssd:Connectors')}/{full('ssd:Connector')}"):
             real = connector.find(full("ssc:Real"))
             unit = real.get("unit", "") if real is not None else ""
-            port = ports.get(fmu.name_of(said(connector, "name")))
+            port = ports.get(fmu.name_of(required(connector, "name")))
             if unit and port is not None and port.kind == "Real":
                 where = f"{name}.{port.name}"
                 ports[port.name] = port.with_unit(unit, self.units.get(unit), where)
@@ -176,23 +150,24 @@ class _Package:
     def _foreign_tables(self) -> dict[str, Any]:
         """What a scene's text would say beside its instances."""
         experiment = self.root.find(full("ssd:DefaultExperiment"))
-        tables: dict[str, Any] = {"title": self.root.get("name") or self.path.stem}
+        tables: dict[str, Any] = {"title": self.root.get("name") or self.package.path.stem}
         if experiment is None:
             return tables
-        if float(experiment.get("startTime", "0")) != 0.0:
+        if real(experiment, "startTime", 0.0) != 0.0:
             raise LoomfmuError(f"it starts at {experiment.get('startTime')} s; runs start at 0 s")
         algorithm = _annotation(experiment, OSP, "osp:Algorithm")
         fixed = algorithm.find(full("osp:FixedStepAlgorithm")) if algorithm is not None else None
         if experiment.get("stopTime") is not None:
-            tables["duration"] = float(experiment.get("stopTime", "0"))
+            tables["duration"] = real(experiment, "stopTime", 0.0)
         if fixed is not None:
-            tables["step"] = float(said(fixed, "baseStepSize"))
+            required(fixed, "baseStepSize")
+            tables["step"] = real(fixed, "baseStepSize", 0.0)
         return tables
 
 
 def _our_tables(text: dict[str, Any], annotation: Element) -> dict[str, Any]:
     """What the text of our own scene says beside its instances, with the times that it was packed with."""
-    times = {key: float(annotation.attrib[key]) for key in TIMES if key in annotation.attrib}
+    times = {key: real(annotation, key, 0.0) for key in TIMES if key in annotation.attrib}
     return {key: text[key] for key in KEPT if key in text} | times
 
 
@@ -204,21 +179,31 @@ def _annotation(parent: Element, kind: str, content: str) -> Element | None:
     return None
 
 
-def _components(
-    system: Element, path: tuple[str, ...] = (), around: tuple[Element, ...] = ()
-) -> Iterator[_Found]:
-    """The components of a system and of the systems in it."""
-    around = (*around, system)
+def _systems(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Element]]:
+    """A system and the systems in it, each with the names that lead to it; the outer ones first."""
+    yield path, system
+    for element in system.iterfind(f"{full('ssd:Elements')}/{full('ssd:System')}"):
+        yield from _systems(element, (*path, required(element, "name")))
+
+
+def _components(system: Element, path: tuple[str, ...] = ()) -> Iterator[_Found]:
+    """The components of a system and of the systems in it. Raises LoomfmuError for what is neither."""
+    names: set[str] = set()
     for element in system.iterfind(f"{full('ssd:Elements')}/*"):
-        here = (*path, said(element, "name"))
+        name = required(element, "name")
+        here = (*path, name)
+        if name in names:
+            raise LoomfmuError(f"there are two elements called {shown('.'.join(here))}")
+        if len(path) > DEEPEST:
+            raise LoomfmuError(f"its systems are nested more than {DEEPEST} deep")
+        names.add(name)
         if element.tag == full("ssd:Component"):
-            yield _Found(here, element, around)
+            yield _Found(here, element)
         elif element.tag == full("ssd:System"):
-            yield from _components(element, here, around)
+            yield from _components(element, here)
         else:
-            raise LoomfmuError(
-                f"{here[-1]} is a {element.tag.rpartition('}')[2]}: only FMUs and systems are run"
-            )
+            kind = element.tag.rpartition("}")[2]
+            raise LoomfmuError(f"{name} is a {kind}: only FMUs and systems are supported")
 
 
 def _names(found: list[_Found]) -> dict[str, _Found]:
@@ -226,70 +211,6 @@ def _names(found: list[_Found]) -> dict[str, _Found]:
     if not found:
         raise LoomfmuError("the system has no components")
     return dict(zip(plain_names("_".join(each.path) for each in found), found, strict=True))
-
-
-# ---- wires
-
-Node = tuple[tuple[str, ...], str]  # an element, as the names that lead to it, and a connector of it
-
-
-def _wires(system: Element, instances: dict[str, Instance], names: dict[tuple[str, ...], str]) -> list[Wire]:
-    """The connections as wires from outputs to inputs, straight through the connectors of systems.
-
-    Start and end of a connection tell no direction: causalities do.
-    """
-    nets: dict[Node, list[Node]] = {}
-    order: list[Node] = []
-    for one, other in _connections(system):
-        joined = nets.setdefault(one, [one])
-        for node in nets.setdefault(other, [other]) if nets.get(other) is not joined else ():
-            joined.append(node)
-            nets[node] = joined
-        order += [one, other]
-    wires: dict[Wire, None] = {}
-    for node in dict.fromkeys(order):
-        if _causality(node, instances, names) == "input":
-            sources = [each for each in nets[node] if _causality(each, instances, names) == "output"]
-            sink = f"{names[node[0]]}.{node[1]}"
-            if len(sources) > 1:
-                raise LoomfmuError(f"{sink} is connected to {len(sources)} outputs")
-            if not sources:  # it leads to a connector of the whole system
-                continue
-            wires[wire(instances, sink, f"{names[sources[0][0]]}.{sources[0][1]}")] = None
-    return list(wires)
-
-
-def _causality(node: Node, instances: dict[str, Instance], names: dict[tuple[str, ...], str]) -> str:
-    """What a connector of a component is; nothing for one of a system."""
-    name = names.get(node[0])
-    if name is None:
-        return ""
-    fmu = instances[name].fmu
-    return fmu.port(fmu.name_of(node[1]), f"connection to {name}").causality
-
-
-def _connections(system: Element, path: tuple[str, ...] = ()) -> Iterator[tuple[Node, Node]]:
-    for connection in system.iterfind(f"{full('ssd:Connections')}/{full('ssd:Connection')}"):
-        ends: list[Node] = []
-        for end in ("start", "end"):
-            owner = connection.get(f"{end}Element")
-            here = path if owner is None else (*path, owner)
-            ends.append((here, said(connection, f"{end}Connector")))
-        _check_plain(connection, ends)
-        yield ends[0], ends[1]
-    for element in system.iterfind(f"{full('ssd:Elements')}/{full('ssd:System')}"):
-        yield from _connections(element, (*path, said(element, "name")))
-
-
-def _check_plain(connection: Element, ends: list[Node]) -> None:
-    """Refuse a connection that changes its value on the way."""
-    for child in connection:
-        linear = child.tag == full("ssc:LinearTransformation")
-        if linear and float(child.get("factor", "1")) == 1.0 and float(child.get("offset", "0")) == 0.0:
-            continue
-        if child.tag.endswith("Transformation"):
-            shown = " -> ".join(".".join((*path, connector)) for path, connector in ends)
-            raise LoomfmuError(f"connection {shown} transforms its value: that is not done")
 
 
 def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:

@@ -1,15 +1,15 @@
-"""The parameter values of a system package: sets, prefixes, mappings, units, and which of them prevails."""
+"""The parameter values of a system package: sets, prefixes, mappings and units."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
 from ... import units
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, shown
 from ..importing.fmus import Port
 from ..importing.ports import Definition, own_definition, own_name
 from ..scenes.instances import Instance
-from .xml import full, read_units, said
+from .xml import full, read_units, required
 
 Read = Callable[[str], Element]  # the root of an XML file in the package
 
@@ -46,8 +46,8 @@ def _values(parameters: Element) -> Iterator[Given]:
             kind = value.tag.rpartition("}")[2]
             if kind != "Annotations":
                 unit = value.get("unit", "")
-                text = said(value, "value")
-                yield Given(said(parameter, "name"), kind, text, unit, definitions.get(unit))
+                text = required(value, "value")
+                yield Given(required(parameter, "name"), kind, text, unit, definitions.get(unit))
 
 
 def _mapping(binding: Element, read: Read) -> dict[str, list[str]]:
@@ -61,24 +61,26 @@ def _mapping(binding: Element, read: Read) -> dict[str, list[str]]:
     for entry in mapping.iterfind(full("ssm:MappingEntry")) if mapping is not None else ():
         if any(child.tag.endswith("Transformation") for child in entry):
             raise LoomfmuError(
-                f"the mapping of {said(entry, 'source')} transforms its value: that is not done"
+                f"the mapping of {required(entry, 'source')} transforms its value;"
+                " transformations are not supported"
             )
-        targets.setdefault(said(entry, "source"), []).append(said(entry, "target"))
+        targets.setdefault(required(entry, "source"), []).append(required(entry, "target"))
     return targets
 
 
 def apply(instance: Instance, given: Given) -> str:
-    """Set a value of an instance, or say why it is left out, as the standard wants where names do not meet.
+    """Set a value of an instance, or return why it is ignored, as the standard has it for unknown names.
 
     Raises LoomfmuError for a value that the variable cannot have.
     """
     where = f"{instance.name}.{given.name}"
     port = instance.fmu.ports.get(instance.fmu.name_of(given.name))
     if port is None or given.kind in ("String", "Binary"):
-        known = "a text" if given.kind in ("String", "Binary") else f"no variable of {instance.fmu.name}"
-        return f"{where} of the package is {known}: it is left out"
+        text = given.kind in ("String", "Binary")
+        reason = "it is a text" if text else f"{instance.fmu.name} has no such variable"
+        return f"{where} of the package is ignored: {reason}"
     if port.causality not in ("parameter", "input"):
-        return f"{where} of the package is neither parameter nor input: it is left out"
+        return f"{where} of the package is ignored: it is neither a parameter nor an input"
     instance.values[port.name] = port.value(_value(port, given, where), where)
     return ""
 
@@ -86,13 +88,15 @@ def apply(instance: Instance, given: Given) -> str:
 def _value(port: Port, given: Given, where: str) -> float | bool | str:
     """A value in the unit of its variable."""
     if given.kind == "Boolean":
+        if given.text not in ("true", "false", "1", "0"):
+            raise LoomfmuError(f"{where} = {shown(given.text)} is neither true nor false")
         return given.text in ("true", "1")
     if given.kind in ("Enumeration", "Integer"):
         return given.text
     try:
         value = float(given.text)
     except ValueError:
-        raise LoomfmuError(f"{where} = {given.text!r} is not a number") from None
+        raise LoomfmuError(f"{where} = {shown(given.text)} is not a number") from None
     name = own_name(given.unit, given.definition) or given.unit
     if not given.unit or (port.has_unit and name == port.unit):
         return value
@@ -101,7 +105,7 @@ def _value(port: Port, given: Given, where: str) -> float | bool | str:
             return value
         hint = f"--set {where.partition('.')[0]}.units.{port.name}=..."
         raise LoomfmuError(
-            f"{where} = {given.text} {given.unit}, but the variable has no unit; say what it is: {hint}"
+            f"{where} = {given.text} {given.unit}, but the variable has no unit; state it: {hint}"
         )
     known = own_definition(name) if name in units.UNITS else None
     here, there = given.definition or known, port.definition

@@ -1,9 +1,10 @@
 """What the writer and the reader of system packages (SSP 1.0) share: names, and units as XML."""
 
+import math
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, shown
 from ...fmi.description.parameter_sets import SSC, SSV
 from ..importing.ports import BASES, Definition
 
@@ -63,18 +64,29 @@ def read_units(sections: Iterable[Element]) -> dict[str, Definition]:
         for unit in section.iterfind(full("ssc:Unit")):
             base = unit.find(full("ssc:BaseUnit"))
             if base is not None:
-                exponents = tuple(int(base.get(name, "0")) for name in BASES)
-                factor, offset = (float(base.get(key, default)) for key, default in _LINEAR)
-                found[unit.get("name", "")] = Definition(exponents, factor, offset)
+                exponents = tuple(int(real(base, name, 0.0)) for name in BASES)
+                found[unit.get("name", "")] = Definition(
+                    exponents, real(base, "factor", 1.0), real(base, "offset", 0.0)
+                )
     return found
 
 
-_LINEAR = (("factor", "1"), ("offset", "0"))
-
-
-def said(element: Element, attribute: str) -> str:
+def required(element: Element, attribute: str) -> str:
     """An attribute that has to be there. Raises LoomfmuError where it is not."""
     value = element.get(attribute)
     if value is None:
         raise LoomfmuError(f"{element.tag.rpartition('}')[2]} has no {attribute}")
+    return value
+
+
+def real(element: Element, attribute: str, default: float) -> float:
+    """A finite number as an attribute. Raises LoomfmuError for anything else."""
+    text = element.get(attribute)
+    try:
+        value = default if text is None else float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        tag = element.tag.rpartition("}")[2]
+        raise LoomfmuError(f"{tag} {attribute} = {shown(text)} is not a finite number")
     return value

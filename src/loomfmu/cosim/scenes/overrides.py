@@ -1,0 +1,70 @@
+"""Values that differ from a scene's: what each key of `--set` stands for."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from ... import machines
+from ...errors import LoomfmuError, shown, suggestion
+from .instances import TIMES, WHOLE, Instance, fmu_of
+from .standard_loom import members
+
+
+def override(
+    tables: dict[str, Any], given: dict[str, dict[str, Any]], key: str, value: Any, directory: Path
+) -> None:
+    """Change one value of a scene's tables."""
+
+    def component(name: str) -> str:
+        fmu = fmu_of(name, given[name], directory)
+        return fmu.name if fmu.ours else ""
+
+    for member, variable in overridden(given, key, component):
+        about = unit_of(variable)
+        if about:
+            stated = given[member].get("units", {})
+            value = {**stated, about: value} if isinstance(stated, dict) else stated
+            given[member] = given[member] | {"units": value}
+        elif member:
+            given[member] = given[member] | {variable: value}
+        else:
+            tables[variable] = value
+
+
+def unit_of(key: str) -> str:
+    """The variable whose unit a key such as `units.flange.w` states; an empty text for other keys."""
+    return key.removeprefix("units.") if key.startswith("units.") else ""
+
+
+def components(instances: dict[str, Instance]) -> Callable[[str], str]:
+    """A function that names the component of each instance; an empty text for a third-party FMU."""
+    return lambda name: instances[name].fmu.name if instances[name].fmu.ours else ""
+
+
+def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) -> list[tuple[str, str]]:
+    """What a key of `--set` or of a sweep stands for, as (instance, variable).
+
+    The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
+    instances that take something of it.
+    """
+    given = list(given)
+    instance, dot, variable = key.partition(".")
+    if instance == "loom" and "loom" not in given:
+        if variable not in machines.TAKERS:
+            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, machines.TAKERS)}")
+        key, dot = variable, ""
+    if key in machines.TAKERS:
+        takers = machines.TAKERS[key]
+        found = [name for name in given if component(name) in takers]
+        if not found:
+            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} that would take it")
+        return [(name, key) for name in found]
+    if not dot:
+        if key not in (*TIMES, *WHOLE):
+            known = [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in given)]
+            raise LoomfmuError(f"{shown(key)} cannot be set{suggestion(key, known)}")
+        return [("", key)]
+    found = [instance] if instance in given else members(instance, given)
+    if not found:
+        raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, given)}")
+    return [(member, variable) for member in found]
