@@ -313,11 +313,11 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "no instance name": (
         HEAD + '["my shaft"]\ncomponent = "MainShaft"\n',
-        "instance name 'my shaft' is not letters, digits and _, a letter first",
+        "instance name 'my shaft' must be letters, digits and _, with a letter first",
     ),
     "taken name": (
         HEAD + '[time]\ncomponent = "MainShaft"\n',
-        "instance name 'time' is taken: a trace has its own time",
+        "instance name 'time' is taken: every trace has a time of its own",
     ),
     "unknown component": (
         HEAD + '[mine]\ncomponent = "BeltMonito"\n',
@@ -326,7 +326,7 @@ CASES: dict[str, tuple[str, str]] = {
     "component no name": (HEAD + "[mine]\ncomponent = 5\n", "mine.component = 5 is not a name in quotes"),
     "no shaft": (
         HEAD + '[shaft]\ncomponent = "HealdFrame"\n',
-        "shaft.component = 'HealdFrame': the shaft of a scene is a MainShaft or a DrivenShaft",
+        "shaft.component = 'HealdFrame': the shaft of a scene must be a MainShaft or a DrivenShaft",
     ),
     "bad TOML": ("a = = 5", "not valid TOML: Invalid value (at line 1, column 5)"),
     "zero steps": (
@@ -349,7 +349,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "zero speed": (
         HEAD + "[shaft]\nspeed = 0\n",
-        "shaft.speed = 0 rev/min: the shaft's speed sets the step, it may not be 0",
+        "shaft.speed = 0 rev/min: the shaft's speed sets the step, so it must not be 0",
     ),
     "record no list": (
         "record = 'belt.margin'\n" + HEAD + LOOM,
@@ -478,7 +478,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "wires no table": (
         "wires = 5\n" + HEAD,
-        'wires is no table of "instance.input" = "instance.output"',
+        'wires must be a table of "instance.input" = "instance.output"',
     ),
     # claims
     "claims no tables": ("claims = 5\n" + HEAD, "claims are written as [[claims]] tables"),

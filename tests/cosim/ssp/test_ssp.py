@@ -326,7 +326,7 @@ def test_export_and_run_by_the_command(
 def test_what_others_cannot_set_is_told(demo: Path, tmp_path: Path) -> None:
     scene = scenes.load(DEMO, SHORT | {"dobby.law": "uniform"})
     assert ssp.export(scene, tmp_path / "law.ssp", "live") == [
-        "dobby.law is an enumeration: libcosim and ecos do not take the package, OMSimulator leaves it at its"
+        "dobby.law is an enumeration: libcosim and ecos reject the package, OMSimulator leaves it at its"
         " default"
     ]
     assert ssp.export(scenes.load(DEMO, SHORT), tmp_path / "law.ssp", "live") == []  # it is the default
@@ -381,7 +381,7 @@ def test_a_mistake_is_told_in_one_line(
 
 def test_a_package_is_not_packed_again(demo: Path, tmp_path: Path) -> None:
     result = run(demo, output=tmp_path / "x.h5")
-    with pytest.raises(LoomfmuError, match="is a system package already"):
+    with pytest.raises(LoomfmuError, match="is already a system package"):
         ssp.export(result.scene, tmp_path / "x.ssp", "live")
 
 

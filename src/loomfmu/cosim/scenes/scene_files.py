@@ -14,8 +14,8 @@ def files_of(scene: Scene) -> list[Path]:
     found = [path for path in (scene.file, scene.package) if path is not None]
     found += [instance.fmu.path for instance in scene.instances.values() if not instance.fmu.built]
     found += [scene.directory / name for name in scene.texts]
-    said = {} if scene.package is not None else toml(scene.text)
-    for text in _texts([said, scene.overrides]):
+    tables = {} if scene.package is not None else toml(scene.text)
+    for text in _texts([tables, scene.overrides]):
         with contextlib.suppress(OSError, ValueError):  # most texts cannot be a file's name
             if (scene.directory / text).is_file():
                 found.append(scene.directory / text)

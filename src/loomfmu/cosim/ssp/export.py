@@ -39,7 +39,7 @@ def export(
     platforms: tuple[str, ...] | None = None,
     overwrite: bool = False,
 ) -> list[str]:
-    """Write a scene as a system package; what other tools will do differently is returned.
+    """Write a scene as a system package, and return warnings about what other tools will do differently.
 
     `flavour` is "live" or "native", native by default if such FMUs can be built; `platforms` are those of
     native ones, all by default. The same scene gives the same bytes. `overwrite` replaces a file that is
@@ -49,7 +49,7 @@ def export(
         LoomfmuError: an FMU cannot be built, the scene is a package itself, or the file cannot be written
     """
     if scene.package is not None:
-        raise LoomfmuError(f"{scene.package} is a system package already")
+        raise LoomfmuError(f"{scene.package} is already a system package")
     inputs = files_of(scene)
     check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
     content = builder.zipped(contents(scene, flavour or default_flavour(), platforms))
@@ -66,9 +66,9 @@ def _driven(scene: Scene) -> list[str]:
 
 
 def _enumerated(scene: Scene) -> list[str]:
-    """Choices in the package that the masters of other tools do not set, since they know no enumerations."""
+    """Warnings about choices that other tools cannot set, since they do not support enumerations."""
     return [
-        f"{name}.{variable} is an enumeration: libcosim and ecos do not take the package, OMSimulator leaves"
+        f"{name}.{variable} is an enumeration: libcosim and ecos reject the package, OMSimulator leaves"
         " it at its default"
         for name, instance in scene.instances.items()
         for variable in _values(scene, instance)
@@ -119,9 +119,9 @@ def _place(files: Files, file: Path) -> str:
 def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
     """What is set at the start, an input driven along a table to its first value.
 
-    `inputs_at_step_end` tells of the master, not of the loom: other tools hand over values of the step's
-    start, which is what it says by default. So it is left out, unless the scene itself says so. A choice
-    is left out where it is the default: libcosim and ecos take no package in which one is set.
+    `inputs_at_step_end` is about the master, not the loom: other tools hand over values of the step's
+    start, which is its default. So it is left out unless the scene itself sets it. A choice is left out
+    where it is the default: libcosim and ecos reject a package in which one is set.
     """
     driven = {d.variable: d.values[0] for d in scene.drives if d.instance == instance.name}
     return {
@@ -247,7 +247,7 @@ def _connections(system: Element, scene: Scene, boxes: dict[str, Box]) -> None:
 
 
 def _master(system: Element, scene: Scene) -> None:
-    """What OMSimulator asks for before it takes a system: which of its masters steps it, and how far."""
+    """What OMSimulator requires of a system: which of its masters steps it, and how far."""
     (annotation,) = _annotations(system, OMS)
     information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
     SubElement(
@@ -261,8 +261,8 @@ def _experiment(document: Element, scene: Scene) -> None:
     experiment = SubElement(
         document, "ssd:DefaultExperiment", startTime="0.0", stopTime=_plain(scene.steps * scene.step_size)
     )
-    theirs, ours = _annotations(experiment, OSP, OURS)
-    algorithm = SubElement(theirs, "osp:Algorithm")
+    step, ours = _annotations(experiment, OSP, OURS)
+    algorithm = SubElement(step, "osp:Algorithm")
     SubElement(algorithm, "osp:FixedStepAlgorithm", baseStepSize=repr(_whole_nanoseconds(scene.step_size)))
     if scene.step is None:
         times = {
