@@ -60,7 +60,7 @@ HOSTILE = {
     "name": (f'{LOOM}[motor]\nfmu = "a\\u0000b"\n', "motor.fmu contains the control character U+0000"),
     "healds": (
         f'{LOOM}[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "18 mm"\nhealds = 5\n',
-        "claim 'rapier_in_open_shed': healds = 5 is not a list such as [\"heald_1\"]",
+        "claim 'rapier_in_open_shed': healds = 5 must be a list of names, such as [\"heald_1\"]",
     ),
 }  # fmt: skip
 
