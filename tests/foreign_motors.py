@@ -158,9 +158,9 @@ def motor2(
     return packed(directory / f"{name}.fmu", description2(name, **options), binary, "Motor")  # type: ignore[arg-type]
 
 
-def misbehaving(directory: Path, what: str, where: str = "STEP") -> Path:
+def misbehaving(directory: Path, what: str, where: str = "STEP", returned: int = 0) -> Path:
     """The motor as an FMI 2.0 FMU that crashes, hangs, ... as `misbehaves.c` says; in mode 2 it does not."""
-    macros = [f"-DMISBEHAVES={what}", f"-DWHERE={where}"]
+    macros = [f"-DMISBEHAVES={what}", f"-DWHERE={where}", f"-DRETURNED={returned}"]
     binary = library("misbehaves.c", directory / "Motor.so", *macros)
     return packed(directory / "Motor.fmu", description2(), binary, "Motor")
 

@@ -16,9 +16,12 @@
 #undef fmi2EnterInitializationMode
 #undef fmi2DoStep
 
-enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG };
+enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS };
 enum { STEP, INITIALIZATION, TERMINATE, FREE };
 
+#ifndef RETURNED
+#define RETURNED 0
+#endif
 #ifndef AT
 #define AT 0.05
 #endif
@@ -67,7 +70,10 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real h, fmi2Boolean keep)
 {
-    if (WHERE == STEP && time > AT - 1e-9 && ((Instance *)c)->motor.mode == 1) misbehave(c);
+    if (WHERE == STEP && time > AT - 1e-9 && ((Instance *)c)->motor.mode == 1) {
+        if (MISBEHAVES == STATUS) return (fmi2Status)RETURNED;
+        misbehave(c);
+    }
     return motor_DoStep(c, time, h, keep);
 }
 

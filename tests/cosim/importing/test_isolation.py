@@ -255,3 +255,12 @@ def test_a_changed_working_directory_is_changed_back(
     misbehaving(tmp_path, "MOVE", where)
     result = ran(tmp_path, IN_THIS_PROCESS, Path())
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
+
+
+@pytest.mark.parametrize("isolated", [True, False])
+@pytest.mark.parametrize("status", [-1, 6, 2**31 - 1, -(2**31)])
+def test_a_status_that_fmi_does_not_know_is_a_failure(tmp_path: Path, status: int, isolated: bool) -> None:
+    misbehaving(tmp_path, "STATUS", returned=status)
+    (tmp_path / "x.toml").write_text(MOTOR)
+    with pytest.raises(LoomfmuError, match=rf"motor at 0\.05 s: fmi2DoStep returned status {status}: "):
+        loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})

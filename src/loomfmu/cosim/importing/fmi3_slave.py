@@ -15,7 +15,7 @@ from fmpy.fmi3 import FMU3Slave
 from ...errors import LoomfmuError
 from .foreign_slave import MOST_MESSAGES
 from .ports import CARRIED, RANGES, Value
-from .slave import DISCARD, FATAL, REFUSED, WARNING, Call, Slave
+from .slave import DISCARD, FATAL, OK, REFUSED, WARNING, Call, Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu
@@ -38,12 +38,13 @@ def _in_vector(base_type: str) -> Any:
 
 
 def _one_by_one(calls: list[Call]) -> int:
-    """Make some calls, up to the first that is refused; the worst status."""
-    worst = 0
+    """Make some calls, up to the first that fails; its status, or the worst one."""
+    worst = OK
     for call in calls:
-        worst = max(worst, call.function(*call.arguments))
-        if worst > WARNING:
-            break
+        status = int(call.function(*call.arguments))
+        if not OK <= status <= WARNING:
+            return status
+        worst = max(worst, status)
     return worst
 
 
@@ -133,7 +134,11 @@ class Fmi3Slave(Slave):
             if action == "Set" and not self._moved(values, between, references, base_type):
                 return REFUSED
             status = int(function(*arguments))
-            if action == "Get" and status <= WARNING and not self._moved(between, values, references, ""):
+            if (
+                action == "Get"
+                and OK <= status <= WARNING
+                and not self._moved(between, values, references, "")
+            ):
                 return REFUSED
             return status
 
@@ -172,7 +177,7 @@ class Fmi3Slave(Slave):
                 self._reached = reached.value
             elif early.value:
                 self.messages.append((DISCARD, "it returned early, which was not allowed"))
-            return max(status, DISCARD) if terminate.value or early.value else status
+            return DISCARD if status in (OK, WARNING) and (terminate.value or early.value) else status
 
         arguments = (self._component, time, step_size, ctypes.c_bool(True), *told)
         return Call(stepped, arguments, "fmi3DoStep", plain=False)

@@ -15,7 +15,7 @@ from ...errors import LoomfmuError
 from .messages import CALLS, DONE, PLACE, SIZE, TIME, VALUES, Answer
 from .ports import Value
 from .process import START, Died, Limits, Process
-from .slave import ERROR, SIZES, WARNING, Call, Slave
+from .slave import ERROR, OK, SIZES, WARNING, Call, Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu
@@ -58,7 +58,7 @@ class IsolatedSlave(Slave):
 
     def _ask(self, method: str, *arguments: Any, limits: Limits | None = None) -> Any:
         """Have a method performed by the process. Raises LoomfmuError for what it raises there."""
-        if self._pending and (status := self._make([])) > WARNING:
+        if self._pending and not OK <= (status := self._make([])) <= WARNING:
             raise self.failed(status, self._failed, 0.0)
         action = ACTIONS.get(method, method)
         try:

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from .fmus import Fmu
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
-WARNING, DISCARD, ERROR, FATAL = 1, 2, 3, 4
-REFUSED = 5  # not a status of FMI: a value was not handed over, since it would have become another one
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
+REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
@@ -188,7 +188,7 @@ class Slave:
     def save(self) -> None:
         """Keep the state as it is for `restore`. Raises LoomfmuError where the FMU cannot."""
         state = ctypes.c_void_p(self._saved)
-        if self._state_function("Get")(self._component, ctypes.byref(state)) > WARNING:
+        if self._state_function("Get")(self._component, ctypes.byref(state)) not in (OK, WARNING):
             raise LoomfmuError(
                 f"{self.name}: it cannot save its state, which an iterated loop requires: {self._reason()}"
             )
@@ -196,7 +196,7 @@ class Slave:
 
     def restore(self) -> None:
         """Go back to the state that was kept last."""
-        if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) > WARNING:
+        if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) not in (OK, WARNING):
             raise LoomfmuError(f"{self.name}: it cannot restore a state that it saved: {self._reason()}")
 
     def forget(self) -> None:

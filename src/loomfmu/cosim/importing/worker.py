@@ -17,7 +17,7 @@ from typing import Any
 from ...errors import LoomfmuError
 from .messages import CALLS, DONE, PART, PLACE, SIZE, TIME, Answer, complete, framed, write
 from .pool import opened
-from .slave import WARNING, Call, Slave
+from .slave import OK, WARNING, Call, Slave
 
 Prepared = list[tuple[int, Callable[..., int], tuple[Any, ...]]]
 
@@ -73,7 +73,7 @@ class Worker:
             ]
         for place, function, arguments in self._batches[numbers]:
             self._place.value = place
-            if (status := function(*arguments)) > WARNING:
+            if not OK <= (status := function(*arguments)) <= WARNING:
                 return place, status
         return None
 

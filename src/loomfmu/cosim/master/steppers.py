@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...errors import LoomfmuError
 from ...fmi.cache_entries import STEPPER, made_file
 from ...fmi.native import builder as native_builder
-from ..importing.slave import WARNING, Call, Ended, Slave
+from ..importing.slave import OK, WARNING, Call, Ended, Slave
 from .grid import Span
 
 Floats = NDArray[np.float64]
@@ -60,7 +60,7 @@ class Stepper(Protocol):
 def perform(actions: Iterable[Action], time: float) -> None:
     """Make some calls. Raises LoomfmuError for the first that an FMU refuses."""
     for action in actions:
-        if (status := action.call.function(*action.call.arguments)) > WARNING:
+        if not OK <= (status := action.call.function(*action.call.arguments)) <= WARNING:
             raise action.slave.failed(status, action.call.name, time)
 
 
@@ -74,7 +74,7 @@ def take(actions: Iterable[Action], time: float, end: float, status: int | None 
     for action in actions:
         found = action.call.function(*action.call.arguments) if status is None else status
         status = None
-        if found > WARNING:
+        if not OK <= found <= WARNING:
             failure = action.slave.failed(found, action.call.name, time)
             if not _at_end(failure, time, end):
                 raise failure
@@ -141,7 +141,7 @@ class PythonStepper:
             time.value, size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
             for place, (function, arguments) in enumerate(self._calls):
-                if (status := function(*arguments)) > WARNING:
+                if not OK <= (status := function(*arguments)) <= WARNING:
                     return stopped(self._actions[place:], status, span, step, memory, reals, integers)
             reals[step] = memory.reals
             integers[step] = memory.integers

@@ -11,7 +11,7 @@
 #endif
 
 enum { REALS, INTEGERS, STEP }; /* what a call moves; a step moves time */
-enum { WARNING = 1 };           /* the worst status with which a run goes on */
+enum { OK = 0, WARNING = 1 };   /* the statuses with which a run goes on */
 
 typedef int (*real_function)(void *, const unsigned *, size_t, double *);
 typedef int (*integer_function)(void *, const unsigned *, size_t, int32_t *);
@@ -73,7 +73,7 @@ EXPORT int64_t advance(const struct plan *plan, int64_t steps, const double *sta
             plan->integers[plan->driven_integers[place]] = *driven_integers++;
         for (size_t place = 0; place < plan->call_count; place++) {
             int status = perform(&plan->calls[place], starts[step], sizes[step]);
-            if (status > WARNING) {
+            if (status < OK || status > WARNING) {
                 outcome->call = (int64_t)place;
                 outcome->status = status;
                 return step;
