@@ -69,10 +69,10 @@ def run(
             if master.interrupted.value:
                 raise Interrupted
         # while the instances are still there: one that crashes when it is freed takes nothing with it
-        verdicts = _finish(scene, writer, path, ended_text(master.ended))
+        verdicts, trace = _finish(scene, writer, path, ended_text(master.ended))
         warnings = (*scene.notes, *master.warnings())
     return Result(
-        scene, verdicts, warnings, explained(plan), master.steps, path, Trace(path),
+        scene, verdicts, warnings, explained(plan), master.steps, path, trace,
         ended=ended_text(master.ended),
     )  # fmt: skip
 
@@ -179,19 +179,18 @@ def _kept(writer: TraceWriter, path: Path) -> Iterator[None]:
         raise
 
 
-def _finish(scene: Scene, writer: TraceWriter, path: Path, ended: str) -> tuple[Verdict, ...]:
-    """Seal the trace, judge it, store the verdicts and give it its final name."""
+def _finish(scene: Scene, writer: TraceWriter, path: Path, ended: str) -> tuple[tuple[Verdict, ...], Trace]:
+    """Judge the trace, store the verdicts with it and give it its final name."""
     try:
-        writer.seal("complete", ended)
+        writer.seal()
         with Trace(writer.partial) as trace:
             verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
-        writer.complete([verdict.as_dict() for verdict in verdicts])
+        return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], ended)
     except OSError as error:
         raise cannot_write(path, error) from None
     except LoomfmuError as error:
-        kept = path.with_name(writer.partial.name)
+        kept = path.with_name(writer.abandon("unjudged").name)
         raise LoomfmuError(f"{error}; the trace is kept in {kept}") from None
-    return verdicts
 
 
 def _target(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
@@ -209,7 +208,7 @@ def _target(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     if report and size > LARGE_TRACE:
         print(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less", file=sys.stderr)
     try:
-        check_room(partial_of(path), size)
+        check_room(path, size)
         return path.absolute()
     except OSError as error:
         raise cannot_write(path, error) from None

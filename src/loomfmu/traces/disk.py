@@ -15,9 +15,8 @@ def check_room(path: Path, size: int) -> None:
     """Raise OSError where a new file of that size under this name would not find the space."""
     there = next(folder for folder in path.absolute().parents if folder.exists())
     disk = shutil.disk_usage(there)
-    free = disk.free + (path.stat().st_size if path.exists() else 0)
-    if size > free and disk.total:  # what has no size, such as /proc, cannot tell
-        need, have = size_text(size), size_text(free)
+    if size > disk.free and disk.total:  # what has no size, such as /proc, cannot tell
+        need, have = size_text(size), size_text(disk.free)
         raise OSError(errno.ENOSPC, f"it takes up to {need}, and the disk has {have} free")
 
 

@@ -43,6 +43,9 @@ def replace(new: Path, path: Path) -> None:
         place.path = aside
         weakref.finalize(place, _remove, aside, os.getpid())
     new.replace(path)
+    if (moved := _places.pop(os.path.realpath(new), None)) is not None:
+        moved.path = path
+        _places[os.path.realpath(path)] = moved
 
 
 def _remove(path: Path, owner: int) -> None:

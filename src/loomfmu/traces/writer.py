@@ -1,11 +1,13 @@
 """Traces in HDF5, written block by block while a run goes on.
 
-One group for each instance, one dataset for each variable, all along `/time`. The file bears its final
-name only once it is complete; until then every block written can be read, even after a kill.
+One group for each instance, one dataset for each variable, all along `/time`. The file has its final name only
+once it is complete. Until then it has a name of its own, so that runs with one output do not meet, and every block
+written can be read, even after a kill.
 """
 
 import contextlib
 import json
+import secrets
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -16,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
-from .chunks import LEVEL, ROWS, packed
+from .chunks import LEVEL, ROWS, Columns
 from .disk import reserve, superblock, take
 from .places import replace
+from .reader import Trace
 from .signals import Channel, Floats, Integers
 
 SOFTWARE = f"loomfmu {version('loomfmu')}"
@@ -27,9 +30,9 @@ PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
 
 
-def partial_of(path: Path) -> Path:
-    """What the file of a trace is called until it is complete."""
-    return path.with_name(path.name + ".partial")
+def partial_of(path: Path, mark: str = "") -> Path:
+    """What is called so until its trace is complete: with a mark while a run writes, without one when it has failed."""
+    return path.with_name(f"{path.name}{mark and '.'}{mark}.partial")
 
 
 class TraceWriter:
@@ -43,7 +46,7 @@ class TraceWriter:
         groups: Mapping[str, Mapping[str, Any]],
     ):
         self.path = path
-        self.partial = partial_of(path)
+        self.partial = partial_of(path, secrets.token_hex(4))
         self.channels = channels
         self.rows = 0
         self.partial.parent.mkdir(parents=True, exist_ok=True)
@@ -52,7 +55,7 @@ class TraceWriter:
         header = SPARE + texts + PER_DATASET * (len(channels) + 2)
         self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:
-            take(self.partial, "wb", header)
+            take(self.partial, "xb", header)
         except OSError:
             self.partial.unlink(missing_ok=True)
             raise
@@ -71,21 +74,24 @@ class TraceWriter:
             self._angle.dims[0].attach_scale(self._time)
             self._angle.attrs["DISPLAY_UNIT"] = "deg"
             datasets = [self._channel(channel) for channel in channels]
-            self._reals, self._real_columns = self._chosen(datasets, real=True)
-            self._integers, self._integer_columns = self._chosen(datasets, real=False)
+            self._shared = Columns([self._time, self._angle], "f8")
+            self._reals, self._real_columns = self._chosen(datasets, "f8", real=True)
+            self._integers, self._integer_columns = self._chosen(datasets, "i4", real=False)
             for instance, values in groups.items():
                 self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
         except BaseException:
             self._file.close()
+            self.partial.unlink(missing_ok=True)
             raise
+        self._begun = self.partial.stat().st_mtime_ns
 
-    def _chosen(self, datasets: Sequence[Any], real: bool) -> tuple[list[Any], list[int]]:
+    def _chosen(self, datasets: Sequence[Any], kind: str, real: bool) -> tuple[Columns, list[int]]:
         """The datasets of one kind of channels, and the columns that go into them."""
         pairs = [
             (each, of.column) for each, of in zip(datasets, self.channels, strict=True) if of.real == real
         ]
-        return [dataset for dataset, _ in pairs], [column for _, column in pairs]
+        return Columns([dataset for dataset, _ in pairs], kind), [column for _, column in pairs]
 
     def _dataset(self, name: str, kind: str, unit: str, long_name: str, comment: str) -> Any:
         dataset = self._file.create_dataset(
@@ -127,49 +133,47 @@ class TraceWriter:
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Write a block: values along the rows, signals along the columns."""
         reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
-        start, self.rows = self.rows, self.rows + len(time)
-        shared = np.stack([time, angle])
-        self._extend([self._time, self._angle], shared, start)
-        for datasets, columns, values in (
-            (self._reals, self._real_columns, reals),
-            (self._integers, self._integer_columns, integers),
-        ):
-            self._extend(datasets, np.ascontiguousarray(values.T[columns]), start)
+        self.rows += len(time)
+        self._shared.append(np.stack([time, angle]))
+        self._reals.append(np.ascontiguousarray(reals.T[self._real_columns]))
+        self._integers.append(np.ascontiguousarray(integers.T[self._integer_columns]))
         self._file.flush()
 
-    def _extend(self, datasets: Sequence[Any], columns: NDArray[Any], start: int) -> None:
-        """Add values, a row for each dataset, from a sample on."""
-        end = start + columns.shape[1]
-        if start % ROWS or end - start > ROWS:  # they begin or end within a chunk: HDF5 knows how
-            for dataset, values in zip(datasets, columns, strict=True):
-                dataset.resize((end,))
-                dataset[start:] = values
-            return
-        for dataset, chunk in zip(datasets, packed(columns), strict=True):
-            dataset.id.set_extent((end,))
-            dataset.id.write_direct_chunk((start,), chunk)
-
-    def seal(self, status: str, ended_by: str = "") -> None:
-        """Close the file under its provisional name, marked with its status, and with who ended the run."""
+    def seal(self) -> None:
+        """Close the file under its provisional name: any reader can open it now."""
         self._file.close()
-        if ended_by:
-            self._annotate("ended_by", ended_by)
-        self._annotate("status", status)
 
-    def complete(self, verdicts: Sequence[dict[str, Any]]) -> Path:
-        """Give the sealed file its verdicts and its final name."""
-        self._annotate("claims", json.dumps(verdicts))
+    def complete(self, verdicts: Sequence[dict[str, Any]], ended_by: str = "") -> Trace:
+        """Give the file its verdicts, who ended the run before its time, and the final name; the trace that it is.
+
+        Another run may give its own file that name at any time: each is there whole, the last one stays.
+        """
+        self.seal()
+        ended = {"ended_by": ended_by} if ended_by else {}
+        self._annotate({"claims": json.dumps(verdicts), **ended, "status": "complete"})
+        trace = Trace(self.partial)
         replace(self.partial, self.path)
-        return self.path
+        trace.name = self.path.name
+        kept = partial_of(self.path)  # what an earlier run left when it failed
+        with contextlib.suppress(OSError):
+            if kept.stat().st_mtime_ns < self._begun:
+                kept.unlink()
+        return trace
 
-    def _annotate(self, name: str, text: str) -> None:
-        """Write an attribute of the closed file."""
-        take(self.partial, "r+b", superblock(self.partial)[1] + len(text.encode()) + SPARE)
+    def _annotate(self, attributes: Mapping[str, str]) -> None:
+        """Write attributes of the closed file."""
+        texts = sum(len(text.encode()) for text in attributes.values())
+        take(self.partial, "r+b", superblock(self.partial)[1] + texts + SPARE)
         with h5py.File(self.partial, "r+") as file:
-            file.attrs[name] = text
+            file.attrs.update(attributes)
 
     def abandon(self, status: str) -> Path:
-        """Close what was written so far, marked incomplete; its path."""
+        """Close what was written so far, marked with its status, and keep it; its path.
+
+        It takes the place of what an earlier run left.
+        """
         with contextlib.suppress(OSError):  # a full disk: what was flushed can still be read
-            self.seal(status)
+            self.seal()
+            self._annotate({"status": status})
+            self.partial = self.partial.replace(partial_of(self.path))
         return self.partial

@@ -75,7 +75,6 @@ def drawn(
     reals = np.stack([value(time), rate(time) if rate else time, *turning], axis=1)
     writer = TraceWriter(directory / "drawn.h5", {"title": "drawn", "software": "test"}, channels, {})
     writer.append(time, angle(time), reals, np.zeros((len(time), 1), dtype="i4"))
-    writer.seal("complete")
     writer.complete([])
     return Trace(directory / "drawn.h5")
 

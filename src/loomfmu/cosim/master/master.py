@@ -30,6 +30,7 @@ from .start import Start
 from .steppers import Action, Memory, Stepper, stepper
 
 PATIENCE = 0.05  # s between looks for Ctrl-C
+HOLD = 0.5  # s that samples wait at most before they are handed over, if steps are not longer
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -153,7 +154,9 @@ class Master:
     # ---- stepping
 
     def run(self, rows: int, write: Block, progress: Callable[[int], None]) -> None:
-        """Step to the end of the run, or until an FMU ends it; hand over every `rows` samples.
+        """Step to the end of the run, or until an FMU ends it.
+
+        Samples are handed over when there are `rows` of them, or after half a second those that there are.
 
         Raises:
             LoomfmuError: an FMU failed, or gave a value that is not finite, or a loop is unstable
@@ -163,14 +166,17 @@ class Master:
         reals = np.empty((rows, len(self._signals.reals)))
         integers = np.empty((rows, len(self._signals.integers)), dtype=np.int32)
         times[0], reals[0], integers[0] = 0.0, self._signals.reals, self._signals.integers
-        filled, step, part = 1, 0, 1
+        handed, filled, step, part = 0, 1, 0, 1
+        due = perf_counter() + HOLD
         failure: LoomfmuError | None = None
         try:
             while step < self.grid.steps and not failure:
-                if filled == rows:
-                    filled = 0  # first: what is handed over and found bad is not handed over again
-                    self._hand_over(times, reals, integers, write)
+                if filled == rows or perf_counter() > due:
+                    block = slice(handed, filled)
+                    handed = filled = filled % rows  # first: what is found bad is not handed over again
+                    self._hand_over(times[block], reals[block], integers[block], write)
                     progress(step)
+                    due = perf_counter() + HOLD
                 span = self.grid.span(step, min(rows - filled, self.grid.steps - step, part))
                 before = perf_counter()
                 taken, failure = self._advance(span, reals[filled:], integers[filled:])
@@ -182,8 +188,9 @@ class Master:
                 if self.interrupted.value:
                     raise Interrupted
         finally:
-            if filled:
-                self._hand_over(times[:filled], reals[:filled], integers[:filled], write)
+            if filled > handed:
+                block = slice(handed, filled)
+                self._hand_over(times[block], reals[block], integers[block], write)
         self.steps = step
         if isinstance(failure, Ended):
             self.ended = failure if step < self.grid.steps else None

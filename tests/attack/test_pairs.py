@@ -1,0 +1,52 @@
+"""Two runs at a time with one output: each is there whole, and the last one to finish stays."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from live_fmus import fmu_cache
+
+from attack.running import started
+from loomfmu import Trace
+
+__all__ = ["fmu_cache"]
+
+SCENE = 'steps_per_revolution = 1440\nrecord = ["belt.margin"]\n[loom]\nmachine = "WL680-3600"\n'
+SPEEDS = (500.0, 650.0)
+
+
+def pair(directory: Path, revolutions: int) -> None:
+    """Run two, and look at what both have left."""
+    (directory / "scene.toml").write_text(f"revolutions = {revolutions}\n{SCENE}")
+    running = [
+        started(directory, "run", "scene.toml", "--native", "--set", f"shaft.speed={speed} rpm")
+        for speed in SPEEDS
+    ]
+    for each in running:
+        printed, errors = each.communicate(timeout=300)
+        assert (each.returncode, errors) == (0, ""), errors
+        assert "trace: results/scene.h5" in printed
+    assert os.listdir(directory / "results") == ["scene.h5"]
+    with Trace(directory / "results" / "scene.h5") as trace:
+        assert trace.status == "complete"
+        assert trace.rows == 1440 * revolutions + 1
+        speed = trace.parameter("shaft.speed") * 30.0 / np.pi
+        assert min(abs(speed - each) for each in SPEEDS) < 1e-9  # rounding of the conversion
+        # all of it is of that run: the time of a revolution, and as many
+        np.testing.assert_allclose(trace.time[-1], 60.0 / speed * revolutions, rtol=1e-12)
+        assert np.all(np.isfinite(trace["belt.margin"]))
+
+
+def test_short_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
+    for _ in range(4):
+        pair(tmp_path, 1)
+    print("pairs: 4 tried, 4 whole")
+
+
+@pytest.mark.slow
+def test_many_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
+    for count, revolutions in ((24, 1), (3, 2000)):
+        for _ in range(count):
+            pair(tmp_path, revolutions)
+        print(f"pairs of {revolutions} revolutions: {count} tried, {count} whole")
