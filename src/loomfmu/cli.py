@@ -1,6 +1,7 @@
-"""The command `loomfmu`.
+"""The command `loomfmu`: Build FMUs of loom mechanisms, co-simulate scenes and sweeps, judge their claims.
 
-Exit status: 0 all claims hold; 1 a claim failed; 2 bad input or a failed FMU; 130 interrupted.
+Exit status: 0 all claims hold; 1 a claim fails; 2 bad input, a failed FMU or a fault of loomfmu;
+130 interrupted.
 """
 
 import argparse
@@ -12,13 +13,16 @@ import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from . import printed, units
 from .errors import LoomfmuError
+from .printed import complain, say
 
 if TYPE_CHECKING:
-    from .traces import Verdict
+    from .traces import Trace, Verdict
+
+ABOUT, STATUSES = (__doc__ or "").strip().split("\n\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -28,80 +32,78 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status = int(options.command(options))
         sys.stdout.flush()
         return status
-    except LoomfmuError as error:
-        print(f"loomfmu: {error}", file=sys.stderr)
-        return 2
     except BrokenPipeError:  # the reader of our output has gone, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        print(f"loomfmu: {where}{error.strerror or error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt as error:
-        print(f"loomfmu: {str(error) or 'interrupted'}", file=sys.stderr)
-        return 130
+    except (Exception, KeyboardInterrupt) as error:
+        if options.debug:
+            printed.complain_of(error)
+        complain(f"loomfmu: {_reason(error)}")
+        return 130 if isinstance(error, KeyboardInterrupt) else 2
+
+
+def _reason(error: BaseException) -> str:
+    """What went wrong, in one line."""
+    if isinstance(error, LoomfmuError):
+        return str(error)
+    if isinstance(error, OSError):
+        return (f"{error.filename}: " if error.filename else "") + (error.strerror or str(error))
+    if isinstance(error, KeyboardInterrupt):
+        return str(error) or "interrupted"
+    if isinstance(error, MemoryError):
+        return "out of memory"
+    what = f"{type(error).__name__}: {error}".removesuffix(": ")
+    return f"{what} (a fault of loomfmu; please report it to its maintainers with what --debug prints)"
+
+
+class _Parser(argparse.ArgumentParser):
+    """Every command takes `--debug`; what it refuses is printed as everything else is."""
+
+    def __init__(self, **named: Any) -> None:
+        super().__init__(**named)
+        # suppressed: else a command would take back what stands before it
+        self.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show tracebacks")
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        complain(f"{self.prog}: error: {message}")
+        sys.exit(2)
 
 
 class _Version(argparse.Action):
-    """Reads the version only when it is asked for: that takes longer than parsing the command."""
+    """Reads the version only when it is wanted: that takes longer than parsing the command."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from importlib.metadata import version
 
-        print(f"loomfmu {version('loomfmu')}")
+        say(f"loomfmu {version('loomfmu')}")
         parser.exit()
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="loomfmu", description=(__doc__ or "").split("\n\n")[1].strip())
+    parser = _Parser(prog="loomfmu", description=ABOUT.partition(": ")[2], epilog=STATUSES)
+    parser.set_defaults(debug=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-
-    run = commands.add_parser("run", help="co-simulate a scene, record it and judge its claims")
-    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
-    _add_set(run)
-    run.add_argument("--output", metavar="FILE.h5", help="the trace; results/SCENE.h5 by default")
-    run.add_argument("--native", action="store_true", help="with native FMUs instead of live ones")
-    run.add_argument(
-        "--explain", action="store_true", help="tell what was left out, and why, and what that saved"
-    )
-    _add_force(run, "FILE.h5, if it is not a trace")
-    run.set_defaults(command=_run)
+    _add_run(commands)
     _add_export(commands)
     _add_sweep(commands)
+    _add_build(commands)
 
-    build = commands.add_parser("build", help="build FMUs")
-    build.add_argument(
-        "names", nargs="*", metavar="NAME", help="an FMU, or FILE.py[:CLASS] of your own; all FMUs by default"
-    )
-    build.add_argument(
-        "--output",
-        type=Path,
-        metavar="DIR",
-        help="build/fmus by default; native: build/native or build/native_fmi3",
-    )
-    build.add_argument("--native", action="store_true", help="native FMUs, in C, without Python")
-    build.add_argument(
-        "--platform", metavar="NAME[,NAME]", help="of a native FMU: linux64,win64,darwin64; all by default"
-    )
-    build.add_argument(
-        "--fmi", type=int, choices=(2, 3), default=2, help="standard of a native FMU; 2 by default"
-    )
-    _add_force(build, "FMUs of other makers in DIR")
-    build.set_defaults(command=_build)
-
-    listing = commands.add_parser("list", help="list what there is, or describe one FMU or machine")
+    listing = commands.add_parser("list", help="list FMUs, machines and example scenes, or describe one")
     listing.add_argument(
         "name", nargs="?", metavar="NAME", help="an FMU, FILE.py[:CLASS], a machine or a rapier head"
     )
     listing.set_defaults(command=_list)
 
-    init = commands.add_parser(
-        "init", help="write an example scene and a sweep of it into DIR, here by default"
-    )
+    init = commands.add_parser("init", help="write an example scene and a sweep of it")
     init.add_argument(
-        "directory", nargs="?", type=Path, default=Path(), metavar="DIR", help="here by default"
+        "directory",
+        nargs="?",
+        type=Path,
+        default=Path(),
+        metavar="DIR",
+        help="the current directory by default",
     )
     init.add_argument("--all", action="store_true", help="write every example scene")
     init.set_defaults(command=_init)
@@ -121,17 +123,53 @@ def _parser() -> argparse.ArgumentParser:
     cache.add_argument("--clear", action="store_true", help="delete them; they are built again when needed")
     cache.set_defaults(command=_cache)
 
-    validate = commands.add_parser("validate", help="compare all that is published with what is computed")
+    validate = commands.add_parser("validate", help="compare published results with computed ones")
     validate.add_argument("--output", type=Path, default=Path("results"), metavar="DIR")
-    _add_force(validate, "files in DIR that are neither such a report nor pictures")
+    _add_force(validate, "files in DIR that are not such a report or its pictures")
     validate.set_defaults(command=_validate)
     return parser
+
+
+def _add_run(commands: Any) -> None:
+    run = commands.add_parser("run", help="co-simulate a scene, record it and judge its claims")
+    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_set(run)
+    run.add_argument("--output", metavar="FILE.h5", help="the trace; results/SCENE.h5 by default")
+    run.add_argument("--native", action="store_true", help="use native FMUs instead of live ones")
+    run.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
+    _add_force(run, "FILE.h5 even if it is not a trace")
+    run.set_defaults(command=_run)
+
+
+def _add_build(commands: Any) -> None:
+    build = commands.add_parser("build", help="build FMUs")
+    build.add_argument(
+        "names", nargs="*", metavar="NAME", help="an FMU, or FILE.py[:CLASS] of your own; all FMUs by default"
+    )
+    build.add_argument(
+        "--output", type=Path, metavar="DIR",
+        help="build/fmus by default; build/native or build/native_fmi3 for native FMUs",
+    )  # fmt: skip
+    build.add_argument("--native", action="store_true", help="build native FMUs: in C, without Python")
+    _add_platform(build)
+    build.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="FMI version of native FMUs; 2 by default"
+    )
+    _add_force(build, "FMUs from other vendors in DIR")
+    build.set_defaults(command=_build)
+
+
+def _add_platform(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--platform", metavar="NAME[,NAME]",
+        help="platforms of native FMUs: linux64,win64,darwin64; all by default",
+    )  # fmt: skip
 
 
 def _add_set(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
-        help="a value that differs from the scene's, such as shaft.speed=685rpm",
+        help="override a value of the scene, such as shaft.speed=685rpm",
     )  # fmt: skip
 
 
@@ -145,25 +183,25 @@ def _add_export(commands: Any) -> None:
     export.add_argument("--ssp", type=Path, required=True, metavar="FILE.ssp")
     _add_set(export)
     export.add_argument(
-        "--flavour", choices=("live", "native"), help="of the FMUs; native by default if it can be built"
+        "--flavour", choices=("live", "native"), help="kind of FMUs; native by default if they can be built"
     )
-    export.add_argument(
-        "--platform", metavar="NAME[,NAME]", help="of native FMUs: linux64,win64,darwin64; all by default"
-    )
-    _add_force(export, "FILE.ssp, if it is not a system package of loomfmu")
+    _add_platform(export)
+    _add_force(export, "FILE.ssp even if it is not a system package of loomfmu")
     export.set_defaults(command=_export)
 
 
 def _add_sweep(commands: Any) -> None:
     sweep = commands.add_parser("sweep", help="run a scene with many combinations of values, as one table")
     sweep.add_argument("sweep", metavar="SWEEP.toml")
-    sweep.add_argument("--output", metavar="DIR", help="of the results; results/SWEEP by default")
+    sweep.add_argument("--output", metavar="DIR", help="where results go; results/SWEEP by default")
     sweep.add_argument(
-        "--processes", type=int, metavar="N", help="worker processes of this machine; all cores by default"
+        "--processes", type=int, metavar="N", help="worker processes on this machine; all cores by default"
     )
-    sweep.add_argument("--scheduler", metavar="ADDRESS", help="of a dask scheduler, such as tcp://host:8786")
     sweep.add_argument(
-        "--restart", action="store_true", help="throw away what DIR has of this or another sweep"
+        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
+    )
+    sweep.add_argument(
+        "--restart", action="store_true", help="delete the results of any sweep in DIR and run all rows"
     )
     sweep.set_defaults(command=_sweep)
 
@@ -190,8 +228,8 @@ def _export(options: argparse.Namespace) -> int:
     platforms = native_builder.check_platforms(tuple(chosen))
     loaded = scene.load(options.scene, _overrides(options))
     for warning in ssp.export(loaded, options.ssp, options.flavour, platforms, options.force):
-        print(f"warning: {warning}", file=sys.stderr)
-    print(options.ssp)
+        complain(f"warning: {warning}")
+    say(options.ssp)
     return 0
 
 
@@ -205,26 +243,26 @@ def _run(options: argparse.Namespace) -> int:
         overwrite=options.force,
     )  # fmt: skip
     for warning in result.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+        complain(f"warning: {warning}")
     scene = result.scene
     if result.ended:
-        print(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
+        say(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
         turned, speed = _revolutions(f"{scene.periods:g}"), units.show(scene.speed, "rev/min")
-        print(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
+        say(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
     else:
-        print(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
+        say(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
     if options.explain:
-        print("left out:", *(f"  {line}" for line in result.skipped), sep="\n")
+        say("skipped:", *(f"  {line}" for line in result.skipped))
     _print_verdicts(result.claims)
     if scene.description:
-        print(f"{scene.description}\n")
+        say(*scene.description.splitlines(), "")
     command = "loomfmu"
     if Path(sys.argv[0]).name == command and shutil.which(command) != shutil.which(sys.argv[0]):
         command = sys.argv[0]  # it is not on the PATH, or another one is
     path = str(result.path)
     summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
-    print(f"trace: {path}    summary: {shlex.join(summary)}")
+    say(f"trace: {path}    summary: {shlex.join(summary)}")
     return 0 if result.holds else 1
 
 
@@ -238,7 +276,7 @@ def _sweep(options: argparse.Namespace) -> int:
     from .sweeps.report import show
 
     for warning in found.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+        complain(f"warning: {warning}")
     show(found)
     return 0 if found.holds else 1
 
@@ -256,9 +294,9 @@ def _build(options: argparse.Namespace) -> int:
     for component in built:
         if options.native:
             output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
-            print(native_builder.build_native(component, output, platforms, options.fmi, options.force))
+            say(native_builder.build_native(component, output, platforms, options.fmi, options.force))
         else:
-            print(builder.build(component, options.output or Path("build/fmus"), options.force))
+            say(builder.build(component, options.output or Path("build/fmus"), options.force))
     return 0
 
 
@@ -267,7 +305,7 @@ def _list(options: argparse.Namespace) -> int:
 
     width = shutil.get_terminal_size().columns
     lines = catalogue.details(options.name, width) if options.name else catalogue.overview()
-    print(*lines, sep="\n")
+    say(*(part for line in lines for part in line.split("\n")))
     return 0
 
 
@@ -275,9 +313,10 @@ def _init(options: argparse.Namespace) -> int:
     from . import catalogue
 
     written = catalogue.start(options.directory, everything=options.all)
-    print(*written, sep="\n")
-    print('\na sweep with its picture takes two extras: pip install "loomfmu[sweep,plot]"')
-    print(f"next: loomfmu run {written[0] if not options.all else options.directory / catalogue.STARTERS[0]}")
+    say(*written, "")
+    say('a sweep and its picture need two extras: pip install "loomfmu[sweep,plot]"')
+    first = options.directory / catalogue.STARTERS[0]
+    say(f"next: {shlex.join(['loomfmu', 'run', str(first)])}")
     return 0
 
 
@@ -285,8 +324,8 @@ def _new(options: argparse.Namespace) -> int:
     from .new import new
 
     written = new(options.name, options.output)
-    print(*written, sep="\n")
-    print(f"\nnext: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
+    say(*written, sep="\n")
+    say(f"\nnext: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
     return 0
 
 
@@ -294,9 +333,9 @@ def _validate(options: argparse.Namespace) -> int:
     from .validation import plots, report
 
     for path in report.write(options.output, options.force):
-        print(path)
+        say(path)
     if not plots.available():
-        print('the plots are left out: they need matplotlib, pip install "loomfmu[plot]"', file=sys.stderr)
+        complain('no plots: they need matplotlib, pip install "loomfmu[plot]"')
     return 0
 
 
@@ -308,50 +347,53 @@ def _cache(options: argparse.Namespace) -> int:
         delete()
     found = contents()
     size, entries = sum(each.size for each in found), sum(each.entries for each in found)
-    print(f"{cache_directory()}: {size / 1e6:.1f} MB, {entries} entries")
+    say(f"{cache_directory()}: {size / 1e6:.1f} MB, {entries} entries")
     for each in found:
-        print(f"  {each.kind:8}  {each.size / 1e6:8.1f} MB  {each.entries:6} entries")
+        say(f"  {each.kind:8}  {each.size / 1e6:8.1f} MB  {each.entries:6} entries")
     return 0
 
 
 def _show(options: argparse.Namespace) -> int:
+    from .traces import Trace
     from .traces.damage import check
 
+    check(Path(options.trace))
     try:
-        check(Path(options.trace))
-        return _summarise(options.trace)
-    except (KeyError, TypeError, ValueError) as error:  # whole for HDF5, but not what we write
-        raise LoomfmuError(f"{options.trace}: it is damaged ({error})") from None
+        with Trace(options.trace) as trace:
+            _summarise(trace)
+            return 0 if trace.status == "complete" and trace.judged and all(trace.verdicts) else 1
+    except (LoomfmuError, OSError):
+        raise
+    except Exception as error:  # whole for HDF5, but not what we write
+        raise LoomfmuError(f"{options.trace}: it is damaged ({error})") from error
 
 
-def _summarise(path: str) -> int:
-    from .traces import Trace
-
-    with Trace(path) as trace:
-        attributes = trace.attributes
-        ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
-        status = trace.status if trace.status != "running" else "running, or killed"
-        print(f"{attributes['title']} ({attributes['software']}, {status}{ended})")
-        if "command" in attributes:
-            print(f"run by: {attributes['command']}")
-        for key, value in json.loads(attributes.get("set", "{}")).items():
-            print(f"differs from the scene: {key} = {value}")
-        turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
-        end = trace.time[-1] if trace.rows else 0.0
-        print(f"{trace.rows} samples over {end:.6g} s, {_revolutions(f'{turned:.4g}')}")
-        width = max((len(signal) for signal in trace), default=0)
-        print(f"\n{'signal':{width}}  {'lowest':>12}  {'highest':>12}  {'last':>12}  unit")
-        for signal in trace:
-            values = trace[signal]
-            if len(values):
-                display = trace.display(signal)
-                values = values / units.unit(display).factor
-                shown = "  ".join(f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
-                print(f"{signal:{width}}  {shown}  {trace.unit(signal) if display == '1' else display}")
-        print()
-        verdicts = trace.verdicts
-        _print_verdicts(verdicts)
-        return 0 if trace.status == "complete" and all(verdicts) else 1
+def _summarise(trace: "Trace") -> None:
+    """Print what a trace says of the run, its signals, and the verdicts."""
+    attributes = trace.attributes
+    ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
+    status = trace.status if trace.status != "running" else "running, or killed"
+    say(f"{attributes['title']} ({attributes['software']}, {status}{ended})")
+    if "command" in attributes:
+        say(f"run by: {attributes['command']}")
+    for key, value in json.loads(attributes.get("set", "{}")).items():
+        say(f"differs from the scene: {key} = {value}")
+    turned = (trace.shaft_angle[-1] - trace.shaft_angle[0]) / (2 * math.pi) if trace.rows else 0.0
+    end = trace.time[-1] if trace.rows else 0.0
+    say(f"{trace.rows} samples over {end:.6g} s, {_revolutions(f'{turned:.4g}')}", "")
+    rows = [("signal", *(f"{word:>12}" for word in ("lowest", "highest", "last")), "unit")]
+    for signal in trace:
+        values = trace[signal]
+        if len(values):
+            display = trace.display(signal)
+            values = values / units.unit(display).factor
+            shown = (f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
+            rows.append((printed.safe(signal), *shown, trace.unit(signal) if display == "1" else display))
+    say(*printed.in_columns(rows), "")
+    if trace.judged:
+        _print_verdicts(trace.verdicts)
+    else:
+        say("claims not judged: the run did not get to its end")
 
 
 def _revolutions(count: str) -> str:
@@ -361,7 +403,7 @@ def _revolutions(count: str) -> str:
 def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
     """The verdicts as a table."""
     if not verdicts:
-        print("no claims")
+        say("no claims")
         return
     headings = ("verdict", "claim", "signal", "worst", "bound", "at", "note")
     rows, entries = [], []

@@ -1,11 +1,55 @@
-"""Tables for people: in columns where these fit the terminal, else an entry of some lines for each row."""
+"""All that is printed: one place where foreign text is made harmless, tables that fit, progress bars."""
 
 import shutil
 import sys
 import textwrap
-from collections.abc import Sequence
+import traceback
+import unicodedata
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TextIO
 
 INDENT = "  "  # of the lines of an entry but the first
+Advance = Callable[[int], None]
+
+
+def safe(text: object) -> str:
+    """A text as one line that a terminal only shows: control and format characters are spelt out.
+
+    Titles, names, log texts and paths may come from anybody. Escape sequences would steer the terminal, and
+    marks of writing direction would show something else than what is there.
+
+    >>> safe("margin [/mm]"), safe("a\\x1b[31mb\\nc"), safe("\\u202egnp.exe")
+    ('margin [/mm]', 'a\\\\x1b[31mb\\\\nc', '\\\\u202egnp.exe')
+    """
+    return "".join(
+        character.encode("unicode_escape").decode() if _steers(character) else character
+        for character in str(text)
+    )
+
+
+def _steers(character: str) -> bool:
+    return unicodedata.category(character) in ("Cc", "Cf", "Cs", "Zl", "Zp")
+
+
+def say(*lines: object, to: TextIO | None = None) -> None:
+    """Print lines, on standard output if nothing else is given. The only way to the terminal."""
+    stream = sys.stdout if to is None else to
+    encoding = stream.encoding or "utf-8"
+    for line in lines:
+        text = safe(line).encode(encoding, "backslashreplace").decode(encoding)
+        stream.write(_coloured(text, stream) + "\n")
+
+
+def complain(*lines: object) -> None:
+    """Print lines on standard error."""
+    sys.stdout.flush()
+    say(*lines, to=sys.stderr)
+
+
+def complain_of(error: BaseException) -> None:
+    """Print where an exception comes from on standard error."""
+    complain(*"".join(traceback.format_exception(error)).splitlines())
 
 
 def show(headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequence[Sequence[str]]) -> None:
@@ -14,13 +58,10 @@ def show(headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequen
     Piped, there are 80 columns, unless the environment's COLUMNS says otherwise.
     """
     width = shutil.get_terminal_size().columns
-    lines = in_columns([headings, *rows])
+    lines = in_columns([[safe(cell) for cell in row] for row in (headings, *rows)])
     if max(map(len, lines)) > width:
-        lines = [line for entry in entries for line in as_entry(entry, width)]
-    print()
-    for line in lines:
-        print(coloured(line))
-    print()
+        lines = [line for entry in entries for line in as_entry([safe(part) for part in entry], width)]
+    say("", *lines, "")
 
 
 def in_columns(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -48,16 +89,31 @@ def as_entry(parts: Sequence[str], width: int) -> list[str]:
     return lines
 
 
-def coloured(line: str) -> str:
+def _coloured(line: str, stream: TextIO) -> str:
     """A line in which failing catches the eye, on a terminal."""
-    if not line.startswith("FAILS") or not sys.stdout.isatty():
+    if not line.startswith("FAILS") or not stream.isatty():
         return line
     from rich.console import Console
     from rich.text import Text
 
-    console = Console()
+    console = Console(file=stream)
+    text = Text.assemble(("FAILS", "bold red"), line.removeprefix("FAILS"))  # a Text is never read as markup
     with console.capture() as captured:
-        console.print(
-            Text.assemble(("FAILS", "bold red"), line.removeprefix("FAILS")), soft_wrap=True, end=""
-        )
+        console.print(text, soft_wrap=True, end="")
     return captured.get()
+
+
+@contextmanager
+def progress(title: str, total: int, done: int = 0, *, wanted: bool = True) -> Iterator[Advance]:
+    """A progress bar on standard error that takes how much more is done, where one is wanted and is seen."""
+    if not wanted or not sys.stderr.isatty():
+        yield lambda _more: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    words = TextColumn("{task.description}", markup=False)
+    columns = (words, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=2) as bar:
+        task = bar.add_task(safe(title), total=total, completed=done)
+        yield lambda more: bar.advance(task, more)

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from attack.running import started
 from live_fmus import fmu_cache
-from sweep_files import NO_TRACES, written
-from sweep_files import started as sweep_started
+from sweeps.sweep_files import NO_TRACES, written
+from sweeps.sweep_files import started as sweep_started
 
 import loomfmu
-from attack.running import started
-from loomfmu import Trace
+from loomfmu import LoomfmuError, Trace
 
 __all__ = ["fmu_cache"]
 
@@ -54,10 +54,18 @@ def test_a_run_of_slow_steps_loses_a_second_at_most(tmp_path: Path, fmu_cache: N
 
 
 def check_partial(directory: Path, whole: Trace) -> int:
-    """What a killed run left is the beginning of the whole one; its samples."""
+    """What a killed run left is the beginning of the whole one, or was not begun; its samples."""
     (left,) = (directory / "results").glob("*.partial")
-    with Trace(left) as kept:
-        assert kept.status == "running"
+    try:
+        kept = Trace(left)
+    except LoomfmuError as error:
+        assert (
+            str(error).endswith(": the run ended before it wrote a sample")
+            or left.read_bytes().strip(b"\0") == b""
+        )
+        left.unlink()
+        return 0
+    with kept:
         for signal in kept:
             np.testing.assert_array_equal(kept[signal], whole[signal][: kept.rows])
         np.testing.assert_array_equal(kept.time, whole.time[: kept.rows])

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from attack.running import started
 from live_fmus import fmu_cache
 
-from attack.running import started
 from loomfmu import Trace
 
 __all__ = ["fmu_cache"]

@@ -1,12 +1,12 @@
 """Running a scene: co-simulate, record, judge."""
 
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from .. import printed
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..files import cannot_write, check_target
 from ..traces import PARTIAL, TRACE, Trace, TraceWriter, Verdict, partial_of
@@ -206,7 +206,7 @@ def _target(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
     if report and size > LARGE_TRACE:
-        print(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less", file=sys.stderr)
+        printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
     try:
         check_room(path, size)
         return path.absolute()
@@ -223,13 +223,14 @@ def _writer(plan: Plan, master: Master, path: Path, target: Path, flavour: str) 
 
 @contextmanager
 def _bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
-    """A progress bar for a long run, if it is wanted and standard error is a terminal."""
-    if not wanted or plan.grid.steps < LONG_RUN or not sys.stderr.isatty():
-        yield lambda _step: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
+    """A progress bar for a long run, told how many steps are done."""
+    shown = 0
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(plan.scene.name, total=plan.grid.steps)
-        yield lambda step: bar.update(task, completed=step)
+    def reached(step: int) -> None:
+        nonlocal shown
+        advance(step - shown)
+        shown = step
+
+    long = plan.grid.steps >= LONG_RUN
+    with printed.progress(plan.scene.name, plan.grid.steps, wanted=wanted and long) as advance:
+        yield reached

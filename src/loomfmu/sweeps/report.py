@@ -4,6 +4,7 @@ import sys
 from typing import Any
 
 from .. import printed, units
+from ..printed import say
 from .ranking import beyond, worst_rows
 from .run import Sweep
 from .tables import claim_columns, labels_of
@@ -16,17 +17,17 @@ def show(sweep: Sweep) -> None:
     before = sweep.rows - sweep.ran
     again = f" ({before} of them run before)" if before else ""
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail", f"{sweep.errors} could not be run"]
-    print(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {', '.join(counts)}")
+    say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {', '.join(counts)}")
     _show_worst(sweep)
     _show_texts(sweep, "error", "could not be run", sys.stdout)
     _show_texts(sweep, "warnings", "warned", sys.stderr)
-    print(f"table: {sweep.path}")
+    say(f"table: {sweep.path}")
     if sweep.map is not None:
-        print(f"map: {sweep.map}")
+        say(f"map: {sweep.map}")
     elif sweep.plan.map is not None:
-        print(f"no map: no row has a value of {sweep.plan.map.value} there")
+        say(f"no map: no row has a value of {sweep.plan.map.value} there")
     if sweep.traces:
-        print(f"traces: {len(sweep.traces)} in {sweep.traces[0].parent}")
+        say(f"traces: {len(sweep.traces)} in {sweep.traces[0].parent}")
 
 
 def _show_worst(sweep: Sweep) -> None:
@@ -68,6 +69,6 @@ def _show_texts(sweep: Sweep, column: str, what: str, stream: Any) -> None:
     texts = sweep.table[column].to_pylist()
     rows = [row for row, text in enumerate(texts) if text is not None]
     for row in rows[:SHOWN]:
-        print(f"row {row} {what} ({_described(sweep, row)}): {texts[row]}", file=stream)
+        say(f"row {row} {what} ({_described(sweep, row)}): {texts[row]}", to=stream)
     if len(rows) > SHOWN:
-        print(f"and {len(rows) - SHOWN} more rows {what}", file=stream)
+        say(f"and {len(rows) - SHOWN} more rows {what}", to=stream)

@@ -2,14 +2,13 @@
 
 import hashlib
 import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .. import printed
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, path_of, shown
 from . import plan as plans
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 
 # package -> extra
 NEEDED = {"pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "sweep"}
-Advance = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -172,7 +170,8 @@ def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
     """Run what is not finished yet; how many rows that was."""
     left = store.left()
     count = sum(len(rows) for rows in left)
-    with _bar(store.plan.title, store.plan.rows, store.plan.rows - count, progress) as advance:
+    title, total = store.plan.title, store.plan.rows
+    with printed.progress(title, total, total - count, wanted=progress) as advance:
 
         def keep(rows: range, batch: Batch) -> None:
             store.write(rows, batch)
@@ -199,7 +198,7 @@ def _run_traces(store: "Store", job: Job, table: Any, pool: Pool, progress: bool
     paths = {row: store.trace_path(row) for row in traced_rows(table, limits.failures, limits.sample)}
     left = [row for row, path in paths.items() if not path.exists()]
     tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
-    with _bar("traces", len(left), 0, progress) as advance:
+    with printed.progress("traces", len(left), wanted=progress) as advance:
         _do(tasks, pool, advance)
     return tuple(paths.values())
 
@@ -208,7 +207,7 @@ def _traced(store: "Store", job: Job, row: int, path: Path) -> tuple[Any, ...]:
     return job, store.plan.settings(range(row, row + 1))[0], path
 
 
-def _do(tasks: list[Task], pool: Pool, advance: Advance) -> None:
+def _do(tasks: list[Task], pool: Pool, advance: printed.Advance) -> None:
     """Do tasks that give nothing back."""
     under_way = 0
     while tasks or under_way:
@@ -220,18 +219,3 @@ def _do(tasks: list[Task], pool: Pool, advance: Advance) -> None:
             if isinstance(outcome, Exception):
                 raise LoomfmuError(f"the trace of row {row}: {outcome}")
             advance(1)
-
-
-@contextmanager
-def _bar(title: str, total: int, done: int, wanted: bool) -> Iterator[Advance]:
-    """A progress bar with the time that is left, where one is wanted and somebody is looking."""
-    if not wanted or not sys.stderr.isatty():
-        yield lambda _rows: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=2) as bar:
-        task = bar.add_task(title, total=total, completed=done)
-        yield lambda rows: bar.advance(task, rows)

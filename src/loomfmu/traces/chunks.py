@@ -26,7 +26,7 @@ def packed(columns: NDArray[Any]) -> Iterator[bytes]:
 
 
 def unpacked(columns: NDArray[Any]) -> Iterator[bytes]:
-    """The same chunks as they are before the filters: always of one length, so that they are rewritten in place."""
+    """The same chunks before the filters: all of one length, so that they can be rewritten in place."""
     signals, samples = columns.shape
     whole = np.zeros((signals, ROWS), dtype=columns.dtype)
     whole[:, :samples] = columns
@@ -35,10 +35,11 @@ def unpacked(columns: NDArray[Any]) -> Iterator[bytes]:
 
 
 class Columns:
-    """Datasets of one type that get their samples together, and the samples of the chunk that is not full yet.
+    """Datasets of one type that get their samples together, and the samples of the chunk that is not full.
 
-    A chunk that comes in one piece is packed. One that comes in several, as in a slow run, is written again with
-    each piece and stays unpacked: HDF5 would give it a new place each time, and the file would grow without end.
+    A chunk that comes in one piece is packed. One that comes in several, as in a slow run, is written again
+    with each piece and stays unpacked: packed, it would need a new place each time, and the file would grow
+    to many times its size.
     """
 
     def __init__(self, datasets: Sequence[Any], kind: str):

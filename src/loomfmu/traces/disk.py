@@ -42,24 +42,13 @@ def reserve(file: int, size: int) -> None:
                 raise
 
 
-def take(path: Path, mode: str, size: int) -> None:
-    """Reserve disk space for a file that is not open, or leave it as it was."""
-    with path.open(mode) as file:
-        before = os.fstat(file.fileno()).st_size
-        try:
-            reserve(file.fileno(), size)
-        except OSError:
-            file.truncate(before)
-            raise
+def superblock(path: Path) -> tuple[bool, bool, int]:
+    """Whether an HDF5 file is marked as open for changes, whether readers may join, and its length.
 
-
-def superblock(path: Path) -> tuple[bool, int]:
-    """Whether an HDF5 file is marked as being written for readers beside the writer, and its length.
-
-    The mark stays when the writer is killed; the length is the one that the file says it has.
+    The marks stay when the writer is killed; the length is the one that the file says it has.
     """
     with path.open("rb") as file:
         head = file.read(36)
     if len(head) < 36 or head[8] != 3:  # the version that our files have
-        return False, 0
-    return bool(head[11] & 4), int.from_bytes(head[28:36], "little")
+        return False, False, 0
+    return bool(head[11] & 1), bool(head[11] & 4), int.from_bytes(head[28:36], "little")

@@ -184,9 +184,17 @@ class Trace(Signals):
         return str(self.attributes.get("ended_by", ""))
 
     @property
+    def judged(self) -> bool:
+        """Whether the verdicts on its claims are stored with the run: it went to its end."""
+        return "claims" in self.attributes
+
+    @property
     def verdicts(self) -> list[Verdict]:
-        """The verdicts stored with the run; the attribute `claims` has them as JSON."""
-        return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
+        """The verdicts stored with the run, none if it was not judged; as JSON in the attribute `claims`."""
+        try:
+            return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
+        except (AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+            raise LoomfmuError(f"{self.path}: it is damaged (its claims are not verdicts: {error})") from None
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
@@ -221,7 +229,7 @@ def is_trace(path: Path) -> bool:
     try:
         with _hdf5(path) as file:
             return not _lacking(file)
-    except (KeyError, OSError, RuntimeError):
+    except (KeyError, LoomfmuError, OSError, RuntimeError):
         return False
 
 
@@ -230,7 +238,9 @@ def _hdf5(path: Path) -> Any:
     try:
         return h5py.File(path, "r")
     except OSError:
-        marked, length = superblock(path)
+        begun, marked, length = superblock(path)
+        if begun and not marked:
+            raise LoomfmuError(f"{path}: the run ended before it wrote a sample") from None
         if not marked or path.stat().st_size < length:
             raise  # HDF5 would look for the rest of a file that was cut off again and again
     return h5py.File(path, "r", swmr=True)

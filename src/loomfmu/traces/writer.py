@@ -1,8 +1,8 @@
 """Traces in HDF5, written block by block while a run goes on.
 
-One group for each instance, one dataset for each variable, all along `/time`. The file has its final name only
-once it is complete. Until then it has a name of its own, so that runs with one output do not meet, and every block
-written can be read, even after a kill.
+One group for each instance, one dataset for each variable, all along `/time`. The file has its final name
+only once it is complete. Until then it has a name of its own, so that runs with one output do not meet, and
+every block written can be read, even after a kill.
 """
 
 import contextlib
@@ -15,11 +15,11 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import units
 from .chunks import LEVEL, ROWS, Columns
-from .disk import reserve, superblock, take
+from .disk import reserve
+from .edit import edited
 from .places import replace
 from .reader import Trace
 from .signals import Channel, Floats, Integers
@@ -31,7 +31,7 @@ PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for 
 
 
 def partial_of(path: Path, mark: str = "") -> Path:
-    """What is called so until its trace is complete: with a mark while a run writes, without one when it has failed."""
+    """The name of a trace that is not complete: with a mark while it is written, without one afterwards."""
     return path.with_name(f"{path.name}{mark and '.'}{mark}.partial")
 
 
@@ -55,7 +55,8 @@ class TraceWriter:
         header = SPARE + texts + PER_DATASET * (len(channels) + 2)
         self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:
-            take(self.partial, "xb", header)
+            with self.partial.open("xb") as file:
+                reserve(file.fileno(), header)
         except OSError:
             self.partial.unlink(missing_ok=True)
             raise
@@ -144,9 +145,9 @@ class TraceWriter:
         self._file.close()
 
     def complete(self, verdicts: Sequence[dict[str, Any]], ended_by: str = "") -> Trace:
-        """Give the file its verdicts, who ended the run before its time, and the final name; the trace that it is.
+        """Give the file its verdicts, who ended the run before its time, and its final name; the trace.
 
-        Another run may give its own file that name at any time: each is there whole, the last one stays.
+        Another run may give its own file that name at any time: each is whole, and the last one stays.
         """
         self.seal()
         ended = {"ended_by": ended_by} if ended_by else {}
@@ -162,9 +163,7 @@ class TraceWriter:
 
     def _annotate(self, attributes: Mapping[str, str]) -> None:
         """Write attributes of the closed file."""
-        texts = sum(len(text.encode()) for text in attributes.values())
-        take(self.partial, "r+b", superblock(self.partial)[1] + texts + SPARE)
-        with h5py.File(self.partial, "r+") as file:
+        with edited(self.partial) as file:
             file.attrs.update(attributes)
 
     def abandon(self, status: str) -> Path:
