@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..errors import LoomfmuError
 from ..files import source
 from .disk import superblock
+from .layout import Foreign, check_link, column, has, member
 from .places import place_of
 from .signals import SHARED, Floats, Signals
 from .verdict import Verdict
@@ -73,7 +74,9 @@ class Trace(Signals):
             self._file = self._file or self._open()
             try:
                 yield self._file
-            except (KeyError, OSError, RuntimeError, ValueError) as error:
+            except Foreign as error:
+                raise LoomfmuError(f"{self.path}: it is not a trace of loomfmu: {error}") from None
+            except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
                 raise LoomfmuError(f"{self.path}: it is damaged ({error.args[0]})") from None
             finally:
                 if not kept:
@@ -119,31 +122,34 @@ class Trace(Signals):
     def _signals(self) -> dict[str, None]:
         """The signals, in their order. A group that cannot be opened is not left out: KeyError says so."""
         with self._opened() as file:
-            members = {name: file[name] for name in file}
+            members = {name: member(file, name) for name in file}
             groups = {name: each for name, each in members.items() if isinstance(each, h5py.Group)}
-            return {
-                f"{name}.{variable}": None
-                for name, group in groups.items()
-                for variable in group
-                if variable not in SHARED
-            }
+            found = [(name, variable) for name, group in groups.items() for variable in group]
+            for name, variable in found:
+                check_link(groups[name], variable)
+            return {f"{name}.{variable}": None for name, variable in found if variable not in SHARED}
 
     def check(self) -> None:
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
 
-        def read(_name: str, item: Any) -> None:
-            dict(item.attrs)
-
         with self._opened() as file:
-            read("/", file)
-            file.visititems(read)
+            dict(file.attrs)
+            for signal in (*SHARED, *self):
+                dict(self._item(file, signal).attrs)
+            for name in {signal.partition(".")[0] for signal in self}:
+                dict(member(file, name).attrs)
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
         with self._opened() as file:
             if signal not in SHARED and signal not in self:
                 raise self._unknown(signal)
-            yield file["/" + signal.replace(".", "/")]
+            yield self._item(file, signal)
+
+    def _item(self, file: Any, signal: str) -> Any:
+        """The dataset of a signal."""
+        instance, _, variable = signal.rpartition(".")
+        return column(member(member(file, instance) if instance else file, variable))
 
     def _said(self, signal: str, attribute: str) -> str | None:
         """What the file says of a signal."""
@@ -155,7 +161,7 @@ class Trace(Signals):
     def rows(self) -> int:
         """Number of samples when first asked; of a run that was cut off, those that all signals have."""
         with self._opened() as file:
-            return min(len(file["/" + signal.replace(".", "/")]) for signal in (*SHARED, *self))
+            return min(len(self._item(file, signal)) for signal in (*SHARED, *self))
 
     @cached_property
     def time(self) -> Floats:
@@ -218,7 +224,7 @@ class Trace(Signals):
         """A parameter of an instance, or an input that was left at its start, such as `heald_1.stroke`."""
         instance, _, name = signal.partition(".")
         with self._opened() as file:
-            value = file[instance].attrs.get(name) if instance in file else None
+            value = member(file, instance).attrs.get(name) if has(file, instance) else None
         if not isinstance(value, np.number | np.bool_):
             raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
         return float(value)
@@ -248,7 +254,7 @@ def _hdf5(path: Path) -> Any:
 
 def _lacking(file: Any) -> str:
     """What every trace has and a file does not; empty for a trace."""
-    datasets = (f"the dataset /{name}" for name in SHARED if name not in file)
+    datasets = (f"the dataset /{name}" for name in SHARED if not has(file, name))
     attributes = (f"the attribute {name!r}" for name in REQUIRED if name not in file.attrs)
     return next(iter((*datasets, *attributes)), "")
 

@@ -1,0 +1,48 @@
+"""What the file of a trace may consist of: anything else might read other files, or fill the memory."""
+
+from typing import Any
+
+import h5py
+
+FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
+EXPANSION = 1100  # bytes that a stored byte may become: gzip makes up to 1032 of it
+
+
+class Foreign(Exception):
+    """Something that no trace has; the text says what and where."""
+
+
+def has(group: Any, name: str) -> bool:
+    """Whether a group has something of that name, wherever it may lie."""
+    return group.get(name, getlink=True) is not None
+
+
+def member(group: Any, name: str) -> Any:
+    """What a group has under a name. Raises Foreign for a link: it may lead to another file."""
+    check_link(group, name)
+    return group[name]
+
+
+def check_link(group: Any, name: str) -> None:
+    """Raise Foreign unless the group itself has what is under a name."""
+    if has(group, name) and not isinstance(group.get(name, getlink=True), h5py.HardLink):
+        raise Foreign(f"{group.name.rstrip('/')}/{name} is a link")
+
+
+def column(item: Any) -> Any:
+    """A dataset of a trace: a column of numbers, stored in this file. Raises Foreign for anything else."""
+    if not isinstance(item, h5py.Dataset) or item.shape is None or len(item.shape) != 1:
+        raise Foreign(f"{item.name} is not a column")
+    if item.dtype.kind not in "iufb":
+        raise Foreign(f"{item.name} does not hold numbers")
+    created = item.id.get_create_plist()
+    if item.is_virtual or item.external:
+        raise Foreign(f"{item.name} lies in another file")
+    filters = {created.get_filter(number)[0] for number in range(created.get_nfilters())}
+    if not filters <= FILTERS:
+        raise Foreign(f"{item.name} takes a filter that traces do not use")
+    stored = min(item.id.get_storage_size(), item.file.id.get_filesize())
+    chunk = item.chunks[0] * item.dtype.itemsize if item.chunks and item.size else 0
+    if max(item.nbytes, chunk) > EXPANSION * stored:
+        raise Foreign(f"{item.name} has {item.size} rows, but next to nothing is stored of them")
+    return item
