@@ -722,6 +722,59 @@ def test_a_trace_that_is_damaged_is_told_in_one_line(capsys: pytest.CaptureFixtu
     assert said.startswith("loomfmu: damaged.h5: ") and said.count("\n") == 1
 
 
+# ---- foreign text, and faults of our own
+
+
+def test_names_with_brackets_and_escapes_are_only_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    text = HEAD.replace("Small", r"force [kN] \u001b[2J \u202e [/mm]") + LOOM
+    text += CLAIM.format(bound=0.9) + 'name = "margin [/mm] [bold]"\n'
+    assert main(["run", scene(text)]) == 1
+    first = capsys.readouterr()
+    assert main(["show", "results/scene.h5"]) == 1
+    again = capsys.readouterr()
+    for printed in (first.out, again.out):
+        assert r"force [kN] \x1b[2J \u202e [/mm]" in printed
+        assert "FAILS  margin [/mm] [bold]" in printed
+        assert not {"\x1b", "\u202e"} & set(printed)
+    assert main(["run", "no\x1b[2Jfile\u202e.toml"]) == 2
+    assert capsys.readouterr().err.startswith(r"loomfmu: no\x1b[2Jfile\u202e.toml: cannot be read")
+    with pytest.raises(SystemExit):
+        main(["run", "a", "\x1b[2J"])
+    assert "\x1b" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("before", [[], ["--debug"]])
+@pytest.mark.parametrize("after", [[], ["--debug"]])
+def test_a_fault_of_our_own_is_told_in_one_line(
+    before: list[str], after: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_arguments: object) -> None:
+        raise RuntimeError("a\x1b[2J\nfault")
+
+    monkeypatch.setattr("loomfmu.catalogue.overview", broken)
+    assert main([*before, "list", *after]) == 2  # 1 is the status of a claim that fails
+    lines = capsys.readouterr().err.splitlines()
+    said = r"loomfmu: RuntimeError: a\x1b[2J\nfault (a fault of loomfmu; please report it to its maintainers"
+    assert lines[-1] == f"{said} with what --debug prints)"
+    assert len(lines) == 1 if not before + after else "Traceback (most recent call last):" in lines
+
+
+def test_help_says_what_the_command_is_for(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert printed.index("Build FMUs of loom mechanisms") < printed.index("Exit status: 0 all claims hold")
+
+
+def test_a_trace_that_was_not_judged_is_not_one_that_holds(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD + SHAFT)]) == 0
+    with h5py.File("results/scene.h5", "r+") as file:
+        del file.attrs["claims"]
+    capsys.readouterr()
+    assert main(["show", "results/scene.h5"]) == 1
+    assert capsys.readouterr().out.endswith("claims not judged: the run did not get to its end\n")
+
+
 # ---- FMU files
 
 

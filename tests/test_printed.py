@@ -1,7 +1,12 @@
 """Tables for people: in columns, or as entries where these do not fit."""
 
+import ast
+import io
+from pathlib import Path
+
 import pytest
 
+import loomfmu
 from loomfmu import printed
 
 HEADINGS = ("verdict", "claim", "value")
@@ -38,3 +43,59 @@ def test_parts_of_an_entry_fill_the_lines(
     assert shown(20, monkeypatch, capsys) == [
         "", "FAILS  a long claim", "  about something", "  (belt.margin) 1 mm", "holds  another", "",
     ]  # fmt: skip
+
+
+class Terminal(io.StringIO):
+    """Somebody is looking."""
+
+    encoding = "utf-8"
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(
+    ("text", "harmless"),
+    [
+        ("margin [/mm]", "margin [/mm]"),
+        ("force [kN] [bold]", "force [kN] [bold]"),
+        ("Größe 3 µm, 布", "Größe 3 µm, 布"),
+        ("\x1b]0;title\x07", r"\x1b]0;title\x07"),
+        ("\x9b31m", r"\x9b31m"),  # an escape sequence in one character
+        ("one\ntwo\r\tthree\x7f\x00", r"one\ntwo\r\tthree\x7f\x00"),
+        ("safe\u202etxt.exe\u2066\u200f", r"safe\u202etxt.exe\u2066\u200f"),
+        ("line\u2028end", r"line\u2028end"),
+        ("file\udcff.h5", r"file\udcff.h5"),  # a name that is not UTF-8
+    ],
+)
+def test_foreign_text_is_shown_and_does_nothing(text: str, harmless: str) -> None:
+    for line in (text, f"FAILS {text}"):
+        terminal = Terminal()
+        printed.say(line, to=terminal)
+        shown = terminal.getvalue().replace("\x1b[1;31m", "").replace("\x1b[0m", "")
+        assert shown == line.replace(text, harmless) + "\n"
+
+
+def test_what_a_stream_cannot_encode_is_spelt_out() -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii", newline="\n")
+    printed.say("3 µm", to=stream)
+    stream.flush()
+    assert stream.buffer.getvalue() == b"3 \\xb5m\n"
+
+
+def test_tables_show_foreign_text(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    printed.show(("claim",), [("margin [/mm]\x1b[2J",)], [("margin",)])
+    assert capsys.readouterr().out == "\nclaim\nmargin [/mm]\\x1b[2J\n\n"
+
+
+def test_nothing_else_prints() -> None:
+    package = Path(loomfmu.__file__).parent
+    found = set()
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print":
+                found.add(path.relative_to(package).as_posix())
+    assert found <= {"traces/damage.py"}  # it speaks to the process that started it

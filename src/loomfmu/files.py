@@ -1,12 +1,14 @@
 """Files that are read, and files that are written: whole or not at all, never over what is not ours."""
 
 import errno
+import os
 import secrets
 import stat
 import zipfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from .errors import LoomfmuError, shown
 
@@ -119,12 +121,19 @@ def write_file(
 ) -> Path:
     """Write a file, whole or not at all, and return its path. Raises LoomfmuError naming it."""
     check_target(path, kind, inputs, overwrite)
+    return replace_file(path, content)
+
+
+def replace_file(path: Path, content: Any) -> Path:
+    """Write a file over what may be there, whole or not at all. Raises LoomfmuError naming it."""
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            with temporary.open("xb") as file:
+            with temporary.open("xb") as file:  # new: nothing is written through a link
                 file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)

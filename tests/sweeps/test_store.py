@@ -42,16 +42,18 @@ def plan(tmp_path: Path) -> SweepPlan:
 def batch(rows: range) -> Batch:
     """Made-up results; every fifth row could not be run."""
     results = [
-        [None] * 10 + [f"row {row}"]
+        [None] * 12 + [f"row {row}"]
         if row % 5 == 4
         else [
             70.0 + row,
             True,
             0.1 * row,
             0.0,
+            None,
             row < 20,
             70.0 + row,
             60.0,
+            None,
             row < 20,
             None if row < 20 else "second",
             None,
@@ -103,7 +105,7 @@ def test_a_finished_batch_is_read_again_and_one_half_written_is_not(plan: SweepP
     with opened(place, plan, "one", restart=False) as store:
         store.write(range(0, 10), batch(range(0, 10)))
         assert os.listdir(store.batches) == ["rows_000000_000009.parquet"]
-    (place / "batches" / "rows_000010_000019.parquet.partial").write_bytes(
+    (place / "batches" / ".rows_000010_000019.parquet.01234567.partial").write_bytes(
         b"PAR1 and then the process was killed"
     )
     with opened(place, plan, "one", restart=False) as store:
@@ -133,7 +135,7 @@ def test_rows_that_are_there_twice_are_refused(plan: SweepPlan, tmp_path: Path) 
     with opened(tmp_path / "results", plan, "one", restart=False) as store:
         for rows in (range(0, 12), range(10, 24)):
             store.write(rows, batch(rows))
-        with pytest.raises(LoomfmuError, match="rows are missing or double"):
+        with pytest.raises(LoomfmuError, match="rows are missing or there twice"):
             store.finish()
 
 
@@ -246,3 +248,57 @@ def test_a_lock_that_is_deleted_by_its_holder_is_held_by_one_at_a_time(tmp_path:
         printed, errors = rival.communicate(timeout=60)
         assert errors == "" and int(printed) > 0
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["lock", "table.parquet", "sweep.json", "map.png", "batches", "traces"])
+def test_nothing_is_written_through_a_link(plan: SweepPlan, tmp_path: Path, name: str) -> None:
+    place, victim = tmp_path / "results", tmp_path / "victim"
+    place.mkdir()
+    if name in ("batches", "traces"):
+        victim.mkdir()
+    else:
+        victim.write_text("precious")
+    (place / name).symlink_to(victim)
+    with (
+        pytest.raises(LoomfmuError, match=rf"{name}: cannot be written \(it is a symbolic link"),
+        opened(place, plan, "one", restart=False),
+    ):
+        pytest.fail("it was opened")
+    assert not list(victim.iterdir()) if victim.is_dir() else victim.read_text() == "precious"
+
+
+def test_parts_are_not_written_through_links(plan: SweepPlan, tmp_path: Path) -> None:
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    with opened(tmp_path / "results", plan, "one", restart=False) as store:
+        store.batches.mkdir()
+        for name in ("rows_000000_000023.parquet", "rows_000000_000023.parquet.partial"):
+            (store.batches / name).symlink_to(victim)
+        (store.directory / "table.parquet.partial").symlink_to(victim)
+        store.write(range(0, 24), batch(range(0, 24)))
+        store.finish()
+    assert victim.read_text() == "precious"
+
+
+def test_a_folder_with_the_name_of_a_batch_is_no_batch(plan: SweepPlan, tmp_path: Path) -> None:
+    place = tmp_path / "results"
+    with opened(place, plan, "one", restart=False) as store:
+        folder = store.batches / "rows_000000_000011.parquet"
+        folder.mkdir(parents=True)
+        assert store.left() == [range(ROWS)]
+        with pytest.raises(LoomfmuError, match=r"rows_000000_000011\.parquet: cannot be written \(Is a dir"):
+            store.write(range(0, 12), batch(range(0, 12)))
+        store.write(range(0, 24), batch(range(0, 24)))
+        store.finish()
+        store.tidy()
+    assert folder.is_dir()
+    with opened(place, plan, "one", restart=True) as store:
+        assert store.left() == [range(ROWS)]
+
+
+def test_a_batch_of_something_else_is_told_in_one_line(plan: SweepPlan, tmp_path: Path) -> None:
+    with opened(tmp_path / "results", plan, "one", restart=False) as store:
+        store.batches.mkdir()
+        pq.write_table(pa.table({"row": [1]}), store._path(range(ROWS)))
+        with pytest.raises(LoomfmuError, match=r"batches: not batches of this sweep \("):
+            store.finish()

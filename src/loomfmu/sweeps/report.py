@@ -7,7 +7,7 @@ from .. import printed, units
 from ..printed import say
 from .ranking import beyond, worst_rows
 from .run import Sweep
-from .tables import claim_columns, labels_of
+from .tables import claim_columns, labels_of, note_column
 
 SHOWN = 5  # rows of a kind
 
@@ -35,21 +35,23 @@ def _show_worst(sweep: Sweep) -> None:
     rows = worst_rows(sweep.table, SHOWN)
     if not rows:
         return
-    headings = ("worst", "row", *(axis.key for axis in sweep.plan.axes), "claim", "value", "bound")
+    headings = ("worst", "row", *(axis.key for axis in sweep.plan.axes), "claim", "value", "bound", "note")
     table, entries = [], []
     claims, labels = beyond(sweep.table).claim, labels_of(sweep.table)
     for row in rows:
         number = int(claims[row])
-        holds, worst, bound = (sweep.table[name][row].as_py() for name in claim_columns(number))
+        names = (*claim_columns(number), note_column(number))
+        holds, worst, bound, note = (sweep.table[name][row].as_py() for name in names)
         word, claim = "holds" if holds else "FAILS", labels[number].claim
         shown = [
             "-" if value is None else units.show(value, labels[number].display_unit)
             for value in (worst, bound)
         ]
-        table.append((word, str(row), *_values(sweep, row), claim, *shown))
-        entries.append(
-            (f"{word}  row {row} ({_described(sweep, row)})", f"{claim}: {shown[0]}, bound {shown[1]}")
-        )
+        table.append((word, str(row), *_values(sweep, row), claim, *shown, note or ""))
+        entry = f"{word}  row {row} ({_described(sweep, row)})", f"{claim}: {shown[0]}, bound {shown[1]}"
+        entries.append((*entry, f"({note})") if note else entry)
+    if not any(line[-1] for line in table):
+        headings, table = headings[:-1], [line[:-1] for line in table]
     printed.show(headings, table, entries)
 
 

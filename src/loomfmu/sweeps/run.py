@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .. import printed
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, path_of, shown
+from ..traces import TRACE
 from . import plan as plans
 from .plan import SweepPlan
 from .pools import Here, Pool, Processes, Task
@@ -196,7 +197,7 @@ def _run_traces(store: "Store", job: Job, table: Any, pool: Pool, progress: bool
 
     limits = store.plan.traces
     paths = {row: store.trace_path(row) for row in traced_rows(table, limits.failures, limits.sample)}
-    left = [row for row, path in paths.items() if not path.exists()]
+    left = [row for row, path in paths.items() if not TRACE.ours(path)]
     tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
     with printed.progress("traces", len(left), wanted=progress) as advance:
         _do(tasks, pool, advance)

@@ -21,13 +21,13 @@ import pyarrow.parquet as pq
 from filelock import FileLock, Timeout
 
 from ..errors import LoomfmuError
-from ..files import ANY, cannot_write, check_target
+from ..files import ANY, cannot_write, check_target, replace_file
 from .plan import SweepPlan
 from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
-PARTIAL = ".partial"
+PARTIAL, TRACE_PARTIAL = ".*.partial", "row_*.h5*.partial"
 LOCK, IDENTITY = "lock", "sweep.json"
 
 
@@ -38,19 +38,20 @@ class Store:
         self.directory = directory
         self.plan = plan
         self.batches = directory / "batches"
+        self.traces = directory / "traces"
         self.table_path = directory / "table.parquet"
         self.map_path = directory / "map.png"
 
     def trace_path(self, row: int) -> Path:
         """Where the full trace of a row is."""
-        return self.directory / "traces" / f"row_{row:06d}.h5"
+        return self.traces / f"row_{row:06d}.h5"
 
     def done(self) -> list[range]:
         """Rows that are finished, in order."""
         found = []
         for path in self.batches.glob("*.parquet"):
             match = NAME.fullmatch(path.name)
-            if match:
+            if match and path.is_file():
                 found.append(range(int(match[1]), int(match[2]) + 1))
         return sorted(found, key=lambda rows: rows.start)
 
@@ -79,18 +80,27 @@ class Store:
         if finished:
             table = self._read(self.table_path)
         else:
-            table = whole_table(self.plan, [self._read(self._path(rows)) for rows in self.done()])
+            table = self._joined()
         numbers = pa.chunked_array([range(self.plan.rows)], pa.int64())
         if table.column_names != schema_of(self.plan, ()).names or not table["row"].equals(numbers):
             where = self.table_path if finished else self.batches
-            raise LoomfmuError(f"{where}: rows are missing or double; --restart runs them all again")
+            raise LoomfmuError(f"{where}: rows are missing or there twice; --restart runs all rows again")
         if not finished:
             _write(table, self.table_path)
         return table
 
+    def _joined(self) -> Any:
+        try:
+            return whole_table(self.plan, [self._read(self._path(rows)) for rows in self.done()])
+        except (KeyError, TypeError, ValueError) as error:  # a table, but of something else
+            reason = str(error).splitlines()[0]
+            raise LoomfmuError(
+                f"{self.batches}: not batches of this sweep ({reason}); --restart runs all rows again"
+            ) from None
+
     def tidy(self) -> None:
         """Delete the batches of a sweep that is done: the table has their rows."""
-        for path in self.batches.glob("rows_*.parquet"):
+        for path in _files(self.batches, "rows_*.parquet"):
             path.unlink()
         with contextlib.suppress(OSError):  # it holds something that is not ours, or is gone
             self.batches.rmdir()
@@ -112,14 +122,14 @@ class Store:
 
     def results(self) -> list[Path]:
         """What is there under the names of a sweep's results."""
-        patterns = (("batches", "rows_*.parquet"), ("traces", "row_*.h5"), ("traces", "row_*.h5.partial"))
-        found = [path for folder, pattern in patterns for path in (self.directory / folder).glob(pattern)]
-        return [path for path in (self.table_path, self.map_path, *found) if path.exists()]
+        patterns = ((self.batches, "rows_*.parquet"), (self.traces, "row_*.h5"), (self.traces, TRACE_PARTIAL))
+        found = [path for folder, pattern in patterns for path in _files(folder, pattern)]
+        return [path for path in (self.table_path, self.map_path) if path.exists()] + found
 
     def partial(self) -> list[Path]:
         """What a sweep that was killed was about to write."""
-        folders = (self.directory, self.batches)
-        return [path for folder in folders for path in folder.glob(f"*{PARTIAL}")]
+        patterns = ((self.directory, PARTIAL), (self.batches, PARTIAL), (self.traces, TRACE_PARTIAL))
+        return [path for folder, pattern in patterns for path in _files(folder, pattern)]
 
 
 @contextlib.contextmanager
@@ -134,6 +144,9 @@ def opened(
     store = Store(directory, plan)
     for target in (store.table_path, store.map_path, directory / LOCK, directory / IDENTITY):
         check_target(target, ANY, inputs)
+    for folder in (store.batches, store.traces):
+        if folder.is_symlink():  # what lies behind it is not ours to write and to delete
+            raise LoomfmuError(f"{folder}: cannot be written (it is a symbolic link)")
     directory.mkdir(parents=True, exist_ok=True)
     with _locked(directory):
         _check_identity(store, fingerprint, restart)
@@ -161,7 +174,7 @@ def _check_identity(store: Store, fingerprint: str, restart: bool) -> None:
         )
     if restart or known is None:
         content = {"title": store.plan.title, "rows": store.plan.rows, "fingerprint": fingerprint}
-        _replace(path, (json.dumps(content, indent=1) + "\n").encode())
+        replace_file(path, (json.dumps(content, indent=1) + "\n").encode())
 
 
 def _known(path: Path) -> str | None:
@@ -172,23 +185,16 @@ def _known(path: Path) -> str | None:
         return None
 
 
+def _files(folder: Path, pattern: str) -> list[Path]:
+    """The files of a folder with such names, and links to files: a folder may be called like a file."""
+    return [path for path in folder.glob(pattern) if path.is_file() or path.is_symlink()]
+
+
 def _write(table: Any, path: Path) -> None:
     """Write a table: whole, or not under that name."""
     sink = pa.BufferOutputStream()
     pq.write_table(table, sink, row_group_size=max(1, table.num_rows))
-    _replace(path, sink.getvalue())
-
-
-def _replace(path: Path, content: Any) -> None:
-    temporary = path.with_name(path.name + PARTIAL)
-    try:
-        with temporary.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError as error:
-        raise cannot_write(path, error) from None
+    replace_file(path, sink.getvalue())
 
 
 @contextlib.contextmanager

@@ -48,8 +48,10 @@ class Label:
 
 @dataclass(frozen=True)
 class Batch:
-    """Results of some rows, each: final values, then whether it holds, worst value and bound of each claim,
-    whether all hold, the first claim that fails, warnings, and what went wrong; None where there is none.
+    """Results of some rows, each: final values, then whether it holds, worst value, bound and note of each
+    claim, whether all hold, the first claim that fails, warnings, and what went wrong.
+
+    None stands for what there is not.
 
     `labels` are empty if no row could be run. `seconds` each row took on average.
     """
@@ -96,9 +98,9 @@ def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
 
 
 def run_trace(job: Job, settings: dict[str, Any], path: Path) -> None:
-    """Run a row with a full trace."""
+    """Run a row with a full trace. What is there under its name is a sweep's, and no trace."""
     with _turn:
-        run(_scene(job), set=settings, output=path, flavour=job.flavour)
+        run(_scene(job), set=settings, output=path, flavour=job.flavour, overwrite=True)
 
 
 @lru_cache(maxsize=4)
@@ -127,7 +129,7 @@ def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], t
         return failed(job, scene, f"{type(error).__name__}: {error}"), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
-        values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound)]
+        values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound), verdict.note or None]
         if not verdict.holds and first is None:
             first = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
@@ -135,7 +137,7 @@ def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], t
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * (len(job.values) + 3 * len(scene.claims) + 3) + [reason]
+    return [None] * (len(job.values) + 4 * len(scene.claims) + 3) + [reason]
 
 
 def _finite(value: float) -> float | None:
