@@ -362,9 +362,10 @@ def _show(options: argparse.Namespace) -> int:
         with Trace(options.trace) as trace:
             _summarise(trace)
             return 0 if trace.status == "complete" and trace.judged and all(trace.verdicts) else 1
-    except (LoomfmuError, OSError):
-        raise
-    except Exception as error:  # whole for HDF5, but not what we write
+    except Exception as error:
+        if isinstance(error, LoomfmuError | OSError) and not isinstance(error, units.UnitError):
+            raise
+        # whole for HDF5, but not what we write
         raise LoomfmuError(f"{options.trace}: it is damaged ({error})") from error
 
 

@@ -268,6 +268,33 @@ def test_a_trace_that_is_there_is_not_made_again(tmp_path: Path) -> None:
     assert again.traces[1].exists()
 
 
+@pytest.mark.parametrize("content", [b"", b"garbage", b"\x89HDF\r\n\x1a\n and then nothing"])
+def test_a_trace_that_is_garbage_is_made_again(tmp_path: Path, content: bytes) -> None:
+    path = written(tmp_path, '[grid]\n"shaft.speed" = ["500 rpm", "750 rpm"]\n')
+    first = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    first.traces[0].write_bytes(content)
+    (first.traces[0].parent / "row_000000.h5.01234567.partial").write_bytes(
+        content
+    )  # of a run that was killed
+    again = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    with Trace(again.traces[0]) as trace:
+        assert (trace.status, trace.rows) == ("complete", 91)
+    assert sorted(os.listdir(tmp_path / "out" / "traces")) == ["row_000000.h5", "row_000001.h5"]
+
+
+@pytest.mark.parametrize("width", ["60", "300"])
+def test_the_note_on_a_verdict_is_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: str
+) -> None:
+    monkeypatch.setenv("COLUMNS", width)
+    text = '[set]\nsteps_per_revolution = 12\n[grid]\n"shaft.speed" = ["500 rpm"]\n' + NO_TRACES
+    main(["sweep", str(written(tmp_path, text)), "--output", str(tmp_path / "out"), "--processes", "1"])
+    note = pq.read_table(tmp_path / "out" / "table.parquet")["claim_1.note"][0].as_py()
+    verdict = loomfmu.evaluate(tmp_path / "scene.toml", set={"steps_per_revolution": 12}).claims[0]
+    assert "samples" in note and note == verdict.note
+    assert " ".join(note.split()) in " ".join(capsys.readouterr().out.split())
+
+
 def made_up(worst: list[float | None], holds: list[bool | None]) -> pa.Table:
     columns = {
         "claim_1.holds": pa.array(holds), "claim_1.worst": pa.array(worst, pa.float64()),

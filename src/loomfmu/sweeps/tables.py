@@ -2,8 +2,8 @@
 
 One row for each combination: its number, the value on each axis, final values of signals, of each claim
 whether it holds, its worst value, its bound and the verdict's note, whether all hold, the first one that
-fails, warnings, and why a row could not be run. All in SI; a column's metadata has `unit`, `display_unit` and `description`, the
-table's the texts of sweep and scene.
+fails, warnings, and why a row could not be run. All in SI; a column's metadata has `unit`, `display_unit` and
+`description`, the table's the texts of sweep and scene.
 """
 
 import json

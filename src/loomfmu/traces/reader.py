@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
 from ..files import source
+from ..units import UnitError
 from .disk import superblock
 from .layout import Foreign, check_link, column, has, member
 from .places import place_of
@@ -199,7 +200,7 @@ class Trace(Signals):
         """The verdicts stored with the run, none if it was not judged; as JSON in the attribute `claims`."""
         try:
             return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
-        except (AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+        except (AttributeError, LookupError, RecursionError, TypeError, UnitError, ValueError) as error:
             raise LoomfmuError(f"{self.path}: it is damaged (its claims are not verdicts: {error})") from None
 
     def unit(self, signal: str) -> str:

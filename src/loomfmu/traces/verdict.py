@@ -92,7 +92,7 @@ class Verdict:
         """The verdict that `as_dict` made this of."""
         known = {field.name: stored[field.name] for field in fields(cls) if field.name in stored}
         for name in ("bound", "worst", "time", "angle"):
-            known[name] = math.nan if known[name] is None else known[name]
+            known[name] = math.nan if known[name] is None else float(known[name])
         if "display" in stored:
             return cls(**known, display_unit=stored["display"]["unit"])
         # as version 0.1.0 stored them: SI values beside the unit that people read them in
