@@ -534,7 +534,7 @@ def test_a_trace_whose_file_another_process_replaced_says_so(result: loomfmu.Res
     other = tmp_path / "other.h5"
     other.write_bytes(result.path.read_bytes())
     other.replace(path)
-    with pytest.raises(LoomfmuError, match=r"run\.h5: it has changed since it was opened: another trace"):
+    with pytest.raises(LoomfmuError, match=r"run\.h5: another trace has replaced it"):
         _ = trace["belt.margin"]
 
 

@@ -149,7 +149,7 @@ def text_of(path: Path) -> str:
     except OSError as error:
         raise LoomfmuError(f"{path}: cannot be read ({error.strerror or error})") from None
     except UnicodeDecodeError:
-        hint = f"; loomfmu show {path} tells of a trace" if path.suffix in (".h5", ".hdf5") else ""
+        hint = f"; use loomfmu show {path} for a trace" if path.suffix in (".h5", ".hdf5") else ""
         raise LoomfmuError(f"{path}: is not text in UTF-8{hint}") from None
 
 

@@ -90,13 +90,13 @@ def test_a_scheduler_that_does_not_answer_is_named(
         arguments = ["sweep", str(path), "--output", str(tmp_path / "out"), "--scheduler", address]
         assert main(arguments) == 2
         errors = capsys.readouterr().err
-        assert f"loomfmu: {address}: no dask scheduler answers there (" in errors.splitlines()[-1]
+        assert f"loomfmu: {address}: no dask scheduler answers (" in errors.splitlines()[-1]
 
 
 def test_a_scheduler_without_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("loomfmu.sweeps.cluster.ANSWER", 0.5)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0", host="127.0.0.1") as empty,
-        pytest.raises(LoomfmuError, match="that dask scheduler has no workers"),
+        pytest.raises(LoomfmuError, match="the dask scheduler has no workers"),
     ):
         loomfmu.sweep(written(tmp_path, SWEPT), scheduler=empty.scheduler_address, output=tmp_path / "out")

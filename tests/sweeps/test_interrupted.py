@@ -115,8 +115,7 @@ def test_ctrl_c_ends_a_sweep_that_goes_on_later(tmp_path: Path, whole: bytes, ev
     printed, errors = running.communicate(timeout=60)
     assert running.returncode == 130, errors
     assert errors == (
-        "loomfmu: interrupted; what is finished is kept in results/swept,"
-        " the same command goes on from there\n"
+        "loomfmu: interrupted; finished rows are kept in results/swept; run the same command to continue\n"
     )
     assert printed == ""
     assert not psutil.wait_procs(workers, timeout=20)[1]
@@ -145,7 +144,7 @@ def test_ctrl_c_in_a_row_is_no_result_of_that_row(
 
     with monkeypatch.context() as patched:
         patched.setattr("loomfmu.sweeps.worker.evaluate", interrupted)
-        with pytest.raises(KeyboardInterrupt, match=r"what is finished is kept in .*out, the same"):
+        with pytest.raises(KeyboardInterrupt, match=r"finished rows are kept in .*out; run the same"):
             loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert batches(tmp_path / "out") and not (tmp_path / "out" / "lock").exists()
     found = loomfmu.sweep(path, processes=1, output=tmp_path / "out")

@@ -167,19 +167,19 @@ IN_GRID = [
     ('"belt.guide_clearance" = ["0.2 mm", "60 mm"]', "= 60 mm is outside [0, 50] mm"),
     ('"shaft.speed" = {from = 50, to = 1' + 400 * "0" + ", count = 2}", ".. is too large"),
     ('"shaft.speed" = []', "is neither a list of values nor"),
-    ('"shaft.speed" = ["500 rpm", "500 r/min"]', "grid.shaft.speed: 500 rev/min is there twice"),
-    ('"shaft.speed" = [50.0]\nshaft.speed = [60.0]', "grid.shaft.speed is there twice"),
+    ('"shaft.speed" = ["500 rpm", "500 r/min"]', "grid.shaft.speed: 500 rev/min appears twice"),
+    ('"shaft.speed" = [50.0]\nshaft.speed = [60.0]', "grid.shaft.speed appears twice"),
     (
         '"shaft.speed" = [50.0]\n[sample]\ncount = 2\nseed = 1\n"shaft.speed" = [1, 2]',
-        "sample.shaft.speed sets shaft.speed, which grid.shaft.speed sets already",
+        "sample.shaft.speed sets shaft.speed, which grid.shaft.speed already sets",
     ),
     (
         '"shaft.speed" = [50.0]\n[set]\n"shaft.speed" = 50.0\n',
-        "grid.shaft.speed sets shaft.speed, which set sets already",
+        "grid.shaft.speed sets shaft.speed, which set already sets",
     ),
     (
         'machine = ["WL680-3600"]\n"belt.machine" = ["WL680-3600"]',
-        "grid.belt.machine sets belt.machine, which grid.machine sets already",
+        "grid.belt.machine sets belt.machine, which grid.machine already sets",
     ),
     ('"shaft.speed" = { from = 50.0, to = 60.0 }', "grid.shaft.speed.count = None is not a whole number"),
     ('"shaft.speed" = { from = 50.0, cuont = 3 }', "cuont is unknown; did you mean 'count'"),
@@ -192,7 +192,7 @@ IN_GRID = [
         '"shaft.speed" = { from = -1.0, to = 5.0, count = 3, logarithmic = true }',
         "above 0 can be logarithmic",
     ),
-    ('machine = { from = "a", to = "b", count = 3 }', "grid.machine is no number and has no range"),
+    ('machine = { from = "a", to = "b", count = 3 }', "grid.machine is not a number: list"),
     ("steps_per_revolution = [90.5]", "steps_per_revolution = 90.5 is not a whole number"),
     ("revolutions = [1, 0]", "revolutions = 0 is outside [1e-09, 1e+09]"),
 ]
@@ -201,19 +201,19 @@ ELSEWHERE = [
     ("gird = 1", "gird is unknown; did you mean 'grid'?"),
     ('[sample]\n"shaft.speed" = [50.0, 60.0]\nseed = 1', "sample.count = None is not a whole number"),
     ('[sample]\n"shaft.speed" = [50.0, 60.0]\ncount = 4', "sample.seed = None is not a whole number"),
-    ('[sample]\n"shaft.speed" = [50.0]\ncount = 4\nseed = 1', "is no range [low, high]"),
-    ("[sample]\ncount = 4\nseed = 1\n" + GRID, "sample has no range"),
+    ('[sample]\n"shaft.speed" = [50.0]\ncount = 4\nseed = 1', "is not a range [low, high]"),
+    ("[sample]\ncount = 4\nseed = 1\n" + GRID, "sample needs a range"),
     ('flavour = "nativ"\n' + GRID, "there is no flavour 'nativ'; did you mean 'native'?"),
     ('[set]\n"shaft.sped" = 1\n' + GRID, "shaft.sped is unknown; did you mean 'speed'?"),
     (GRID + "[traces]\nfailure = 2", "traces.failure is unknown; did you mean 'failures'?"),
     (GRID + "[traces]\nsample = -1", "traces.sample = -1 is outside [0, 10000000]"),
 ]
 IN_MAP = [
-    ('x = "shaft.sped"\nvalue = "claim_1.worst"', "map.x = 'shaft.sped' is no axis; did you mean"),
+    ('x = "shaft.sped"\nvalue = "claim_1.worst"', "map.x = 'shaft.sped' is not an axis; did you mean"),
     ('x = "shaft.speed"', "map has no 'value'"),
     (
         'x = "shaft.speed"\nvalue = "belt.lowest_sped_limit"',
-        "is no column of results; did you mean 'belt.low",
+        "is not a column of results; did you mean 'belt.low",
     ),
     (
         'x = "shaft.speed"\ny = "shaft.speed"\nvalue = "claim_1.worst"',
@@ -231,7 +231,7 @@ IN_MAP = [
     (
         'x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
         '[sample]\ncount = 2\nseed = 1\n"weft.wheel_diameter" = [0.3, 0.4]',
-        "map: weft.wheel_diameter is sampled, many rows are at one point",
+        "map: weft.wheel_diameter is sampled, so many rows share one point",
     ),
 ]
 
@@ -265,7 +265,7 @@ def test_mistakes_outside_of_the_axes_are_found_too(tmp_path: Path) -> None:
         ),
         (HEAD.replace("scene.toml", "scen.toml"), "scen.toml: cannot be read (No such file"),
         (HEAD.replace("scene =", "sceen ="), "sceen is unknown; did you mean 'scene'?"),
-        (HEAD.replace('scene = "scene.toml"\n', ""), 'a sweep names its scene: scene = "loom.toml"'),
+        (HEAD.replace('scene = "scene.toml"\n', ""), 'a sweep must name its scene: scene = "loom.toml"'),
         ("title = \n", "not valid TOML"),
     ):
         path = written(tmp_path, GRID, head=head)
@@ -342,5 +342,5 @@ def test_too_many_combinations_are_refused(tmp_path: Path) -> None:
         f'"belt.{key}" = {{ from = 0.1, to = 0.2, count = 1000 }}\n'
         for key in ("bending_stiffness", "head_mass", "head_length")
     )
-    with pytest.raises(LoomfmuError, match="1000000000 combinations are more than 10000000"):
+    with pytest.raises(LoomfmuError, match="1000000000 combinations; the limit is 10000000"):
         plan(tmp_path, "[grid]\n" + text)

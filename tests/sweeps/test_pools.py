@@ -109,14 +109,14 @@ def test_a_script_without_main_guard_is_told_what_to_do(tmp_path: Path) -> None:
     script.write_text(SCRIPT)
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
-    assert 'keeps it below if __name__ == "__main__":' in done.stderr.splitlines()[-1]
+    assert 'call sweep() under if __name__ == "__main__":' in done.stderr.splitlines()[-1]
 
 
 def test_the_end_of_a_worker_at_its_start_is_no_fault_of_a_task(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("loomfmu.sweeps.pools._serve", odd_tasks.pid)  # ends at once
     pool = Processes(1)
     pool.submit(Task(0, odd_tasks.pid, (0,)))
-    with pytest.raises(LoomfmuError, match="the worker processes do not start"):
+    with pytest.raises(LoomfmuError, match="worker processes do not start"):
         pool.finished()
     pool.close()
 

@@ -147,7 +147,9 @@ def test_another_sweep_is_refused_until_it_is_thrown_away(plan: SweepPlan, tmp_p
     (place / "notes.txt").write_text("mine")
     before = sorted(path.relative_to(place) for path in place.rglob("*"))
     with (
-        pytest.raises(LoomfmuError, match=r"holds another sweep, or its file, .* --restart throws that away"),
+        pytest.raises(
+            LoomfmuError, match=r"contains another sweep, or the sweep, .* --restart deletes the old results"
+        ),
         opened(place, plan, "other", restart=False),
     ):
         pytest.fail("it was opened")
@@ -166,7 +168,7 @@ def test_what_no_sweep_wrote_is_left_alone(plan: SweepPlan, tmp_path: Path, name
     place = tmp_path / "results"
     (place / name).parent.mkdir(parents=True)
     (place / name).write_bytes(b"mine")
-    said = rf"results: it holds files that no sweep of loomfmu wrote \({Path(name).name}\); --output names"
+    said = rf"results: contains files that no loomfmu sweep wrote \({Path(name).name}\); choose another"
     with pytest.raises(LoomfmuError, match=said), opened(place, plan, "one", restart=restart):
         pytest.fail("it was opened")
     assert [path for path in place.rglob("*") if path.is_file()] == [place / name]

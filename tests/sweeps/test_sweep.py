@@ -233,7 +233,7 @@ def test_two_processes_make_the_table_of_one(tmp_path: Path, monkeypatch: pytest
 def test_fewer_than_one_process_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = written(tmp_path, GRID)
     assert main(["sweep", str(path), "--processes", "0"]) == 2
-    assert "processes = 0 is not 1 or more" in capsys.readouterr().err
+    assert "processes = 0 must be 1 or more" in capsys.readouterr().err
 
 
 # ---- traces
@@ -384,7 +384,7 @@ def test_a_sweep_writes_over_nothing_that_it_reads_or_that_is_not_its_own(tmp_pa
         loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True)
     assert os.listdir(tmp_path / "out") == ["lock"]
     (tmp_path / "out" / "lock").rename(tmp_path / "out" / "map.png")
-    with pytest.raises(LoomfmuError, match="it holds files that no sweep of loomfmu wrote"):
+    with pytest.raises(LoomfmuError, match="contains files that no loomfmu sweep wrote"):
         loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert os.listdir(tmp_path / "out") == ["map.png"]
 
@@ -401,7 +401,7 @@ def test_a_sweep_that_has_changed_does_not_go_on_where_another_was(
         (tmp_path / "scene.toml").write_text(SCENE.replace("bound = 0.0", "bound = 0.01"))
     else:
         monkeypatch.setitem(loomfmu.sweeps.worker.machines.MACHINES["WL680-3400"], "dc_mm", "151")
-    with pytest.raises(LoomfmuError, match="it holds another sweep"):
+    with pytest.raises(LoomfmuError, match="contains another sweep"):
         loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True).ran == 6
 
@@ -438,7 +438,7 @@ def test_a_scene_that_changes_while_its_sweep_runs_ends_it(
     (tmp_path / "scene.toml").write_text(SCENE.replace("bound = 0.0", "bound = 0.5"))
     monkeypatch.setattr(plans, "load", lambda _path: loaded)
     with pytest.raises(
-        LoomfmuError, match=r"scene\.toml: a worker has another version of loomfmu, or the file ch"
+        LoomfmuError, match=r"scene\.toml: a worker has another version of loomfmu, or the file has ch"
     ):
         loomfmu.sweep(path, processes=1, output=tmp_path / "out")
 

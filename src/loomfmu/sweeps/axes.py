@@ -48,14 +48,14 @@ def whole(given: Any, where: str, low: int, high: int = MOST) -> int:
 def flattened(table: Any, where: str, prefix: str = "") -> dict[str, Any]:
     """A table with its keys joined by dots, quoted or not; a table that is a range stays one."""
     if not isinstance(table, dict):
-        raise LoomfmuError(f"{where} is no table")
+        raise LoomfmuError(f"{where} must be a table")
     flat: dict[str, Any] = {}
     for key, value in table.items():
         nested = isinstance(value, dict) and not set(RANGE) & set(value)
         found = flattened(value, where, f"{prefix}{key}.") if nested else {prefix + key: value}
         for name in found:
             if name in flat:
-                raise LoomfmuError(f"{where}.{name} is there twice")
+                raise LoomfmuError(f"{where}.{name} appears twice")
         flat |= found
     return flat
 
@@ -82,7 +82,7 @@ def grid_axis(varied: Varied, given: Any) -> Axis:
     seen: set[Value] = set()
     for value in values:
         if value in seen:
-            raise LoomfmuError(f"{where}: {varied.show(value)} is there twice")
+            raise LoomfmuError(f"{where}: {varied.show(value)} appears twice")
         seen.add(value)
     return Axis(varied, np.array(values, TYPES[varied.kind]), doubts=_doubts(varied, given))
 
@@ -123,7 +123,7 @@ def _as_range(varied: Varied, given: Any) -> dict[str, Any]:
     if isinstance(given, list) and len(given) == 2:
         given = {"from": given[0], "to": given[1]}
     if not isinstance(given, dict):
-        raise LoomfmuError(f"{where} = {given!r} is no range [low, high]")
+        raise LoomfmuError(f"{where} = {given!r} is not a range [low, high]")
     if "count" in given:
         raise LoomfmuError(f"{where}.count: a sample has one count for all, sample.count")
     return given
@@ -138,7 +138,7 @@ def _ends(varied: Varied, table: dict[str, Any], where: str) -> tuple[float, flo
         if key not in table:
             raise LoomfmuError(f"{where} has no {key!r}")
     if varied.kind not in ("Real", "Integer"):
-        raise LoomfmuError(f"{where} is no number and has no range: list its values in [grid]")
+        raise LoomfmuError(f"{where} is not a number: list its values in [grid]")
     ends: list[Value] = [varied.read(table[key]) for key in ("from", "to")]
     low, high = (float(end) for end in ends)
     if not low < high:

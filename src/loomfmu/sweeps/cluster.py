@@ -19,12 +19,12 @@ class Cluster:
             self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             reason = " ".join(str(error).split())
-            raise LoomfmuError(f"{address}: no dask scheduler answers there ({reason})") from None
+            raise LoomfmuError(f"{address}: no dask scheduler answers ({reason})") from None
         try:
             self._client.wait_for_workers(1, timeout=ANSWER)
         except TimeoutError:
             self._client.close()
-            raise LoomfmuError(f"{address}: that dask scheduler has no workers") from None
+            raise LoomfmuError(f"{address}: the dask scheduler has no workers") from None
         self._tasks: dict[Any, Any] = {}  # future -> key
 
     @property
@@ -50,7 +50,7 @@ class Cluster:
         if future.status == "finished":
             return future.result()
         if future.status != "error":
-            raise LoomfmuError(f"{self.address}: the dask scheduler is gone ({future.status})")
+            raise LoomfmuError(f"{self.address}: lost the dask scheduler ({future.status})")
         error = future.exception()
         killed = isinstance(error, distributed.KilledWorker)
         return Died("the processes that ran it have ended") if killed else error

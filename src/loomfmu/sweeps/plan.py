@@ -114,7 +114,7 @@ def _parse(text: str, path: Path) -> SweepPlan:
         if key not in KEYS:
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
     if not isinstance(tables.get("scene"), str):
-        raise LoomfmuError('a sweep names its scene: scene = "loom.toml", relative to the sweep')
+        raise LoomfmuError('a sweep must name its scene: scene = "loom.toml", relative to the sweep file')
     flavour = tables.get("flavour", "live")
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(str(flavour), FLAVOURS)}")
@@ -132,7 +132,7 @@ def _parse(text: str, path: Path) -> SweepPlan:
         traces=_traces(tables.get("traces", {})), map=request,
     )  # fmt: skip
     if plan.rows > MOST:
-        raise LoomfmuError(f"{plan.rows} combinations are more than {MOST}")
+        raise LoomfmuError(f"{plan.rows} combinations; the limit is {MOST}")
     return plan
 
 
@@ -151,14 +151,14 @@ def _axes(scene: Scene, fixed: dict[str, Any], tables: dict[str, Any]) -> tuple[
                 raise LoomfmuError(f"{where}: {error}") from None
             for target in found[f"{where}.{key}"].targets:
                 if target in taken:
-                    raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} sets already")
+                    raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} already sets")
                 taken[target] = f"{where}.{key}"
     if not found:
         raise LoomfmuError('nothing varies: list values in [grid], such as "shaft.speed" = ["500 rpm"]')
     if ranges:
         count, seed = whole(count, "sample.count", 1), whole(seed, "sample.seed", 0, 2**63 - 1)
     elif (count, seed) != (None, None):
-        raise LoomfmuError('sample has no range, such as "belt.guide_clearance" = ["0.2 mm", "1 mm"]')
+        raise LoomfmuError('sample needs a range, such as "belt.guide_clearance" = ["0.2 mm", "1 mm"]')
     return (
         [grid_axis(found[f"grid.{key}"], given) for key, given in gridded.items()],
         sample_axes([(found[f"sample.{key}"], given) for key, given in ranges.items()], count, seed),
@@ -182,14 +182,14 @@ def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:
     for signal in given:
         output_port(scene, signal, "values")
         if signal in taken:
-            raise LoomfmuError(f"values: {signal} is a column already")
+            raise LoomfmuError(f"values: {signal} is already a column")
         taken.append(signal)
     return given
 
 
 def _traces(table: Any) -> Traces:
     if not isinstance(table, dict):
-        raise LoomfmuError("traces is no table")
+        raise LoomfmuError("traces must be a table")
     known = ("failures", "sample")
     for key in table:
         if key not in known:

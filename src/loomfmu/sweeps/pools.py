@@ -161,8 +161,8 @@ class Processes:
         worker.end()
         if not worker.ready:
             raise LoomfmuError(
-                "the worker processes do not start; a script that starts a sweep keeps it below"
-                ' if __name__ == "__main__":, or has processes=1'
+                "worker processes do not start; in a script, call sweep() under"
+                ' if __name__ == "__main__": or set processes=1'
             )
         assert worker.task is not None
         how = signal.Signals(-code).name if code < 0 else f"status {code}"

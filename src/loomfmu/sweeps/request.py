@@ -26,7 +26,7 @@ class Map:
 def requested(table: Any, axes: list[Axis], columns: list[str]) -> Map:
     """The picture of a `[map]` table. Raises LoomfmuError for what cannot be drawn."""
     if not isinstance(table, dict):
-        raise LoomfmuError("map is no table")
+        raise LoomfmuError("map must be a table")
     for key in table:
         if key not in KEYS:
             raise LoomfmuError(f"map.{key} is unknown{suggestion(key, KEYS)}")
@@ -36,11 +36,13 @@ def requested(table: Any, axes: list[Axis], columns: list[str]) -> Map:
     known = {axis.key: axis for axis in axes}
     for key in ("x", "y"):
         if key in table and table[key] not in known:
-            raise LoomfmuError(f"map.{key} = {table[key]!r} is no axis{suggestion(str(table[key]), known)}")
+            raise LoomfmuError(
+                f"map.{key} = {table[key]!r} is not an axis{suggestion(str(table[key]), known)}"
+            )
     if table["x"] == table.get("y"):
         raise LoomfmuError(f"map.x and map.y are both {table['x']}")
     if table["value"] not in columns:
-        shown = f"map.value = {table['value']!r} is no column of results"
+        shown = f"map.value = {table['value']!r} is not a column of results"
         raise LoomfmuError(f"{shown}{suggestion(str(table['value']), columns)}")
     at = _picked(flattened(table.get("at", {}), "map.at"), known)
     found = Map(table["x"], table.get("y"), table["value"], at)
@@ -54,7 +56,7 @@ def _picked(at: dict[str, Any], axes: dict[str, Axis]) -> dict[str, Value]:
     for key, given in at.items():
         grid = [name for name, axis in axes.items() if not axis.sampled]
         if key not in grid:
-            raise LoomfmuError(f"map.at.{key} is no axis of the grid{suggestion(key, grid)}")
+            raise LoomfmuError(f"map.at.{key} is not an axis of the grid{suggestion(key, grid)}")
         axis = axes[key]
         value = axis.varied.read(given)
         same = [each for each in axis.values.tolist() if _same(each, value)]
@@ -76,12 +78,14 @@ def _check_settled(request: Map, axes: list[Axis]) -> None:
     drawn = [axis for axis in axes if axis.key in (request.x, request.y)]
     for axis in drawn:
         if axis.key in request.at:
-            raise LoomfmuError(f"map.at.{axis.key} is drawn already")
+            raise LoomfmuError(f"map.at.{axis.key} is already drawn along x or y")
     if any(axis.sampled for axis in drawn):
         return
     left = [axis for axis in axes if axis not in drawn and axis.key not in request.at]
     sampled = [axis.key for axis in left if axis.sampled]
     if sampled:
-        raise LoomfmuError(f"map: {sampled[0]} is sampled, many rows are at one point; draw it along x or y")
+        raise LoomfmuError(
+            f"map: {sampled[0]} is sampled, so many rows share one point; draw it along x or y"
+        )
     if len(left) > (1 if request.y is None else 0):
         raise LoomfmuError(f"map: {left[0].key} varies too; pick one of its values in [map.at]")

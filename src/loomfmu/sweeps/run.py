@@ -103,7 +103,7 @@ def sweep(
     if processes is not None and (
         isinstance(processes, bool) or not isinstance(processes, int) or processes < 1
     ):
-        raise LoomfmuError(f"processes = {shown(processes)} is not 1 or more")
+        raise LoomfmuError(f"processes = {shown(processes)} must be 1 or more")
     if scheduler is not None and not isinstance(scheduler, str):
         raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
     path = path_of(path, "sweep")
@@ -128,7 +128,7 @@ def sweep(
             store.tidy()
     except KeyboardInterrupt:
         raise KeyboardInterrupt(
-            f"interrupted; what is finished is kept in {directory}, the same command goes on from there"
+            f"interrupted; finished rows are kept in {directory}; run the same command to continue"
         ) from None
     return Sweep(plan, table, store.table_path, ran, picture, traces)
 

@@ -162,15 +162,15 @@ def _check_identity(store: Store, fingerprint: str, restart: bool) -> None:
     if known is None and (path.exists() or store.results()):
         foreign = path if path.exists() else store.results()[0]
         raise LoomfmuError(
-            f"{store.directory}: it holds files that no sweep of loomfmu wrote ({foreign.name});"
-            " --output names another place"
+            f"{store.directory}: contains files that no loomfmu sweep wrote ({foreign.name});"
+            " choose another directory with --output"
         )
     if restart:
         store.clear()
     elif known not in (None, fingerprint):
         raise LoomfmuError(
-            f"{store.directory}: it holds another sweep, or its file, its scene, an FMU or loomfmu has"
-            " changed since; --restart throws that away, --output names another place"
+            f"{store.directory}: contains another sweep, or the sweep, its scene, an FMU or loomfmu has"
+            " changed since; --restart deletes the old results, --output chooses another directory"
         )
     if restart or known is None:
         content = {"title": store.plan.title, "rows": store.plan.rows, "fingerprint": fingerprint}

@@ -55,7 +55,7 @@ def varied(scene: Scene, key: str) -> Varied:
         return _of_scene(key)
     found = [_variable(scene, key, instance, variable) for instance, variable in pairs]
     if any((each.kind, each.unit) != (found[0].kind, found[0].unit) for each in found):
-        raise LoomfmuError(f"{key} is not of one type and unit in {', '.join(name for name, _ in pairs)}")
+        raise LoomfmuError(f"{key} differs in type or unit between {', '.join(name for name, _ in pairs)}")
     targets = tuple(f"{instance}.{variable}" for instance, variable in pairs)
     first = found[0]
     return replace(first, targets=targets)

@@ -109,7 +109,7 @@ def _scene(job: Job) -> Scene:
     scene = read_scene(job.path, dict(job.fixed))
     if identity(scene, job.flavour) != job.identity:
         raise LoomfmuError(
-            f"{job.path}: a worker has another version of loomfmu, or the file changed since the sweep began"
+            f"{job.path}: a worker has another version of loomfmu, or the file has changed since the start"
         )
     return scene
 

@@ -504,7 +504,7 @@ def test_a_mark_of_the_encoding_is_read_over_and_what_is_no_text_is_told(tmp_pat
     assert scenes.load(marked).text == text
     for name, content, said in (
         ("wide.toml", text.encode("utf-16"), "is not text in UTF-8"),
-        ("run.h5", b"\x89HDF\r\n\x1a\n", "is not text in UTF-8; loomfmu show .*run.h5 tells of a trace"),
+        ("run.h5", b"\x89HDF\r\n\x1a\n", "is not text in UTF-8; use loomfmu show .*run.h5 for a trace"),
     ):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(LoomfmuError, match=f"{name}: {said}$"):
