@@ -324,8 +324,8 @@ def _new(options: argparse.Namespace) -> int:
     from .new import new
 
     written = new(options.name, options.output)
-    say(*written, sep="\n")
-    say(f"\nnext: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
+    say(*written, "")
+    say(f"next: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
     return 0
 
 

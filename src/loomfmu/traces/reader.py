@@ -31,8 +31,9 @@ class Trace(Signals):
     The file is open while it is read, and within a `with` statement: hundreds of traces can be held at once.
     It stays readable when a run of this process writes another one under its name.
 
-    HDF5 loops for ever over some damage. Where a file may be damaged, call `loomfmu.traces.damage.check(path)`
-    first, as `loomfmu show` does: it reads the file in a process of its own, which takes a third of a second.
+    HDF5 loops for ever over some damage. Where a file may be damaged, first call
+    `loomfmu.traces.damage.check(path)`, as `loomfmu show` does: it reads the file in a process of its own,
+    which takes a third of a second.
     """
 
     def __init__(self, path: str | Path):
@@ -62,9 +63,7 @@ class Trace(Signals):
     def _open(self) -> Any:
         try:
             if self._state and _state(self.path) != self._state:
-                raise LoomfmuError(
-                    f"{self.path}: it has changed since it was opened: another trace has replaced it"
-                )
+                raise LoomfmuError(f"{self.path}: another trace has replaced it since it was opened")
             return _hdf5(self.path)
         except FileNotFoundError:
             raise LoomfmuError(f"{self.path}: there is no such file") from None
