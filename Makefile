@@ -25,9 +25,9 @@ check: .venv/installed-for-tests
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# the stress tests, the long ones included
+# the stress tests and the attack, the long ones included
 stress: .venv/installed-for-tests
-	$(BIN)/python -m pytest tests/stress -m "slow or not slow"
+	$(BIN)/python -m pytest tests/stress tests/attack -m "slow or not slow"
 
 # hostile scenes, packages, FMUs and weaves from a generator, the long sets included
 attack: .venv/installed-for-tests
