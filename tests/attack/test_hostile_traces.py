@@ -4,9 +4,9 @@ from collections import Counter
 from pathlib import Path
 
 import h5py
+import hostile_traces
 import numpy as np
 import pytest
-from attack import hostile
 from live_fmus import fmu_cache
 
 import loomfmu
@@ -48,7 +48,7 @@ def shown(path: Path, capsys: pytest.CaptureFixture[str]) -> int:
     return status
 
 
-CRAFTED = dict(hostile.crafted())
+CRAFTED = dict(hostile_traces.crafted())
 
 
 @pytest.mark.parametrize("name", CRAFTED)
@@ -76,7 +76,7 @@ def test_what_somebody_crafts_is_refused(
 def attack(valid: bytes, path: Path, capsys: pytest.CaptureFixture[str], seeds: range) -> str:
     found: Counter[int] = Counter()
     for seed in seeds:
-        path.write_bytes(hostile.damaged(valid, seed))
+        path.write_bytes(hostile_traces.damaged(valid, seed))
         found[shown(path, capsys)] += 1
     assert set(found) <= {0, 1, 2}
     return f"hostile traces: {len(seeds)} tried, {found[2]} refused in one line, the others shown"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from attack.running import started
 from live_fmus import fmu_cache
+from running import started
 from sweeps.sweep_files import NO_TRACES, written
 from sweeps.sweep_files import started as sweep_started
 

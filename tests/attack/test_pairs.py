@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from attack.running import started
 from live_fmus import fmu_cache
+from running import started
 
 from loomfmu import Trace
 
