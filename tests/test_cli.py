@@ -97,7 +97,7 @@ def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> 
     )
     assert main(["run", scene(text)]) == 0
     assert capsys.readouterr().err.splitlines() == [
-        "warning: belt: guide_clearance = 1.2 mm: from 1 mm the belt is to be replaced or the loom slowed",
+        "warning: belt: guide_clearance = 1.2 mm: above 1 mm replace the belt or slow the loom down",
         "warning: loop: belt.inertia_force -> belt.yarn_tension carries the value of the step before",
     ]
 
@@ -617,10 +617,10 @@ def test_a_mistake_in_set_is_told_in_one_line(
             "weft: the planar four-bar does not close over the rocker's swing: crank_length = 150 mm,"
             " coupler_length = 20 mm, output_length = 121 mm, pivot at (243 mm, 258 mm)",
         ),
-        ("[weft]\nassembly = 0\n", "weft: assembly = 0 is outside {-1, 1}"),
+        ("[weft]\nassembly = 0\n", "weft: assembly = 0 must be -1 or 1"),
         (
             '[damper_1]\nstart_displacement = "20 mm"\n',
-            "damper_1: start_displacement = 20 mm is beyond the stops at free_travel = 15 mm",
+            "damper_1: start_displacement = 20 mm must lie between the stops at free_travel = 15 mm",
         ),
     ],
 )

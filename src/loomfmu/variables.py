@@ -8,6 +8,7 @@ documentation, the checks of limits and the C struct all come from `variables_of
 
 import math
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from itertools import groupby
@@ -15,6 +16,8 @@ from typing import Any, ClassVar
 
 from . import units
 from .errors import LoomfmuError
+
+LARGEST_INTEGER = 2147483647  # of FMI 2
 
 
 @dataclass(frozen=True)
@@ -75,8 +78,15 @@ class Variable:
     @property
     def quantity(self) -> str:
         """What it measures, where its unit tells: empty for a number, and for what is only kept inside."""
-        told = self.type is float and self.causality != "local"
-        return units.QUANTITIES.get(self.unit, "") if told else ""
+        known = self.type is float and self.causality != "local"
+        return units.QUANTITIES.get(self.unit, "") if known else ""
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Lowest and highest value inside an FMU: where none is declared, the largest of its type."""
+        largest = LARGEST_INTEGER if self.type is int else sys.float_info.max
+        low = -largest if self.minimum is None else self.minimum
+        return low, largest if self.maximum is None else self.maximum
 
     def read(self, given: Any, name: str) -> float:
         """A quantity as people write it, in SI and within the limits; `name` is what a message calls it.
@@ -108,8 +118,8 @@ class Variable:
 class Problem:
     """A problem that a component reports by its number, counted from 1.
 
-    `text` may hold `{variable}` for the value of a variable. A warning is told once and the run goes
-    on; anything else ends the step.
+    `text` may hold `{variable}` for the value of a variable. A warning is logged once and the run
+    continues; anything else ends the step.
     """
 
     text: str
@@ -229,10 +239,20 @@ def output(
     )  # fmt: skip
 
 
-def state(unit: str, description: str, *, start: float | int | bool = 0.0) -> Any:
-    """A value that the component carries from one step to the next, or computes once."""
+def state(
+    unit: str,
+    description: str,
+    *,
+    start: float | int | bool = 0.0,
+    minimum: float | None = None,
+    maximum: float | None = None,
+) -> Any:
+    """A value that the component carries from one step to the next, or computes once.
+
+    Its limits are those that the component itself keeps to: a saved state beyond them is refused.
+    """
     variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare("local", variability, unit, start, description, None)
+    return _declare("local", variability, unit, start, description, None, minimum=minimum, maximum=maximum)
 
 
 def indicator(unit: str, description: str) -> Any:

@@ -35,11 +35,12 @@ every_flag = pytest.mark.parametrize(
 
 
 def finite(component):
-    """Every number finite, every value of its declared type."""
+    """Every number finite and within its limits, every value of its declared type."""
     for variable in declared(type(component)):
         value = getattr(component, variable.name)
         assert type(value) is variable.type, variable.name
-        assert math.isfinite(value), variable.name
+        low, high = variable.limits
+        assert low <= value <= high, variable.name
 
 
 # What a component says of itself

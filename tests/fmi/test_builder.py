@@ -21,7 +21,6 @@ from loomfmu import LoomfmuError, components
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi import builder
 from loomfmu.fmi.description import documentation
-from loomfmu.fmi.live import live_slave, live_wrapper
 from loomfmu.fmi.source import SourceError, flatten
 from loomfmu.variables import Component, output, parameter, variables_of
 
@@ -113,8 +112,7 @@ def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> Non
         f"resources/{entry}.py",
         f"resources/{package}/__init__.py",
         f"resources/{package}/component.py",
-        f"resources/{package}/live_wrapper.py",
-        f"resources/{package}/slave.py",
+        *(f"resources/{package}/live_{part}.py" for part in ("slave", "state", "wrapper")),
     }
     imported = set()
     for text in modules.values():
@@ -124,10 +122,22 @@ def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> Non
             elif isinstance(node, ast.ImportFrom):
                 imported.add(f"{package}.{node.module}" if node.level else str(node.module))
     own = {module for module in imported if module.split(".")[0] == package}
-    little = {"atexit", "collections.abc", "ctypes", "math", "operator", "os", "struct", "sys", "typing"}
+    little = {
+        "atexit",
+        "collections.abc",
+        "ctypes",
+        "math",
+        "operator",
+        "os",
+        "struct",
+        "sys",
+        "typing",
+        "zlib",
+    }
     # ctypes only where a call fails and at the end of the process, logging only where a call fails
     assert imported - own - {"logging"} <= little
-    assert own <= {f"{package}.component", f"{package}.slave", f"{package}.live_wrapper"}
+    parts = ("component", "live_slave", "live_state", "live_wrapper", "None")  # None: the package itself
+    assert own <= {f"{package}.{part}" for part in parts}
 
 
 @every_fmu
@@ -257,7 +267,7 @@ def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> No
     before = builder.guid(Original)
     assert builder.guid(Faster) != before
     source = builder._source
-    for copied in (live_slave, live_wrapper):
+    for copied in builder.LIVE:
         monkeypatch.setattr(builder, "_source", lambda m, of=copied: source(m) + "# other\n" * (m is of))
         assert builder.guid(Original) != before
     monkeypatch.setattr(builder, "_source", source)

@@ -153,11 +153,11 @@ def test_no_instance_answers_with_an_error(native):
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        ({"guid": "another"}, "the GUID is not that of MainShaft"),
-        ({"name": ""}, "an instance needs a name"),
-        ({"name": " \t"}, "an instance needs a name"),
-        ({"name": None}, "an instance needs a name"),
-        ({"kind": 2}, "MainShaft has no such interface"),
+        ({"guid": "another"}, "the GUID must be that of MainShaft"),
+        ({"name": ""}, "the instance name is empty"),
+        ({"name": " \t"}, "the instance name is empty"),
+        ({"name": None}, "the instance name is empty"),
+        ({"kind": 2}, "the type must be fmi2CoSimulation or fmi2ModelExchange"),
     ],
 )
 def test_an_instance_that_cannot_be_is_refused_with_a_reason(native, options, reason):
@@ -193,7 +193,7 @@ def test_without_memory_it_says_so(native, built):
     instance.fails = True
     state = c_void_p()
     assert instance.call("GetFMUstate", byref(state)) == ERROR
-    assert instance.texts == ["there is no memory for an FMU state"] and not state
+    assert instance.texts == ["out of memory for an FMU state"] and not state
 
     class Poor(Native):
         def __init__(self) -> None:
@@ -209,7 +209,7 @@ def test_without_memory_it_says_so(native, built):
             pass
 
     poor = Poor()
-    assert not poor.component and poor.texts == ["there is no memory for an instance"]
+    assert not poor.component and poor.texts == ["out of memory for an instance"]
 
 
 def test_a_host_need_not_lend_its_memory(native):
@@ -241,7 +241,7 @@ def test_logging_by_category(native):
     assert quiet.step(0.0, -1.0) == DISCARD
     assert quiet.log[-1][1] == "logStatusDiscard"
     assert switch(quiet, 1, b"logAll") == WARNING
-    assert quiet.texts[-1] == "a log category is asked for that there is not"
+    assert quiet.texts[-1] == "unknown log category"
     assert switch(quiet, 0) == OK
     quiet.log.clear()
     quiet.call("Reset")

@@ -149,12 +149,12 @@ def test_none_at_all_are_taken_by_one_without_inputs(native):
 @pytest.mark.parametrize(
     ("derivatives", "reason"),
     [
-        ({("travel", 1): 1.0}, "value reference 23 is no input: travel"),
-        ({("follow_shaft", 1): 1.0}, "value reference 3 is no Real variable"),
-        ({("shaft_angle", 0): 1.0}, "a finite derivative of order 1 to 3 is asked for"),
-        ({("shaft_angle", 4): 1.0}, "a finite derivative of order 1 to 3 is asked for"),
-        ({("shaft_angle", -2147483648): 1.0}, "a finite derivative of order 1 to 3 is asked for"),
-        ({("shaft_angle", 1): math.nan}, "a finite derivative of order 1 to 3 is asked for"),
+        ({("travel", 1): 1.0}, "value reference 23, travel, is not an input"),
+        ({("follow_shaft", 1): 1.0}, "value reference 3 is not a variable of type Real"),
+        ({("shaft_angle", 0): 1.0}, "the derivative must be finite and of order 1 to 3"),
+        ({("shaft_angle", 4): 1.0}, "the derivative must be finite and of order 1 to 3"),
+        ({("shaft_angle", -2147483648): 1.0}, "the derivative must be finite and of order 1 to 3"),
+        ({("shaft_angle", 1): math.nan}, "the derivative must be finite and of order 1 to 3"),
     ],
 )
 def test_derivatives_that_are_refused(native, derivatives, reason):

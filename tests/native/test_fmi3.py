@@ -211,24 +211,24 @@ def test_words_of_refusal(native3):
     instance = native3("MainShaft")
     reference, one = (ctypes.c_uint32 * 1)(9), c_size_t(1)
     assert instance.call("SetFloat64", reference, one, byref(c_double(1.0)), one) == ERROR  # the time
-    assert instance.texts == ["value reference 9 is no Float64 variable"]
+    assert instance.texts == ["value reference 9 is not a variable of type Float64"]
     instance = native3("MainShaft")
     assert instance.call("GetInt32", reference, one, byref(c_double()), one) == ERROR
-    assert instance.texts == ["value reference 9 is no Int32 variable"]
+    assert instance.texts == ["value reference 9 is not a variable of type Int32"]
     instance = native3("MainShaft")
     assert instance.call("GetFloat64", reference, one, byref(c_double()), c_size_t(2)) == ERROR
-    assert instance.texts == ["each value reference has one value"]
+    assert instance.texts == ["there must be as many values as value references"]
 
 
 @pytest.mark.parametrize(
     ("kind", "options", "reason"),
     [
-        ("CoSimulation", {"token": "another"}, "the token is not that of BeltMonitor"),
-        ("CoSimulation", {"name": " "}, "an instance needs a name"),
-        ("CoSimulation", {"name": None}, "an instance needs a name"),
-        ("CoSimulation", {"event_mode": True}, "there is no event mode"),
-        ("ModelExchange", {}, "BeltMonitor remembers: it is for co-simulation only"),
-        ("ScheduledExecution", {}, "scheduled execution is not provided"),
+        ("CoSimulation", {"token": "another"}, "the token must be that of BeltMonitor"),
+        ("CoSimulation", {"name": " "}, "the instance name is empty"),
+        ("CoSimulation", {"name": None}, "the instance name is empty"),
+        ("CoSimulation", {"event_mode": True}, "event mode is not supported"),
+        ("ModelExchange", {}, "BeltMonitor keeps a state from step to step: it supports co-simulation only"),
+        ("ScheduledExecution", {}, "scheduled execution is not supported"),
     ],
 )
 def test_an_instance_that_cannot_be_is_refused_with_a_reason(native3, kind, options, reason):
@@ -490,7 +490,7 @@ def test_a_state_of_the_other_interface_is_refused(native3):
     status, copy = solving.unpack(stepped.packed(state))
     assert status == OK
     assert solving.call("SetFMUState", copy) == ERROR
-    assert solving.texts == ["the FMU state is one of the other interface"]
+    assert solving.texts == ["the FMU state belongs to another interface type"]
     assert (stepped.drop(state), solving.drop(copy)) == (OK, OK)
 
 

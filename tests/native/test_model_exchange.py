@@ -87,7 +87,7 @@ def test_outputs_are_those_of_the_time_that_is_set(native, name):
 def test_a_component_that_remembers_is_for_co_simulation(native):
     instance = native("BeltMonitor", kind=MODEL_EXCHANGE)
     assert not instance.component
-    assert "BeltMonitor remembers: it is for co-simulation only" in instance.texts[0]
+    assert "BeltMonitor keeps a state from step to step: it supports co-simulation only" in instance.texts[0]
 
 
 def test_there_are_no_states_and_as_many_indicators_as_are_told(native):
@@ -119,7 +119,7 @@ def test_a_state_is_restored_in_its_own_interface_alone(native):
     assert solving.call("SetTime", c_double(0.7)) == OK
     assert solving.call("SetFMUstate", saved) == OK and solving.get("angle") == angle
     assert stepping.call("SetFMUstate", saved) == ERROR
-    assert stepping.texts == ["the FMU state is one of the other interface"]
+    assert stepping.texts == ["the FMU state belongs to another interface type"]
     assert solving.call("SetFMUstate", native("MainShaft").start().save()) == ERROR
 
 

@@ -1,6 +1,7 @@
 """The state of a native FMU: saved, restored, as bytes, and what is none."""
 
 import random
+import struct
 from ctypes import byref, c_size_t, c_void_p, create_string_buffer
 
 import pytest
@@ -94,7 +95,7 @@ def test_a_handle_that_is_none(native):
         for handle in (c_void_p(), byref(create_string_buffer(64))):
             instance = native("MainShaft")
             assert instance.call(function, handle, byref(c_size_t()), c_size_t(0)) == ERROR
-            assert instance.texts == ["the FMU state is not one of this FMU"]
+            assert instance.texts == ["the FMU state is damaged or belongs to another FMU"]
     instance = native("MainShaft")
     assert instance.call("GetFMUstate", None) == ERROR
     instance = native("MainShaft")
@@ -113,7 +114,7 @@ def test_sizes(native):
     for wrong in (b"", content[:-1], content + b"\0", content * 2):
         status, other = instance.unpack(wrong)
         assert status == ERROR and not other
-        assert instance.texts[-1] == "the bytes are not an FMU state of this FMU"
+        assert instance.texts[-1] == "the FMU state is damaged or belongs to another FMU"
     assert instance.drop(state) == OK
 
 
@@ -160,6 +161,19 @@ def test_a_state_that_cannot_be_is_refused_even_with_a_proper_checksum(native):
         (speed + 8, b"\x08"), (speed + 9, nan),  # no derivatives
     ):  # fmt: skip
         assert instance.unpack(forged(content, place, value))[0] == ERROR, (place, value)
+    assert instance.drop(state) == OK
+
+
+def test_a_state_beyond_the_limits_of_its_local_variables_is_refused(native):
+    # of the time to come before the last sample the moments of the thread's memory were summed for ever
+    instance = native("WarpTension").start()
+    state = instance.save()
+    content = instance.packed(state)
+    names = list(instance.fmu.ports)
+    for name, value in (("pending", -1e300), ("elapsed", -1.0)):
+        place = 8 + 36 + 4 + 16 + names.index(name) * (8 + 1 + 3 * 8)
+        assert instance.unpack(forged(content, place, struct.pack("<d", 1.0)))[0] == OK
+        assert instance.unpack(forged(content, place, struct.pack("<d", value)))[0] == ERROR
     assert instance.drop(state) == OK
 
 

@@ -153,7 +153,7 @@ def test_a_shaft_beyond_all_counting_is_refused():
         assert part.initialize(0.0) == 0
         assert part.step(1.9e6, 0.0) == 0
         problem = part.step(2.1e6, 0.0)
-        assert "more than 2e9 rad from its zero" in part.problems[problem - 1].text
+        assert "more than 2e9 rad from zero" in part.problems[problem - 1].text
         for time in (1e300, -1e300, 1.7e308):
             assert part.initialize(time) == problem
     frame_ = COMPONENTS["HealdFrame"](rotor_angle=1e9, rotor_velocity=1e6)

@@ -488,7 +488,7 @@ def test_warnings_are_kept_and_told_on_the_error_stream(
         "row 1 warned (belt.guide_clearance = 2 mm): belt: guide_clearance = 2 mm" in capsys.readouterr().err
     )
     warnings = pq.read_table(tmp_path / "out" / "table.parquet")["warnings"].to_pylist()
-    assert warnings[0] is None and "from 1 mm the belt is to be replaced" in warnings[1]
+    assert warnings[0] is None and "above 1 mm replace the belt" in warnings[1]
 
 
 def test_a_terminal_sees_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ class BeltMonitor(ShaftDriven):
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "guide_clearance = {guide_clearance}: from 1 mm the belt is to be replaced or the loom slowed",
+            "guide_clearance = {guide_clearance}: above 1 mm replace the belt or slow the loom down",
             warning=True,
         ),
         TOO_FAR,
@@ -134,7 +134,7 @@ class BeltMonitor(ShaftDriven):
     sampled_bend: float = state("m", "Travel by shaft angle at the last sample, second derivative")
     sampled_turning: bool = state("1", "The shaft was turning at the last sample", start=False)
     bump_by_time: float = state("m", "Bump of the rate by time over the last step")
-    bump_time: float = state("s", "Duration of the last step, if it was interpolated")
+    bump_time: float = state("s", "Duration of the last step, if it was interpolated", minimum=0.0)
     bump_by_angle: float = state("m", "Bump of the rate by shaft angle over the last step")
     bump_angle: float = state("rad", "Shaft angle of the last step, if it was interpolated")
     joined_angle: float = state("rad", "Shaft angle of the current sample")

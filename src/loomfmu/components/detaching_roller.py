@@ -32,9 +32,9 @@ class DetachingRoller(ShaftDriven):
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the top roller's inertia takes more than the friction of the nip can hold at roller_acceleration"
-            " = {roller_acceleration}: raise nip_load = {nip_load} or slow down; the drafting force of the"
-            " model is negative there",
+            "the top roller's inertia exceeds the friction of the nip at roller_acceleration ="
+            " {roller_acceleration}, so the model's drafting force is negative: increase nip_load ="
+            " {nip_load} or slow down",
             warning=True,
         ),
         TOO_FAR,

@@ -13,7 +13,7 @@ from .terminals import FRAME
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
 SHORTEST = 1e-15
 # Pieces of motion in one step: some 10 us each in Python
-MOST_PIECES = 100000
+MOST_PIECES = 10000
 # Largest acceleration [m/s2] of a frame at rest: some hundred roundings of the motion of a loom, and little
 # enough for one that turns once in a quarter of an hour. Against less than that no ratio can be told.
 RESTING = 1e-12
@@ -32,12 +32,13 @@ class HealdDamper(Component):
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the carrier changes its contact or its piece of motion more than 100,000 times in one step"
+            "the step spans more than 10,000 contacts or pieces of the carrier's motion"
             " (spring_stiffness = {spring_stiffness}, damping_ratio = {damping_ratio}, stop_stiffness ="
-            " {stop_stiffness}, carrier_mass = {carrier_mass}); take a smaller step"
+            " {stop_stiffness}, carrier_mass = {carrier_mass}); use a smaller step"
         ),
         Problem(
-            "start_displacement = {start_displacement} is beyond the stops at free_travel = {free_travel}"
+            "start_displacement = {start_displacement} must lie between the stops at"
+            " free_travel = {free_travel}"
         ),
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
@@ -104,16 +105,19 @@ class HealdDamper(Component):
         "Largest acceleration of the carrier so far relative to the frame's; 0 while the frame rests",
         nominal=10.0,
     )
-    damping: float = state("N.s/m", "Damping of the suspension")
-    stop_damping: float = state("N.s/m", "Damping of a stop")
-    contact: int = state("1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0)
+    damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
+    stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
+    contact: int = state(
+        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0,
+        minimum=-2, maximum=2,
+    )  # fmt: skip
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_force: float = state("N", "Warp load at the last sample")
-    largest_lift: float = state("m", "Largest absolute lift so far, the measure of its rounding")
-    peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far")
-    peak_frame: float = state("m/s2", "Largest acceleration of the frame so far")
+    largest_lift: float = state("m", "Largest absolute lift so far, the measure of its rounding", minimum=0.0)
+    peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far", minimum=0.0)
+    peak_frame: float = state("m/s2", "Largest acceleration of the frame so far", minimum=0.0)
 
     def check(self) -> int:
         """Whether the carrier starts between its stops."""

@@ -111,7 +111,7 @@ class PatternLock(ShaftDriven):
         "W", "Power lost by all pawls on the discs, at the rotor's highest speed", nominal=100.0,
         depends=("shaft_velocity", "shaft_acceleration"),
     )  # fmt: skip
-    inertia: float = state("kg.m2", "Moment of inertia of the pawl")
+    inertia: float = state("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
     whole_turn: float = state("rad", "Angle that the pawl turns from one disc to the other")
     in_time_event: float = indicator(
         "rad/s", "Margin of the shaft speed below speed_limit; in_time changes where it passes zero"

@@ -26,20 +26,21 @@ class ReedBeatUp(ShaftDriven):
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the crank does not turn over: crank_length = {crank_length}, coupler_length = {coupler_length},"
-            " rocker_length = {rocker_length}, crank at ({crank_x}, {crank_y}), margin {closure}; the"
-            " crank must be the shortest of the four, and with the longest shorter than the other two"
+            "the crank cannot turn full circle: crank_length = {crank_length}, coupler_length ="
+            " {coupler_length}, rocker_length = {rocker_length}, crank at ({crank_x}, {crank_y}), margin"
+            " {closure}; the crank must be the shortest of the four links, and together with the longest"
+            " shorter than the other two"
         ),
         Problem(
-            "the reed's rod does not reach its line over the rocker's swing: arm_length = {arm_length},"
+            "the rod cannot follow the rocker's whole swing: arm_length = {arm_length},"
             " rod_length = {rod_length}, reed_height = {reed_height}, margin {reach}"
         ),
         Problem(
-            "the rocker's arm and the reed's rod come in line within the swing, and the reed would turn back"
-            " there: arm_length = {arm_length}, rod_length = {rod_length}, reed_height = {reed_height},"
+            "the rocker's arm and the reed's rod line up within the swing, where the reed would reverse:"
+            " arm_length = {arm_length}, rod_length = {rod_length}, reed_height = {reed_height},"
             " margin {clearance}"
         ),
-        Problem("assembly = {assembly} or crank_direction = {crank_direction} is outside {{-1, 1}}"),
+        Problem("assembly = {assembly} or crank_direction = {crank_direction} must be -1 or 1"),
         TOO_FAR,
     )
 

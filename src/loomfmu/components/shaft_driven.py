@@ -11,8 +11,8 @@ from .terminals import SHAFT
 def turned_too_far(what: str) -> Problem:
     """What is reported of an angle that is `too_far`."""
     return Problem(
-        f"the {what} is more than 2e9 rad from its zero, where its angle is known to no better than 2e-7 rad;"
-        " start nearer to time and angle 0"
+        f"the {what} is more than 2e9 rad from zero, where rounding limits its angle to 2e-7 rad;"
+        " start closer to time and angle 0"
     )
 
 

@@ -24,9 +24,9 @@ class WeftInsertion(ShaftDriven):
         Problem(
             "the planar four-bar does not close over the rocker's swing: crank_length = {crank_length},"
             " coupler_length = {coupler_length}, output_length = {output_length}, pivot at"
-            " ({pivot_x}, {pivot_y}); its closure is {closure} and may not be negative"
+            " ({pivot_x}, {pivot_y}); its closure is {closure} and must not be negative"
         ),
-        Problem("assembly = {assembly} is outside {{-1, 1}}"),
+        Problem("assembly = {assembly} must be -1 or 1"),
         TOO_FAR,
     )
     keeps: ClassVar[str] = NOTHING

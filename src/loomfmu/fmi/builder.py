@@ -22,12 +22,13 @@ from .description import documentation
 from .description.model_description import FIRST_REFERENCE, FMI_TYPES, model_description
 from .description.parameter_sets import parameter_files, parameter_note
 from .description.terminals import terminal_files
-from .live import live_slave, live_wrapper
+from .live import live_slave, live_state, live_wrapper
 from .source import flatten
 
 FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
 TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png")}  # that lie with a component
 HEADERS = Path(fmpy.__file__).with_name("c-code")  # those of the standard
+LIVE = (live_slave, live_state, live_wrapper)  # what is copied into each live FMU
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
 
@@ -88,7 +89,7 @@ def guid(component: type[Component]) -> str:
     digest = hashlib.sha256(model_description(component, "", version()))
     for content in _told(component).values():
         digest.update(content)
-    for part in (_rows(component), flatten(component), _source(live_slave), _source(live_wrapper)):
+    for part in (_rows(component), flatten(component), *map(_source, LIVE)):
         digest.update(part.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
 
@@ -137,9 +138,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
         f"resources/{package}_entry.py": _entry(component, package, identity).encode(),
         f"resources/{package}/__init__.py": b"",
         f"resources/{package}/component.py": flatten(component).encode(),
-        f"resources/{package}/slave.py": _source(live_slave).encode(),
-        f"resources/{package}/live_wrapper.py": _source(live_wrapper).encode(),
-    }
+    } | {f"resources/{package}/{Path(str(each.__file__)).name}": _source(each).encode() for each in LIVE}
     for binary in sorted((_wrapper() / "resources" / "binaries").rglob("*")):
         if binary.is_file():
             files[f"binaries/{binary.parent.name}/{name}{binary.suffix}"] = binary.read_bytes()
@@ -161,7 +160,7 @@ def _entry(component: type[Component], package: str, identity: str) -> str:
     return f'''"""Entry of the FMU {component.__name__}."""
 
 import {package}.component as _component
-import {package}.slave as _slave
+import {package}.live_slave as _slave
 
 _Row = _slave.Row
 
@@ -185,10 +184,8 @@ def _rows(component: type[Component]) -> str:
     """The variables as the live slave needs them, by value reference."""
     lines = []
     for reference, variable in enumerate(variables_of(component), start=FIRST_REFERENCE):
-        low = -live_slave.LARGEST if variable.minimum is None else variable.minimum
-        high = live_slave.LARGEST if variable.maximum is None else variable.maximum
         row = (
-            variable.name, FMI_TYPES[variable.type], variable.causality, low, high, variable.display,
+            variable.name, FMI_TYPES[variable.type], variable.causality, *variable.limits, variable.display,
             units.unit(variable.display).factor,
         )  # fmt: skip
         lines.append(f"        {reference}: _Row{row!r},")

@@ -101,7 +101,7 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
         term = 1.0 / 7.0
         i6 = term
         k = 8
-        while fabs(term) > 1e-18:
+        while fabs(term) > 1e-18 and k < 60:
             term = -term * decay / k
             i6 = i6 + term
             k = k + 1

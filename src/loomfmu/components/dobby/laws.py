@@ -27,15 +27,15 @@ class RotorLaws(LawParameters):
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
             "eccentricity = {eccentricity} reaches or exceeds lever_radius = {lever_radius} or driven_radius"
-            " = {driven_radius}: the levers do not go round; it must be smaller than both"
+            " = {driven_radius}: the levers cannot turn full circle; it must be smaller than both"
         ),
         Problem(
-            "the rotor turns back or stops: by gear_harmonic_1 = {gear_harmonic_1} to gear_harmonic_4 ="
-            " {gear_harmonic_4} its lowest speed is {lowest_speed} of the shaft's; it must be above 0"
+            "the rotor would stop or reverse: with gear_harmonic_1 = {gear_harmonic_1} to gear_harmonic_4 ="
+            " {gear_harmonic_4} its lowest speed is {lowest_speed} of the shaft's and must be above 0"
         ),
         Problem(
-            "the rotor turns back or stops: by the {table_points} points of its table its lowest speed is"
-            " {lowest_speed} of the shaft's; it must be above 0, so the points rise, and without sharp bends"
+            "the rotor would stop or reverse: with the {table_points} points of its table its lowest speed is"
+            " {lowest_speed} of the shaft's and must be above 0; the points must rise without sharp bends"
         ),
         Problem(
             "cam_angle_1 = {cam_angle_1} to cam_angle_6 = {cam_angle_6} must rise from 0 to 720 deg, each by"
@@ -43,7 +43,7 @@ class RotorLaws(LawParameters):
         ),
         Problem(
             "the cam's spline starts at cam_height_1 = {cam_height_1}, ends at cam_height_6 = {cam_height_6}"
-            " and rises by {cam_span}; both ends must be alike, and it must rise"
+            " and rises by {cam_span}; both ends must be equal, and it must rise"
         ),
         TOO_FAR,
     )

@@ -87,9 +87,11 @@ class LawParameters(ShaftDriven):
     cam_top: float = state("rad", "Shaft angle from the start of the rise to the highest point of the cam")
     cam_span: float = state("m", "Largest height of the cam's spline above its start")
     lowest_speed: float = state("1", "Lowest rotor speed over the shaft's, for laws that could reverse")
-    segment: int = state("1", "Current segment of the spline, counted from 0; -1 for none", start=-1)
+    segment: int = state(
+        "1", "Current segment of the spline, counted from 0; -1 for none", start=-1, minimum=-1, maximum=36
+    )
     segment_start: float = state("rad", "Start of the current segment")
-    segment_length: float = state("rad", "Length of the current segment")
+    segment_length: float = state("rad", "Length of the current segment", minimum=0.0)
     segment_left: float = state("1", "Value at the start of the current segment")
     segment_right: float = state("1", "Value at the end of the current segment")
     segment_left_bend: float = state("1", "Second derivative at the start of the current segment")

@@ -1,41 +1,30 @@
 """What runs a component inside a live FMU. Copied into the FMU, so it imports only what is copied beside it.
 
-pythonfmu's compiled wrapper calls the methods below by name and asks for a class with a base called
-`Fmi2Slave`. Every complaint is logged and remembered. Nothing raises but the end of the initialization and
-the step: from a complaint on they are refused, which `live_wrapper` makes safe.
+pythonfmu's compiled wrapper calls the methods below by name and expects a class with a base called
+`Fmi2Slave`. Every complaint is logged and remembered: the next step, or the end of the initialization, then
+raises, which `live_wrapper` makes safe. In other calls the wrapper does not survive an exception and cannot
+return an error: they return OK. Nor does it pass on the GUID that a host gives: a wrong one is not noticed.
 """
 
 import math
 import operator
-import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from . import live_state
+from .live_state import INITIALIZING, INSTANTIATED, LONGEST, STEPPING, Row, State
 from .live_wrapper import let_go_at_exit, refuse
 
 WARNING, DISCARD, ERROR = 1, 2, 3
 CATEGORIES = {
-    WARNING: ("logStatusWarning", "What a user should know though the run goes on"),
-    DISCARD: ("logStatusDiscard", "A step that could not be made"),
-    ERROR: ("logStatusError", "A value or a state that was refused"),
+    WARNING: ("logStatusWarning", "Warnings; the run continues"),
+    DISCARD: ("logStatusDiscard", "Steps that cannot be computed"),
+    ERROR: ("logStatusError", "Rejected values, calls and states"),
 }
-INSTANTIATED, INITIALIZING, STEPPING = "instantiated", "initializing", "stepping"
+# what cannot be set, as its message calls it
+CAUSALITIES = {"parameter": "a fixed parameter", "output": "an output", "local": "a local variable"}
 LARGEST = 1.7976931348623157e308
-LONGEST = 1e15  # s: no angle that anybody turns through in that time overflows
 LARGEST_INTEGER = 2147483647
-FORMATS = {"Real": "d", "Integer": "q", "Boolean": "?"}
-
-
-class Row(NamedTuple):
-    """One variable."""
-
-    name: str
-    kind: str
-    causality: str
-    low: float
-    high: float
-    display: str
-    factor: float
 
 
 class Message(NamedTuple):
@@ -73,7 +62,7 @@ class LiveSlave(Fmi2Slave):
         self.failure = ""
         self.stale = True
         self.warned: set[int] = set()
-        self.readers: dict[tuple[int, ...], Callable[[Any], Any]] = {}
+        self.readers: dict[tuple[Any, ...], Callable[[Any], Any]] = {}
         self.writers: dict[tuple[Any, ...], list[tuple[str, float, float]]] = {}
         let_go_at_exit(str(kwargs.get("resources", "")), type(self.component).__name__)
 
@@ -81,6 +70,9 @@ class LiveSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         """Keep the start time."""
+        if not abs(start_time) <= LONGEST or (stop_time is not None and not stop_time >= start_time):
+            self._fail("the start time must be finite and not after the stop time")
+            return
         self.time = start_time
 
     def enter_initialization_mode(self) -> None:
@@ -89,7 +81,7 @@ class LiveSlave(Fmi2Slave):
         self.stale = True
 
     def exit_initialization_mode(self) -> None:
-        """Compute the start, if that was not done for a reading already. Raises Refused."""
+        """Compute the start, unless a reading already did. Raises Refused."""
         self._refresh(logged=False)
         self.mode = STEPPING
         if self.failure:
@@ -104,12 +96,13 @@ class LiveSlave(Fmi2Slave):
         return not self.failure
 
     def _step(self, time: float, step_size: float) -> None:
-        """One step, or the reason why there is none as `failure`."""
+        """One step, or the reason why it failed as `failure`."""
         if self.mode != STEPPING:
-            self.failure = "a step was asked for before the initialization was finished"
+            self.failure = f"fmi2DoStep is not allowed in the state '{self.mode}'"
             return
         if not (abs(time) <= LONGEST and 0.0 <= step_size <= LONGEST):
-            self.failure = f"a step from {time!r} s by {step_size!r} s: finite and forward is asked for"
+            what = f"step from {time!r} s by {step_size!r} s"
+            self.failure = f"{what}: time must be finite and the step not negative"
             return
         try:
             problem = self.component.step(time, step_size)
@@ -120,7 +113,7 @@ class LiveSlave(Fmi2Slave):
         self._report(problem)
 
     def terminate(self) -> None:
-        """Nothing is held that would have to be given back."""
+        """There is nothing to release."""
 
     # ---- values
 
@@ -133,7 +126,7 @@ class LiveSlave(Fmi2Slave):
         values = self._get(references, "Integer", 0)
         for reference, value in zip(references, values, strict=True):
             if not -LARGEST_INTEGER <= value <= LARGEST_INTEGER:
-                self._fail(f"{self.rows[reference].name} = {value} is more than an FMI integer holds")
+                self._fail(f"{self.rows[reference].name} = {value} exceeds the range of fmi2Integer")
                 return [0] * len(references)
         return values
 
@@ -143,7 +136,8 @@ class LiveSlave(Fmi2Slave):
 
     def get_string(self, references: list[int]) -> list[str]:
         """No component has text variables."""
-        self._fail(f"value reference {references} is no text variable")
+        for reference in references:
+            self._fail(self._not_of(reference, "String"))
         return [""] * len(references)
 
     def set_real(self, references: list[int], values: list[float]) -> None:
@@ -160,28 +154,32 @@ class LiveSlave(Fmi2Slave):
 
     def set_string(self, references: list[int], values: list[str]) -> None:
         """No component has text variables."""
-        self._fail(f"value reference {references} is no text variable")
+        for reference in references:
+            self._fail(self._not_of(reference, "String"))
 
     def _get(self, references: list[int], kind: str, nothing: Any) -> list[Any]:
         if self.stale and self.mode == INITIALIZING:
             self._refresh()
-        key = tuple(references)
+        key = (kind, *references)
         reader = self.readers.get(key)
         if reader is None:
-            reader = self._reader(key, kind)
+            reader = self._reader(references, kind)
             if reader is None:
                 return [nothing] * len(references)
             self.readers[key] = reader
         values = reader(self.component)
-        return list(values) if len(key) > 1 else [values]
+        return list(values) if len(references) > 1 else [values]
 
-    def _reader(self, key: tuple[int, ...], kind: str) -> Callable[[Any], Any] | None:
-        for reference in key:
+    def _reader(self, references: list[int], kind: str) -> Callable[[Any], Any] | None:
+        for reference in references:
             if reference not in self.rows or self.rows[reference].kind != kind:
-                self._fail(f"value reference {reference} is no {kind} variable")
+                self._fail(self._not_of(reference, kind))
                 return None
-        names = [self.rows[reference].name for reference in key]
+        names = [self.rows[reference].name for reference in references]
         return operator.attrgetter(*names) if names else None
+
+    def _not_of(self, reference: int, kind: str) -> str:
+        return f"value reference {reference % 2**32} is not a variable of type {kind}"
 
     def _set(self, references: list[int], values: list[Any], kind: str) -> None:
         key = (kind, self.mode, *references)
@@ -209,11 +207,11 @@ class LiveSlave(Fmi2Slave):
     def _refuse(self, reference: int, value: Any, kind: str) -> None:
         row = self.rows.get(reference)
         if row is None or row.kind != kind:
-            self._fail(f"value reference {reference} is no {kind} variable")
+            self._fail(self._not_of(reference, kind))
             return
         if not self._settable(row):
-            when = "while stepping" if row.causality == "parameter" else "at all"
-            self._fail(f"{row.name} is a {row.causality} and cannot be set {when}")
+            when = " while stepping" if row.causality == "parameter" else ""
+            self._fail(f"{row.name} is {CAUSALITIES[row.causality]} and cannot be set{when}")
             return
         unit = "" if row.display == "1" else f" {row.display}"
         low, high = (
@@ -223,7 +221,7 @@ class LiveSlave(Fmi2Slave):
         self._fail(f"{row.name} = {value / row.factor:.7g}{unit} is outside [{low:.7g}, {high:.7g}]{unit}")
 
     def _refresh(self, logged: bool = True) -> None:
-        """Compute the start from the parameters and inputs as they now stand; tell why if it cannot be."""
+        """Compute the start from the parameters and inputs as they now stand; log why if that fails."""
         if not self.stale or self.failure:
             return
         self.stale = False
@@ -262,51 +260,23 @@ class LiveSlave(Fmi2Slave):
 
     # ---- state
 
-    def _get_fmu_state(self) -> tuple[Any, ...]:
+    def _get_fmu_state(self) -> State:
         values = tuple(getattr(self.component, row.name) for row in self.rows.values())
-        return (self.guid, self.mode, self.time, self.stale, self.failure, values)
+        return State(self.guid, self.mode, self.time, self.stale, self.failure, values)
 
     def _set_fmu_state(self, state: Any) -> None:
-        if not isinstance(state, tuple) or state[0] != self.guid:
-            self._fail("the FMU state to be set is not one of this FMU")
+        if not isinstance(state, State) or state.guid != self.guid:
+            self._fail("the FMU state is damaged or belongs to another FMU")
             return
         _guid, self.mode, self.time, self.stale, self.failure, values = state
         for row, value in zip(self.rows.values(), values, strict=True):
             setattr(self.component, row.name, value)
 
     @classmethod
-    def _format(cls) -> str:
-        return "<36s12sd?H" + "".join(FORMATS[row.kind] for row in cls.rows.values())
-
-    @classmethod
     def _fmu_state_to_bytes(cls, state: Any) -> bytes:
-        if not isinstance(state, tuple):
-            return b""
-        guid, mode, time, stale, failure, values = state
-        text = failure.encode()[:60000]
-        head = (guid.encode(), mode.encode(), time, stale, len(text))
-        try:
-            packed: bytes = struct.pack(cls._format(), *head, *values) + text
-        except struct.error:  # an integer beyond 64 bits
-            return b""
-        return packed
+        return live_state.to_bytes(cls.rows, state) if isinstance(state, State) else b""
 
     @classmethod
-    def _fmu_state_from_bytes(cls, data: bytes) -> tuple[Any, ...] | None:
-        """The state, or None for bytes that are none: setting that is refused, with a message."""
-        try:
-            parts = cls._unpack(data)
-            guid, mode, time, stale, length = next(parts), next(parts), next(parts), next(parts), next(parts)
-            text = data[struct.calcsize(cls._format()) :].decode()
-            known = mode.rstrip(b"\0").decode()
-            if guid.decode() != cls.guid or len(text.encode()) != length:
-                return None
-            if known not in (INSTANTIATED, INITIALIZING, STEPPING):
-                return None
-            return cls.guid, known, time, stale, text, tuple(parts)
-        except Exception:
-            return None
-
-    @classmethod
-    def _unpack(cls, data: bytes) -> Iterator[Any]:
-        return iter(struct.unpack_from(cls._format(), data))
+    def _fmu_state_from_bytes(cls, data: bytes) -> State | None:
+        """The state, or None for bytes that hold none: setting that fails with a message."""
+        return live_state.from_bytes(cls.rows, cls.guid, data)

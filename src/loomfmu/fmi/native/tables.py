@@ -82,16 +82,13 @@ def tables(component: type[Component], token: str) -> str:
 
 
 def _row(variable: Variable, names: list[str]) -> str:
-    low = "-DBL_MAX" if variable.minimum is None else repr(float(variable.minimum))
-    high = "DBL_MAX" if variable.maximum is None else repr(float(variable.maximum))
     fields = (
         _text(variable.name),
         KINDS[variable.type],
         variable.causality.upper(),
         variable.variability.upper(),
         f"offsetof(Component, {c_name(variable.member)})",
-        low,
-        high,
+        *(repr(float(limit)) for limit in variable.limits),
         _text(variable.display),
         repr(float(units.unit(variable.display).factor)),
         "NONE" if variable.rate is None else str(names.index(variable.rate)),
@@ -104,7 +101,9 @@ def _check_problems(component: type[Component], names: list[str]) -> None:
     for problem in component.problems:
         for field in re.findall(r"\{([^{}]*)\}", problem.text.replace("{{", "").replace("}}", "")):
             if field not in names:
-                raise ValueError(f"{component.__name__}: a problem shows {{{field}}}, which is no variable")
+                raise ValueError(
+                    f"{component.__name__}: a problem shows {{{field}}}, which is not a variable"
+                )
 
 
 def _text(text: str) -> str:

@@ -24,10 +24,10 @@ static Status fmu_set_derivative(Instance *instance, unsigned reference, int ord
         return FAILED;
     }
     if (row->causality != INPUT) {
-        return fmu_refuse(instance, "value reference %lu is no input: %s", reference, row->name);
+        return fmu_refuse(instance, "value reference %lu, %s, is not an input", reference, row->name);
     }
     if (order < 1 || order > HIGHEST_ORDER || !isfinite(value)) {
-        return fmu_refuse(instance, "value reference %lu: a finite derivative of order 1 to 3 is asked for%s",
+        return fmu_refuse(instance, "value reference %lu: the derivative must be finite and of order 1 to 3%s",
                           reference, "");
     }
     instance->state.derivatives[row - rows][order - 1] = value;

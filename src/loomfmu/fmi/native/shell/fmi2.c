@@ -81,16 +81,16 @@ const char *fmi2GetVersion(void)
 static const char *fmu_refusal(fmi2String name, fmi2Type type, fmi2String token)
 {
     if (name == NULL || name[strspn(name, " \t\r\n")] == '\0') {
-        return "an instance needs a name";
+        return "the instance name is empty";
     }
     if (type != fmi2CoSimulation && type != fmi2ModelExchange) {
-        return MODEL_NAME " has no such interface";
+        return "the type must be fmi2CoSimulation or fmi2ModelExchange";
     }
     if (type == fmi2ModelExchange && !MEMORYLESS) {
-        return MODEL_NAME " remembers: it is for co-simulation only";
+        return MODEL_NAME " keeps a state from step to step: it supports co-simulation only";
     }
     if (token == NULL || strcmp(token, MODEL_TOKEN) != 0) {
-        return "the GUID is not that of " MODEL_NAME ", " MODEL_TOKEN;
+        return "the GUID must be that of " MODEL_NAME ", " MODEL_TOKEN;
     }
     return NULL;
 }
@@ -115,7 +115,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
     }
     if (reason == NULL) {
         instance = fmu_allocate(&host, sizeof *instance + strlen(name) + 1);
-        reason = "there is no memory for an instance";
+        reason = "out of memory for an instance";
     }
     if (instance == NULL) {
         if (host.logger != NULL) {
@@ -161,7 +161,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_de
     }
     if (!isfinite(start_time) || (stop_time_defined != fmi2False && !(stop_time >= start_time))) {
         return (fmi2Status)fmu_complain(instance, FAILED,
-                                        "the start time is not finite or after the stop time");
+                                        "the start time must be finite and not after the stop time");
     }
     instance->state.time = start_time;
     instance->state.stop_time = stop_time_defined != fmi2False ? stop_time : HUGE_VAL;
@@ -176,7 +176,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component component)
         return fmi2Error;
     }
     if (!instance->state.set_up) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "fmi2SetupExperiment is to be called first");
+        return (fmi2Status)fmu_complain(instance, FAILED, "fmi2SetupExperiment must be called first");
     }
     instance->state.mode = INITIALIZING;
     instance->state.stale = true;

@@ -18,7 +18,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info)
         return fmi2Error;
     }
     if (info == NULL) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "there is no place for the results");
+        return (fmi2Status)fmu_complain(instance, FAILED, "a pointer to a result is NULL");
     }
     info->newDiscreteStatesNeeded = info->terminateSimulation = fmi2False;
     info->nominalsOfContinuousStatesChanged = info->valuesOfContinuousStatesChanged = fmi2False;
@@ -50,7 +50,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_r
         return fmi2Error;
     }
     if (event == NULL || terminate == NULL) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "there is no place for the results");
+        return (fmi2Status)fmu_complain(instance, FAILED, "a pointer to a result is NULL");
     }
     *event = fmu_is_event(instance) ? fmi2True : fmi2False;
     *terminate = fmi2False;

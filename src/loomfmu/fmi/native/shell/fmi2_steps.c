@@ -76,7 +76,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2Value
     (void)seed;
     (void)values;
     if (fmu_allowed(component, READING, "fmi2GetDirectionalDerivative")) {
-        (void)fmu_complain(component, FAILED, "directional derivatives are not provided");
+        (void)fmu_complain(component, FAILED, "directional derivatives are not supported");
     }
     return fmi2Error;
 }
@@ -90,10 +90,10 @@ static fmi2Status fmu_status(Instance *instance, const char *function, bool know
         return fmi2Error;
     }
     if (value == NULL) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "there is no place for the status");
+        return (fmi2Status)fmu_complain(instance, FAILED, "the pointer to the status is NULL");
     }
     if (!known) {
-        return (fmi2Status)fmu_complain(instance, DISCARD, "no such status is kept");
+        return (fmi2Status)fmu_complain(instance, DISCARD, "this status is not available");
     }
     return fmi2OK;
 }

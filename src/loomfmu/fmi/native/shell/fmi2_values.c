@@ -33,7 +33,7 @@ fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference refe
         }
         if (value < -2147483647 || value > 2147483647) {
             char message[256];
-            (void)snprintf(message, sizeof message, "%s = %lld is more than an FMI integer holds",
+            (void)snprintf(message, sizeof message, "%s = %lld exceeds the range of fmi2Integer",
                            rows[references[i] - FIRST_REFERENCE].name, (long long)value);
             return (fmi2Status)fmu_complain(instance, FAILED, message);
         }
@@ -71,7 +71,7 @@ static fmi2Status fmu_no_text(Instance *instance, int modes, const char *functio
     if (count == 0) {
         return fmi2OK;
     }
-    return (fmi2Status)fmu_refuse(instance, "value reference %lu is no text variable%s", references[0], "");
+    return (fmi2Status)fmu_refuse(instance, "value reference %lu is not a variable of type %s", references[0], "String");
 }
 
 fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference references[], size_t count,
@@ -167,7 +167,7 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate stat
         return fmi2Error;
     }
     if (size == NULL) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "there is no place for the size");
+        return (fmi2Status)fmu_complain(instance, FAILED, "the pointer to the size is NULL");
     }
     *size = STATE_SIZE;
     return fmi2OK;

@@ -57,13 +57,13 @@ static Instance *fmu_instantiate(fmi3String name, fmi3String token, bool logging
 {
     Instance *instance = NULL;
     if (name == NULL || name[strspn(name, " \t\r\n")] == '\0') {
-        reason = "an instance needs a name";
+        reason = "the instance name is empty";
     } else if (token == NULL || strcmp(token, MODEL_TOKEN) != 0) {
-        reason = "the token is not that of " MODEL_NAME ", " MODEL_TOKEN;
+        reason = "the token must be that of " MODEL_NAME ", " MODEL_TOKEN;
     }
     if (reason == NULL) {
         instance = fmu_allocate(&host, sizeof *instance);
-        reason = "there is no memory for an instance";
+        reason = "out of memory for an instance";
     }
     if (instance == NULL) {
         if (host.logger != NULL) {
@@ -90,7 +90,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     (void)intermediate;
     (void)intermediate_count;
     (void)update;
-    return fmu_instantiate(name, token, logging, host, event_mode ? "there is no event mode" : NULL);
+    return fmu_instantiate(name, token, logging, host, event_mode ? "event mode is not supported" : NULL);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
@@ -101,7 +101,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
     (void)resources;
     (void)visible;
     return fmu_instantiate(name, token, logging, host,
-                           MEMORYLESS ? NULL : MODEL_NAME " remembers: it is for co-simulation only");
+                           MEMORYLESS ? NULL : MODEL_NAME " keeps a state from step to step: it supports co-simulation only");
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
@@ -115,7 +115,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     (void)update;
     (void)lock;
     (void)unlock;
-    return fmu_instantiate(name, token, logging, host, "scheduled execution is not provided");
+    return fmu_instantiate(name, token, logging, host, "scheduled execution is not supported");
 }
 
 void fmi3FreeInstance(fmi3Instance handle)
@@ -148,7 +148,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Boolean toleranc
     }
     if (!isfinite(start_time) || (stop_time_defined && !(stop_time >= start_time))) {
         return (fmi3Status)fmu_complain(instance, FAILED,
-                                        "the start time is not finite or after the stop time");
+                                        "the start time must be finite and not after the stop time");
     }
     instance->state.time = start_time;
     instance->state.stop_time = stop_time_defined ? stop_time : HUGE_VAL;
@@ -198,7 +198,7 @@ static fmi3Status fmu_not_provided(fmi3Instance handle, const char *what)
     }
     fmu_begin(&text);
     fmu_add(&text, what);
-    fmu_add(&text, " not provided");
+    fmu_add(&text, " not supported");
     return (fmi3Status)fmu_complain(instance, FAILED, text.text);
 }
 

@@ -11,7 +11,7 @@ static fmi3Status fmu_no_variables(fmi3Instance handle, int modes, const char *f
     if (count == 0) {
         return fmi3OK;
     }
-    return (fmi3Status)fmu_refuse(instance, "value reference %lu is no %s variable",
+    return (fmi3Status)fmu_refuse(instance, "value reference %lu is not a variable of type %s",
                                   references != NULL ? references[0] : 0UL, type);
 }
 

@@ -21,7 +21,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance handle, fmi3Boolean *again, fmi
     }
     if (again == NULL || terminate == NULL || nominals_changed == NULL || states_changed == NULL
         || next_event_defined == NULL || next_event == NULL) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "there is no place for the results");
+        return (fmi3Status)fmu_complain(instance, FAILED, "a pointer to a result is NULL");
     }
     *again = *terminate = *nominals_changed = *states_changed = *next_event_defined = false;
     *next_event = 0.0;
@@ -51,7 +51,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance handle, fmi3Boolean no_retur
         return fmi3Error;
     }
     if (event == NULL || terminate == NULL) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "there is no place for the results");
+        return (fmi3Status)fmu_complain(instance, FAILED, "a pointer to a result is NULL");
     }
     *event = fmu_is_event(instance);
     *terminate = false;

@@ -10,7 +10,7 @@ fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 time, fmi3Float64 size, f
         return fmi3Error;
     }
     if (event == NULL || terminate == NULL || early == NULL || reached == NULL) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "there is no place for the results");
+        return (fmi3Status)fmu_complain(instance, FAILED, "a pointer to a result is NULL");
     }
     status = fmu_check_step(instance, time, size);
     if (status == OK) {
@@ -33,10 +33,10 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance handle, const fmi3ValueReferenc
         return fmi3Error;
     }
     if (instance->host.model_exchange) {
-        return fmu_not_provided(handle, "output derivatives are, in model exchange,");
+        return fmu_not_provided(handle, "in model exchange output derivatives are");
     }
     if (value_count != count || (count > 0 && orders == NULL)) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "each value reference has one order and one value");
+        return (fmi3Status)fmu_complain(instance, FAILED, "there must be as many orders and values as value references");
     }
     for (i = 0; i < count && status != FAILED; i++) {
         Status found = fmu_output_derivative(instance, references[i], orders[i], &values[i]);

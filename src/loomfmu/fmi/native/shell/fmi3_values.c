@@ -12,7 +12,7 @@ static bool fmu_ready_for(Instance *instance, int modes, const char *function, c
         return false;
     }
     if (value_count != count) {
-        (void)fmu_complain(instance, FAILED, "each value reference has one value");
+        (void)fmu_complain(instance, FAILED, "there must be as many values as value references");
         return false;
     }
     return true;
@@ -152,7 +152,7 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance handle, fmi3FMUState state, s
         return fmi3Error;
     }
     if (size == NULL) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "there is no place for the size");
+        return (fmi3Status)fmu_complain(instance, FAILED, "the pointer to the size is NULL");
     }
     *size = STATE_SIZE;
     return fmi3OK;

@@ -36,7 +36,7 @@ static const char *fmu_mode_name(int mode)
     return "error";
 }
 
-/* Whether a function may be called now; tells if not. */
+/* Whether a function may be called now; logs an error if not. */
 static bool fmu_allowed(Instance *instance, int modes, const char *function)
 {
     char message[256];
@@ -98,7 +98,7 @@ static Status fmu_complain_of_step(Instance *instance, Status status, double tim
 {
     Text text;
     fmu_begin(&text);
-    fmu_add(&text, "a step from ");
+    fmu_add(&text, "step from ");
     fmu_add_time(&text, time);
     fmu_add(&text, " s by ");
     fmu_add_time(&text, size);
@@ -111,7 +111,7 @@ static Status fmu_check_step(Instance *instance, double time, double size)
 {
     double slack = 1e-6 * size + 1e-9 * fabs(instance->state.stop_time); /* what a sum of steps may be off */
     if (!isfinite(time) || !isfinite(size) || size < 0.0) {
-        return fmu_complain_of_step(instance, DISCARD, time, size, " s: finite and forward is asked for");
+        return fmu_complain_of_step(instance, DISCARD, time, size, " s: time must be finite and the step not negative");
     }
     if (time + size > instance->state.stop_time + slack) {
         return fmu_complain_of_step(instance, FAILED, time, size, " s goes past the stop time");

@@ -1,4 +1,4 @@
-/* What an instance says, in the words of the live flavour. */
+/* The messages of an instance, in the words of the live flavour. */
 
 static void fmu_begin(Text *text)
 {
@@ -74,7 +74,7 @@ static Status fmu_complain(Instance *instance, Status status, const char *messag
     if (status == FAILED) {
         instance->state.mode = BROKEN;
     }
-    /* the reason of an error is told always, the rest to those who want it */
+    /* an error is always logged, the rest if logging is on */
     if (status == FAILED || (status != OK && instance->logged[status - 1])) {
         fmu_tell(instance, status, categories[status - 1], message);
     }
@@ -117,13 +117,13 @@ static const char *fmu_add_named(Text *text, const Instance *instance, const cha
     return name[length] == '}' ? name + length + 1 : name + length;
 }
 
-/* Tells a problem of the component. A warning is told once, and the run goes on. */
+/* Logs a problem of the component. A warning is logged once, and the run continues. */
 static Status fmu_report(Instance *instance, int64_t number, Status status)
 {
     const char *rest;
     Text text;
     if (number < 1 || number > PROBLEMS) {
-        return fmu_complain(instance, status, "the component reports a problem that it does not declare");
+        return fmu_complain(instance, status, "the component reports an undeclared problem");
     }
     if (problems[number - 1].warning && instance->warned[number - 1]) {
         return OK;
@@ -148,7 +148,7 @@ static Status fmu_report(Instance *instance, int64_t number, Status status)
     return fmu_complain(instance, status, text.text);
 }
 
-/* Which messages are told; with no category named, all. */
+/* Which messages are logged; all if no category is named. */
 static Status fmu_set_logging(Instance *instance, bool on, size_t count, const char *const names[])
 {
     Status status = OK;
@@ -166,7 +166,7 @@ static Status fmu_set_logging(Instance *instance, bool on, size_t count, const c
             }
         }
         if (!known) {
-            status = fmu_complain(instance, WARNING, "a log category is asked for that there is not");
+            status = fmu_complain(instance, WARNING, "unknown log category");
         }
     }
     return status;

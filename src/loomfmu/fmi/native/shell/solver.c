@@ -78,7 +78,7 @@ static bool fmu_is_event(Instance *instance)
 static Status fmu_set_time(Instance *instance, double time)
 {
     if (!isfinite(time)) {
-        return fmu_complain(instance, FAILED, "the time is not finite");
+        return fmu_complain(instance, FAILED, "the time must be finite");
     }
     instance->state.time = time;
     instance->state.stale = true;
@@ -99,7 +99,7 @@ static Status fmu_get_indicators(Instance *instance, double values[], size_t cou
     Status status;
     int i;
     if (!instance->host.model_exchange || count != INDICATORS || (count > 0 && values == NULL)) {
-        return fmu_refuse(instance, "there are %lu event indicators%s, in model exchange alone",
+        return fmu_refuse(instance, "there are %lu event indicators%s, in model exchange only",
                           (unsigned long)INDICATORS, "");
     }
     status = fmu_prepare(instance);

@@ -161,7 +161,7 @@ static Saved *fmu_saved(Instance *instance, void *handle)
     if (saved != NULL && memcmp(saved->mark, LAYOUT, sizeof saved->mark) == 0) {
         return saved;
     }
-    (void)fmu_complain(instance, FAILED, "the FMU state is not one of this FMU");
+    (void)fmu_complain(instance, FAILED, "the FMU state is damaged or belongs to another FMU");
     return NULL;
 }
 
@@ -169,13 +169,13 @@ static Saved *fmu_saved(Instance *instance, void *handle)
 static Saved *fmu_provide(Instance *instance, void **handle)
 {
     if (handle == NULL) {
-        (void)fmu_complain(instance, FAILED, "there is no place for an FMU state");
+        (void)fmu_complain(instance, FAILED, "the pointer to the FMU state is NULL");
         return NULL;
     }
     if (*handle == NULL) {
         Saved *saved = fmu_allocate(&instance->host, sizeof *saved);
         if (saved == NULL) {
-            (void)fmu_complain(instance, FAILED, "there is no memory for an FMU state");
+            (void)fmu_complain(instance, FAILED, "out of memory for an FMU state");
             return NULL;
         }
         memcpy(saved->mark, LAYOUT, sizeof saved->mark);
@@ -209,7 +209,7 @@ static Status fmu_restore(Instance *instance, void *handle)
         return FAILED;
     }
     if (!fmu_fits(instance, &saved->state)) {
-        return fmu_complain(instance, FAILED, "the FMU state is one of the other interface");
+        return fmu_complain(instance, FAILED, "the FMU state belongs to another interface type");
     }
     instance->state = saved->state;
     return OK;
@@ -249,7 +249,7 @@ static Status fmu_unpack(Instance *instance, const void *bytes, size_t size, voi
     State read;
     Saved *saved;
     if (bytes == NULL || !fmu_read_state(&read, bytes, size)) {
-        return fmu_complain(instance, FAILED, "the bytes are not an FMU state of this FMU");
+        return fmu_complain(instance, FAILED, "the FMU state is damaged or belongs to another FMU");
     }
     saved = fmu_provide(instance, handle);
     if (saved == NULL) {

@@ -1,6 +1,6 @@
 /* Variables by value reference: which there are, who may set them, within which limits. */
 
-static const char *const causality_names[] = {"parameter", "input", "output", "local"};
+static const char *const causality_names[] = {"a fixed parameter", "an input", "an output", "a local variable"};
 
 /* The variable of that reference and kind, or NULL and a message. */
 static const Row *fmu_row(Instance *instance, unsigned reference, Kind kind)
@@ -11,7 +11,7 @@ static const Row *fmu_row(Instance *instance, unsigned reference, Kind kind)
             return row;
         }
     }
-    (void)fmu_refuse(instance, "value reference %lu is no %s variable", reference, kind_names[kind]);
+    (void)fmu_refuse(instance, "value reference %lu is not a variable of type %s", reference, kind_names[kind]);
     return NULL;
 }
 
@@ -34,7 +34,7 @@ static bool fmu_settable(const Instance *instance, const Row *row)
            || (row->causality == PARAMETER && (starting || row->variability == TUNABLE));
 }
 
-/* Tells that a value is outside the limits of its variable. */
+/* Logs that a value is outside the limits of its variable. */
 static Status fmu_tell_limit(Instance *instance, const Row *row, double value, Status status)
 {
     Text text;
@@ -57,14 +57,14 @@ static Status fmu_refuse_setting(Instance *instance, const Row *row)
     Text text;
     fmu_begin(&text);
     fmu_add(&text, row->name);
-    fmu_add(&text, " is a ");
+    fmu_add(&text, " is ");
     fmu_add(&text, causality_names[row->causality]);
-    fmu_add(&text, " and cannot be set ");
-    fmu_add(&text, row->causality == PARAMETER ? "while stepping" : "at all");
+    fmu_add(&text, " and cannot be set");
+    fmu_add(&text, row->causality == PARAMETER ? " while stepping" : "");
     return fmu_complain(instance, FAILED, text.text);
 }
 
-/* Whether a variable may be set to a value now; tells if not. Nothing is inside limits that is no number. */
+/* Whether a variable may be set to a value now; logs an error if not. NaN is outside any limits. */
 static Status fmu_check_setting(Instance *instance, const Row *row, double value)
 {
     if (!fmu_settable(instance, row)) {
@@ -147,7 +147,7 @@ static Status fmu_output_derivative(Instance *instance, unsigned reference, int 
         return FAILED;
     }
     if (row->causality != OUTPUT || order < 1) {
-        return fmu_refuse(instance, "value reference %lu: %s is no output, or the order is not positive",
+        return fmu_refuse(instance, "value reference %lu, %s: only outputs have derivatives, of order 1 or more",
                           reference, row->name);
     }
     for (; order > 0 && row->rate != NONE; order--) {
@@ -155,7 +155,7 @@ static Status fmu_output_derivative(Instance *instance, unsigned reference, int 
     }
     if (order > 0) {
         *value = 0.0;
-        return fmu_complain(instance, DISCARD, "an output is asked for a derivative that it does not have");
+        return fmu_complain(instance, DISCARD, "the output has no derivative of this order");
     }
     *value = fmu_value(instance, row);
     return OK;
