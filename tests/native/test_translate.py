@@ -219,7 +219,7 @@ def test_only_variables_are_shown_in_problems():
 
         problems = (Problem("{{x}} {speed}"), Problem("at {place}"))
 
-    with pytest.raises(ValueError, match=r"Other: a problem shows \{place\}, which is no variable"):
+    with pytest.raises(ValueError, match=r"Other: a problem shows \{place\}, which is not a variable"):
         tables(Other, "token")
 
 

@@ -30,33 +30,10 @@ def model_description(
         "fmiModelDescription",
         {"fmiVersion": "2.0", "modelName": name, "guid": guid} | about(component, version),
     )
-    capabilities = {
-        "modelIdentifier": name,
-        "needsExecutionTool": "false",
-        "canBeInstantiatedOnlyOncePerProcess": "false",
-        "canNotUseMemoryManagementFunctions": str(native is None).lower(),
-        "canGetAndSetFMUstate": "true",
-        "canSerializeFMUstate": "true",
-    }
-    if native is not None and (component.keeps == NOTHING):
-        root.set("numberOfEventIndicators", str(sum(variable.indicator for variable in variables)))
-        exchange = SubElement(
-            root, "ModelExchange", capabilities | {"completedIntegratorStepNotNeeded": "false"}
-        )
-        SubElement(SubElement(exchange, "SourceFiles"), "File", name="fmi2.c")
-    steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
-    kind = SubElement(root, "CoSimulation", capabilities | steps | (native or {}))
-    if native is not None:
-        SubElement(SubElement(kind, "SourceFiles"), "File", name="fmi2.c")
+    _interfaces(root, component, native)
     unit_definitions(root, variables)
-    _types(root, name, variables)
-    categories = SubElement(root, "LogCategories")
-    for category, description in CATEGORIES.values():
-        SubElement(categories, "Category", name=category, description=description)
-    SubElement(
-        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
-        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
-    )  # fmt: skip
+    type_definitions(root, name, variables)
+    log_and_experiment(root)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _scalar(listed, reference, variable, name)
@@ -64,8 +41,42 @@ def model_description(
     return text_of(root)
 
 
+def _interfaces(root: Element, component: type[Component], native: dict[str, str] | None) -> None:
+    """Co-simulation, and model exchange of a native component without memory, each with what it can do."""
+    capabilities = {
+        "modelIdentifier": component.__name__,
+        "needsExecutionTool": "false",
+        "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canNotUseMemoryManagementFunctions": str(native is None).lower(),
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+    }
+    steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "false"}
+    interfaces = {"CoSimulation": capabilities | steps | (native or {})}
+    if native is not None and component.keeps == NOTHING:
+        indicators = sum(variable.indicator for variable in variables_of(component))
+        root.set("numberOfEventIndicators", str(indicators))
+        exchange = {"ModelExchange": capabilities | {"completedIntegratorStepNotNeeded": "false"}}
+        interfaces = exchange | interfaces
+    for interface, attributes in interfaces.items():
+        element = SubElement(root, interface, attributes)
+        if native is not None:
+            SubElement(SubElement(element, "SourceFiles"), "File", name="fmi2.c")
+
+
+def log_and_experiment(root: Element) -> None:
+    """Log categories and default experiment, which FMI 2 and FMI 3 write alike."""
+    categories = SubElement(root, "LogCategories")
+    for category, description in CATEGORIES.values():
+        SubElement(categories, "Category", name=category, description=description)
+    SubElement(
+        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
+        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
+    )  # fmt: skip
+
+
 def about(component: type[Component], version: str) -> dict[str, str]:
-    """What FMI 2 and FMI 3 tell of the model as a whole."""
+    """Attributes of the model as a whole, the same in FMI 2 and FMI 3."""
     return {
         "description": (component.__doc__ or "").splitlines()[0],
         "author": AUTHOR,
@@ -95,15 +106,17 @@ def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple
             SubElement(definition, "DisplayUnit", name=display, factor=repr(factor))
 
 
-def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:
+def type_definitions(root: Element, name: str, variables: tuple[Variable, ...], fmi: int = 2) -> None:
     """An enumeration type for each variable that has choices."""
     chosen = [variable for variable in variables if variable.choices]
     if not chosen:
         return
     definitions = SubElement(root, "TypeDefinitions")
     for variable in chosen:
-        simple = SubElement(definitions, "SimpleType", name=f"{name}.{variable.name}")
-        enumeration = SubElement(simple, "Enumeration")
+        simple = "SimpleType" if fmi == 2 else "EnumerationType"
+        enumeration = SubElement(definitions, simple, name=f"{name}.{variable.name}")
+        if fmi == 2:
+            enumeration = SubElement(enumeration, "Enumeration")
         for value, choice in enumerate(variable.choices, start=1):
             SubElement(enumeration, "Item", name=choice, value=str(value))
 

@@ -3,15 +3,13 @@
 from xml.etree.ElementTree import Element, SubElement
 
 from ...variables import NOTHING, Component, Variable, variables_of
-from ..live.live_slave import CATEGORIES
 from .model_description import (
-    DEFAULT_STEP_SIZE,
-    DEFAULT_STOP_TIME,
-    DEFAULT_TOLERANCE,
     FIRST_REFERENCE,
     about,
     attributes_of,
+    log_and_experiment,
     output_order,
+    type_definitions,
     unit_definitions,
 )
 from .xml_text import text_of
@@ -34,14 +32,8 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     steps = {"canHandleVariableCommunicationStepSize": "true", "maxOutputDerivativeOrder": order}
     SubElement(root, "CoSimulation", common | steps)
     unit_definitions(root, variables, also=("s",))
-    _types(root, name, variables)
-    categories = SubElement(root, "LogCategories")
-    for category, description in CATEGORIES.values():
-        SubElement(categories, "Category", name=category, description=description)
-    SubElement(
-        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
-        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
-    )  # fmt: skip
+    type_definitions(root, name, variables, fmi=3)
+    log_and_experiment(root)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _variable(listed, reference, variable, name)
@@ -51,18 +43,6 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     )  # fmt: skip
     _structure(root, variables)
     return text_of(root)
-
-
-def _types(root: Element, name: str, variables: tuple[Variable, ...]) -> None:
-    """An enumeration type for each variable that has choices."""
-    chosen = [variable for variable in variables if variable.choices]
-    if not chosen:
-        return
-    definitions = SubElement(root, "TypeDefinitions")
-    for variable in chosen:
-        enumeration = SubElement(definitions, "EnumerationType", name=f"{name}.{variable.name}")
-        for value, choice in enumerate(variable.choices, start=1):
-            SubElement(enumeration, "Item", name=choice, value=str(value))
 
 
 def _variable(listed: Element, reference: int, variable: Variable, model: str) -> None:

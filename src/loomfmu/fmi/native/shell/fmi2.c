@@ -44,7 +44,6 @@ static void fmu_release(const Host *host, void *memory)
 #define SETTING (INSTANTIATED | INITIALIZING | STEPPING | EVENTS)
 #define CONTINUOUS_SETTING (SETTING | CONTINUOUS_TIME)
 #define STEPPED (STEPPING | STEP_FAILED | TERMINATED)
-#define SOLVING (INITIALIZING | EVENTS | CONTINUOUS_TIME | TERMINATED | BROKEN)
 
 /* Hosts take the message for a format, as the standard has it, or for a text: with each per cent sign
  * doubled it is safe for both. */
@@ -133,11 +132,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
 
 void fmi2FreeInstance(fmi2Component component)
 {
-    Instance *instance = component;
-    if (instance != NULL) {
-        Host host = instance->host;
-        fmu_release(&host, instance);
-    }
+    fmu_free(component);
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean on, size_t count,
@@ -159,14 +154,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_de
     if (!fmu_allowed(instance, INSTANTIATED, "fmi2SetupExperiment")) {
         return fmi2Error;
     }
-    if (!isfinite(start_time) || (stop_time_defined != fmi2False && !(stop_time >= start_time))) {
-        return (fmi2Status)fmu_complain(instance, FAILED,
-                                        "the start time must be finite and not after the stop time");
-    }
-    instance->state.time = start_time;
-    instance->state.stop_time = stop_time_defined != fmi2False ? stop_time : HUGE_VAL;
-    instance->state.set_up = true;
-    return fmi2OK;
+    return (fmi2Status)fmu_set_times(instance, start_time, stop_time_defined != fmi2False, stop_time);
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component component)
@@ -185,32 +173,17 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component component)
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component component)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, INITIALIZING, "fmi2ExitInitializationMode") || fmu_refresh(instance) != OK) {
-        return fmi2Error;
-    }
-    instance->state.mode = instance->host.model_exchange ? EVENTS : STEPPING;
-    return fmi2OK;
+    return (fmi2Status)fmu_exit_initialization(component, "fmi2ExitInitializationMode");
 }
 
 fmi2Status fmi2Terminate(fmi2Component component)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, STEPPING | STEP_FAILED | EVENTS | CONTINUOUS_TIME, "fmi2Terminate")) {
-        return fmi2Error;
-    }
-    instance->state.mode = TERMINATED;
-    return fmi2OK;
+    return (fmi2Status)fmu_terminate(component, "fmi2Terminate");
 }
 
 fmi2Status fmi2Reset(fmi2Component component)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2Reset")) {
-        return fmi2Error;
-    }
-    fmu_reset(instance);
-    return fmi2OK;
+    return (fmi2Status)fmu_start_again(component, "fmi2Reset");
 }
 
 #include "fmi2_solver.c"

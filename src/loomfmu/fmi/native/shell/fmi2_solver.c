@@ -2,13 +2,7 @@
 
 fmi2Status fmi2EnterEventMode(fmi2Component component)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, CONTINUOUS_TIME | EVENTS, "fmi2EnterEventMode")) {
-        return fmi2Error;
-    }
-    instance->state.mode = EVENTS;
-    instance->state.stale = true;
-    return fmi2OK;
+    return (fmi2Status)fmu_enter_events(component, CONTINUOUS_TIME | EVENTS, "fmi2EnterEventMode");
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info)
@@ -29,16 +23,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info)
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component component)
 {
-    Instance *instance = component;
-    Status status;
-    if (!fmu_allowed(instance, EVENTS, "fmi2EnterContinuousTimeMode")) {
-        return fmi2Error;
-    }
-    status = fmu_evaluate(instance);
-    if (status == OK) {
-        instance->state.mode = CONTINUOUS_TIME;
-    }
-    return (fmi2Status)status;
+    return (fmi2Status)fmu_enter_continuous_time(component, "fmi2EnterContinuousTimeMode");
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_return, fmi2Boolean *event,
@@ -59,50 +44,36 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_r
 
 fmi2Status fmi2SetTime(fmi2Component component, fmi2Real time)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, CONTINUOUS_TIME | EVENTS, "fmi2SetTime")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_set_time(instance, time);
+    return (fmi2Status)fmu_set_time(component, "fmi2SetTime", time);
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real values[], size_t count)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, SOLVING, "fmi2GetEventIndicators")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_get_indicators(instance, values, count);
+    return (fmi2Status)fmu_get_indicators(component, "fmi2GetEventIndicators", values, count);
 }
 
 /* ---- there are no continuous states */
 
-static fmi2Status fmu_none(fmi2Component component, int modes, const char *function, size_t count)
-{
-    Instance *instance = component;
-    return fmu_allowed(instance, modes, function) ? (fmi2Status)fmu_no_states(instance, count) : fmi2Error;
-}
-
 fmi2Status fmi2SetContinuousStates(fmi2Component component, const fmi2Real states[], size_t count)
 {
     (void)states;
-    return fmu_none(component, CONTINUOUS_TIME, "fmi2SetContinuousStates", count);
+    return (fmi2Status)fmu_no_states(component, CONTINUOUS_TIME, "fmi2SetContinuousStates", count);
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real derivatives[], size_t count)
 {
     (void)derivatives;
-    return fmu_none(component, SOLVING, "fmi2GetDerivatives", count);
+    return (fmi2Status)fmu_no_states(component, SOLVING, "fmi2GetDerivatives", count);
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component component, fmi2Real states[], size_t count)
 {
     (void)states;
-    return fmu_none(component, SOLVING, "fmi2GetContinuousStates", count);
+    return (fmi2Status)fmu_no_states(component, SOLVING, "fmi2GetContinuousStates", count);
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[], size_t count)
 {
     (void)nominals;
-    return fmu_none(component, SOLVING, "fmi2GetNominalsOfContinuousStates", count);
+    return (fmi2Status)fmu_no_states(component, SOLVING, "fmi2GetNominalsOfContinuousStates", count);
 }

@@ -135,59 +135,31 @@ fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference refe
 
 fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *state)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2GetFMUstate")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_save(instance, state);
+    return (fmi2Status)fmu_save(component, "fmi2GetFMUstate", state);
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate state)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2SetFMUstate")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_restore(instance, state);
+    return (fmi2Status)fmu_restore(component, "fmi2SetFMUstate", state);
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component component, fmi2FMUstate *state)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2FreeFMUstate")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_forget(instance, state);
+    return (fmi2Status)fmu_forget(component, "fmi2FreeFMUstate", state);
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate state, size_t *size)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2SerializedFMUstateSize") || fmu_saved(instance, state) == NULL) {
-        return fmi2Error;
-    }
-    if (size == NULL) {
-        return (fmi2Status)fmu_complain(instance, FAILED, "the pointer to the size is NULL");
-    }
-    *size = STATE_SIZE;
-    return fmi2OK;
+    return (fmi2Status)fmu_packed_size(component, "fmi2SerializedFMUstateSize", state, size);
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2SerializeFMUstate")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_pack(instance, state, bytes, size);
+    return (fmi2Status)fmu_pack(component, "fmi2SerializeFMUstate", state, bytes, size);
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate *state)
 {
-    Instance *instance = component;
-    if (!fmu_allowed(instance, ALWAYS, "fmi2DeSerializeFMUstate")) {
-        return fmi2Error;
-    }
-    return (fmi2Status)fmu_unpack(instance, bytes, size, state);
+    return (fmi2Status)fmu_unpack(component, "fmi2DeSerializeFMUstate", bytes, size, state);
 }

@@ -35,8 +35,6 @@ static void fmu_release(const Host *host, void *memory)
 /* Where functions may be called: sections 2.3, 3.2 and 4.2 of the standard. */
 #define ALWAYS MODES
 #define SETTING (INSTANTIATED | INITIALIZING | STEPPING | EVENTS)
-#define INITIALIZED (STEPPING | EVENTS | CONTINUOUS_TIME)
-#define SOLVING (INITIALIZING | EVENTS | CONTINUOUS_TIME | TERMINATED | BROKEN)
 
 static void fmu_tell(Instance *instance, Status status, const char *category, const char *message)
 {
@@ -120,11 +118,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(
 
 void fmi3FreeInstance(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    if (instance != NULL) {
-        Host host = instance->host;
-        fmu_release(&host, instance);
-    }
+    fmu_free(handle);
 }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance handle, fmi3Boolean on, size_t count, const fmi3String names[])
@@ -146,13 +140,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Boolean toleranc
     if (!fmu_allowed(instance, INSTANTIATED, "fmi3EnterInitializationMode")) {
         return fmi3Error;
     }
-    if (!isfinite(start_time) || (stop_time_defined && !(stop_time >= start_time))) {
-        return (fmi3Status)fmu_complain(instance, FAILED,
-                                        "the start time must be finite and not after the stop time");
+    if (fmu_set_times(instance, start_time, stop_time_defined, stop_time) != OK) {
+        return fmi3Error;
     }
-    instance->state.time = start_time;
-    instance->state.stop_time = stop_time_defined ? stop_time : HUGE_VAL;
-    instance->state.set_up = true;
     instance->state.mode = INITIALIZING;
     instance->state.stale = true;
     return fmi3OK;
@@ -160,32 +150,17 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Boolean toleranc
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, INITIALIZING, "fmi3ExitInitializationMode") || fmu_refresh(instance) != OK) {
-        return fmi3Error;
-    }
-    instance->state.mode = instance->host.model_exchange ? EVENTS : STEPPING;
-    return fmi3OK;
+    return (fmi3Status)fmu_exit_initialization(handle, "fmi3ExitInitializationMode");
 }
 
 fmi3Status fmi3Terminate(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, INITIALIZED, "fmi3Terminate")) {
-        return fmi3Error;
-    }
-    instance->state.mode = TERMINATED;
-    return fmi3OK;
+    return (fmi3Status)fmu_terminate(handle, "fmi3Terminate");
 }
 
 fmi3Status fmi3Reset(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3Reset")) {
-        return fmi3Error;
-    }
-    fmu_reset(instance);
-    return fmi3OK;
+    return (fmi3Status)fmu_start_again(handle, "fmi3Reset");
 }
 
 /* A function of the standard for what this FMU does not have. */

@@ -2,13 +2,7 @@
 
 fmi3Status fmi3EnterEventMode(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, CONTINUOUS_TIME, "fmi3EnterEventMode")) {
-        return fmi3Error;
-    }
-    instance->state.mode = EVENTS;
-    instance->state.stale = true;
-    return fmi3OK;
+    return (fmi3Status)fmu_enter_events(handle, CONTINUOUS_TIME, "fmi3EnterEventMode");
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance handle, fmi3Boolean *again, fmi3Boolean *terminate,
@@ -30,16 +24,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance handle, fmi3Boolean *again, fmi
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance handle)
 {
-    Instance *instance = handle;
-    Status status;
-    if (!fmu_allowed(instance, EVENTS, "fmi3EnterContinuousTimeMode")) {
-        return fmi3Error;
-    }
-    status = fmu_evaluate(instance);
-    if (status == OK) {
-        instance->state.mode = CONTINUOUS_TIME;
-    }
-    return (fmi3Status)status;
+    return (fmi3Status)fmu_enter_continuous_time(handle, "fmi3EnterContinuousTimeMode");
 }
 
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance handle, fmi3Boolean no_return, fmi3Boolean *event,
@@ -60,68 +45,54 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance handle, fmi3Boolean no_retur
 
 fmi3Status fmi3SetTime(fmi3Instance handle, fmi3Float64 time)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, CONTINUOUS_TIME | EVENTS, "fmi3SetTime")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_set_time(instance, time);
+    return (fmi3Status)fmu_set_time(handle, "fmi3SetTime", time);
 }
 
 /* ---- there are no continuous states */
 
-static fmi3Status fmu_none(fmi3Instance handle, int modes, const char *function, size_t count)
-{
-    Instance *instance = handle;
-    return fmu_allowed(instance, modes, function) ? (fmi3Status)fmu_no_states(instance, count) : fmi3Error;
-}
-
 fmi3Status fmi3SetContinuousStates(fmi3Instance handle, const fmi3Float64 states[], size_t count)
 {
     (void)states;
-    return fmu_none(handle, CONTINUOUS_TIME, "fmi3SetContinuousStates", count);
+    return (fmi3Status)fmu_no_states(handle, CONTINUOUS_TIME, "fmi3SetContinuousStates", count);
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance handle, fmi3Float64 states[], size_t count)
 {
     (void)states;
-    return fmu_none(handle, SOLVING, "fmi3GetContinuousStates", count);
+    return (fmi3Status)fmu_no_states(handle, SOLVING, "fmi3GetContinuousStates", count);
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance handle, fmi3Float64 derivatives[], size_t count)
 {
     (void)derivatives;
-    return fmu_none(handle, SOLVING, "fmi3GetContinuousStateDerivatives", count);
+    return (fmi3Status)fmu_no_states(handle, SOLVING, "fmi3GetContinuousStateDerivatives", count);
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance handle, fmi3Float64 nominals[], size_t count)
 {
     (void)nominals;
-    return fmu_none(handle, SOLVING, "fmi3GetNominalsOfContinuousStates", count);
+    return (fmi3Status)fmu_no_states(handle, SOLVING, "fmi3GetNominalsOfContinuousStates", count);
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance handle, fmi3Float64 values[], size_t count)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, SOLVING, "fmi3GetEventIndicators")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_get_indicators(instance, values, count);
+    return (fmi3Status)fmu_get_indicators(handle, "fmi3GetEventIndicators", values, count);
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance handle, size_t *count)
 {
-    fmi3Status status = fmu_none(handle, ALWAYS, "fmi3GetNumberOfContinuousStates", count == NULL ? 1 : 0);
-    if (status == fmi3OK) {
+    Status status = fmu_no_states(handle, ALWAYS, "fmi3GetNumberOfContinuousStates", count == NULL);
+    if (status == OK) {
         *count = 0;
     }
-    return status;
+    return (fmi3Status)status;
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance handle, size_t *count)
 {
-    fmi3Status status = fmu_none(handle, ALWAYS, "fmi3GetNumberOfEventIndicators", count == NULL ? 1 : 0);
-    if (status == fmi3OK) {
+    Status status = fmu_no_states(handle, ALWAYS, "fmi3GetNumberOfEventIndicators", count == NULL);
+    if (status == OK) {
         *count = INDICATORS;
     }
-    return status;
+    return (fmi3Status)status;
 }

@@ -120,59 +120,31 @@ fmi3Status fmi3SetBoolean(fmi3Instance handle, const fmi3ValueReference referenc
 
 fmi3Status fmi3GetFMUState(fmi3Instance handle, fmi3FMUState *state)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3GetFMUState")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_save(instance, state);
+    return (fmi3Status)fmu_save(handle, "fmi3GetFMUState", state);
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance handle, fmi3FMUState state)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3SetFMUState")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_restore(instance, state);
+    return (fmi3Status)fmu_restore(handle, "fmi3SetFMUState", state);
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance handle, fmi3FMUState *state)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3FreeFMUState")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_forget(instance, state);
+    return (fmi3Status)fmu_forget(handle, "fmi3FreeFMUState", state);
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance handle, fmi3FMUState state, size_t *size)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3SerializedFMUStateSize") || fmu_saved(instance, state) == NULL) {
-        return fmi3Error;
-    }
-    if (size == NULL) {
-        return (fmi3Status)fmu_complain(instance, FAILED, "the pointer to the size is NULL");
-    }
-    *size = STATE_SIZE;
-    return fmi3OK;
+    return (fmi3Status)fmu_packed_size(handle, "fmi3SerializedFMUStateSize", state, size);
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance handle, fmi3FMUState state, fmi3Byte bytes[], size_t size)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3SerializeFMUState")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_pack(instance, state, bytes, size);
+    return (fmi3Status)fmu_pack(handle, "fmi3SerializeFMUState", state, bytes, size);
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const fmi3Byte bytes[], size_t size,
                                    fmi3FMUState *state)
 {
-    Instance *instance = handle;
-    if (!fmu_allowed(instance, ALWAYS, "fmi3DeserializeFMUState")) {
-        return fmi3Error;
-    }
-    return (fmi3Status)fmu_unpack(instance, bytes, size, state);
+    return (fmi3Status)fmu_unpack(handle, "fmi3DeserializeFMUState", bytes, size, state);
 }

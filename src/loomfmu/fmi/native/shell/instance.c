@@ -94,6 +94,54 @@ static Status fmu_refresh(Instance *instance)
     return status == OK ? fmu_check_finite(instance, true, state->time, FAILED) : status;
 }
 
+/* ---- the life cycle, the same in both standards; `function` is the standard's own name */
+
+static Status fmu_set_times(Instance *instance, double start, bool stops, double stop)
+{
+    if (!isfinite(start) || (stops && !(stop >= start))) {
+        return fmu_complain(instance, FAILED, "the start time must be finite and not after the stop time");
+    }
+    instance->state.time = start;
+    instance->state.stop_time = stops ? stop : HUGE_VAL;
+    instance->state.set_up = true;
+    return OK;
+}
+
+static Status fmu_exit_initialization(Instance *instance, const char *function)
+{
+    if (!fmu_allowed(instance, INITIALIZING, function) || fmu_refresh(instance) != OK) {
+        return FAILED;
+    }
+    instance->state.mode = instance->host.model_exchange ? EVENTS : STEPPING;
+    return OK;
+}
+
+static Status fmu_terminate(Instance *instance, const char *function)
+{
+    if (!fmu_allowed(instance, STEPPING | STEP_FAILED | EVENTS | CONTINUOUS_TIME, function)) {
+        return FAILED;
+    }
+    instance->state.mode = TERMINATED;
+    return OK;
+}
+
+static Status fmu_start_again(Instance *instance, const char *function)
+{
+    if (!fmu_allowed(instance, MODES, function)) {
+        return FAILED;
+    }
+    fmu_reset(instance);
+    return OK;
+}
+
+static void fmu_free(Instance *instance)
+{
+    if (instance != NULL) {
+        Host host = instance->host;
+        fmu_release(&host, instance);
+    }
+}
+
 static Status fmu_complain_of_step(Instance *instance, Status status, double time, double size, const char *why)
 {
     Text text;

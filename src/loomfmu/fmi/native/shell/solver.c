@@ -1,5 +1,7 @@
 /* Model exchange of a component without memory: no states, all it tells is a function of now. */
 
+#define SOLVING (INITIALIZING | EVENTS | CONTINUOUS_TIME | TERMINATED | BROKEN)
+
 static bool fmu_is_discrete_output(const Row *row)
 {
     return row->causality == OUTPUT && row->variability == DISCRETE;
@@ -75,8 +77,11 @@ static bool fmu_is_event(Instance *instance)
     return false;
 }
 
-static Status fmu_set_time(Instance *instance, double time)
+static Status fmu_set_time(Instance *instance, const char *function, double time)
 {
+    if (!fmu_allowed(instance, CONTINUOUS_TIME | EVENTS, function)) {
+        return FAILED;
+    }
     if (!isfinite(time)) {
         return fmu_complain(instance, FAILED, "the time must be finite");
     }
@@ -85,19 +90,44 @@ static Status fmu_set_time(Instance *instance, double time)
     return OK;
 }
 
-/* Whether a host asks for no continuous states, as many as there are. */
-static Status fmu_no_states(Instance *instance, size_t count)
+static Status fmu_enter_events(Instance *instance, int modes, const char *function)
 {
+    if (!fmu_allowed(instance, modes, function)) {
+        return FAILED;
+    }
+    instance->state.mode = EVENTS;
+    instance->state.stale = true;
+    return OK;
+}
+
+static Status fmu_enter_continuous_time(Instance *instance, const char *function)
+{
+    Status status = fmu_allowed(instance, EVENTS, function) ? fmu_evaluate(instance) : FAILED;
+    if (status == OK) {
+        instance->state.mode = CONTINUOUS_TIME;
+    }
+    return status;
+}
+
+/* Whether a host asks for no continuous states, as many as there are. */
+static Status fmu_no_states(Instance *instance, int modes, const char *function, size_t count)
+{
+    if (!fmu_allowed(instance, modes, function)) {
+        return FAILED;
+    }
     if (!instance->host.model_exchange || count != 0) {
         return fmu_complain(instance, FAILED, "there are no continuous states");
     }
     return OK;
 }
 
-static Status fmu_get_indicators(Instance *instance, double values[], size_t count)
+static Status fmu_get_indicators(Instance *instance, const char *function, double values[], size_t count)
 {
     Status status;
     int i;
+    if (!fmu_allowed(instance, SOLVING, function)) {
+        return FAILED;
+    }
     if (!instance->host.model_exchange || count != INDICATORS || (count > 0 && values == NULL)) {
         return fmu_refuse(instance, "there are %lu event indicators%s, in model exchange only",
                           (unsigned long)INDICATORS, "");

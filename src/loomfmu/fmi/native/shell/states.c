@@ -184,10 +184,17 @@ static Saved *fmu_provide(Instance *instance, void **handle)
     return fmu_saved(instance, *handle);
 }
 
-static Status fmu_save(Instance *instance, void **handle)
+/* The functions of both standards, which may be called always; `function` is the standard's own name. */
+
+static Status fmu_save(Instance *instance, const char *function, void **handle)
 {
-    State present = instance->state; /* a complaint would change it */
-    Saved *saved = fmu_provide(instance, handle);
+    Saved *saved;
+    State present;
+    if (!fmu_allowed(instance, MODES, function)) {
+        return FAILED;
+    }
+    present = instance->state; /* a complaint would change it */
+    saved = fmu_provide(instance, handle);
     if (saved == NULL) {
         return FAILED;
     }
@@ -202,9 +209,9 @@ static bool fmu_fits(const Instance *instance, const State *state)
     return (state->mode & others) == 0;
 }
 
-static Status fmu_restore(Instance *instance, void *handle)
+static Status fmu_restore(Instance *instance, const char *function, void *handle)
 {
-    const Saved *saved = fmu_saved(instance, handle);
+    const Saved *saved = fmu_allowed(instance, MODES, function) ? fmu_saved(instance, handle) : NULL;
     if (saved == NULL) {
         return FAILED;
     }
@@ -215,9 +222,12 @@ static Status fmu_restore(Instance *instance, void *handle)
     return OK;
 }
 
-static Status fmu_forget(Instance *instance, void **handle)
+static Status fmu_forget(Instance *instance, const char *function, void **handle)
 {
     Saved *saved;
+    if (!fmu_allowed(instance, MODES, function)) {
+        return FAILED;
+    }
     if (handle == NULL || *handle == NULL) {
         return OK;
     }
@@ -231,9 +241,21 @@ static Status fmu_forget(Instance *instance, void **handle)
     return OK;
 }
 
-static Status fmu_pack(Instance *instance, void *handle, void *bytes, size_t size)
+static Status fmu_packed_size(Instance *instance, const char *function, void *handle, size_t *size)
 {
-    const Saved *saved = fmu_saved(instance, handle);
+    if (!fmu_allowed(instance, MODES, function) || fmu_saved(instance, handle) == NULL) {
+        return FAILED;
+    }
+    if (size == NULL) {
+        return fmu_complain(instance, FAILED, "the pointer to the size is NULL");
+    }
+    *size = STATE_SIZE;
+    return OK;
+}
+
+static Status fmu_pack(Instance *instance, const char *function, void *handle, void *bytes, size_t size)
+{
+    const Saved *saved = fmu_allowed(instance, MODES, function) ? fmu_saved(instance, handle) : NULL;
     if (saved == NULL) {
         return FAILED;
     }
@@ -244,10 +266,13 @@ static Status fmu_pack(Instance *instance, void *handle, void *bytes, size_t siz
     return OK;
 }
 
-static Status fmu_unpack(Instance *instance, const void *bytes, size_t size, void **handle)
+static Status fmu_unpack(Instance *instance, const char *function, const void *bytes, size_t size, void **handle)
 {
     State read;
     Saved *saved;
+    if (!fmu_allowed(instance, MODES, function)) {
+        return FAILED;
+    }
     if (bytes == NULL || !fmu_read_state(&read, bytes, size)) {
         return fmu_complain(instance, FAILED, "the FMU state is damaged or belongs to another FMU");
     }
