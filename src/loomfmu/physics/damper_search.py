@@ -48,20 +48,10 @@ def rate_bounds(
 
 
 def gauge_at(
-    order: int,
-    level: float,
-    by_position: float,
-    by_rate: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
+    order: int, level: float, by_position: float, by_rate: float, position: float, rate: float,
+    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
     time: float,
-) -> tuple[float, float]:
+) -> tuple[float, float]:  # fmt: skip
     """Value and derivative at a time of the gauge `q (z - p) + r z'`, or of its slope `q z' + r z'' - p`.
 
     Args:
@@ -113,23 +103,10 @@ def safe_stride(value: float, slope: float, bend: float) -> float:
 
 
 def first_change(
-    order: int,
-    level: float,
-    by_position: float,
-    by_rate: float,
-    sign: float,
-    bend: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    start: float,
-    duration: float,
-) -> float:
+    order: int, level: float, by_position: float, by_rate: float, sign: float, bend: float, position: float,
+    rate: float, stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float,
+    drive_3: float, start: float, duration: float,
+) -> float:  # fmt: skip
     """Time at which a gauge, or its slope, first leaves a sign; on the far side of the zero, to rounding.
 
     Goes from stride to stride, each so short that no zero can lie within it, whatever the motion: so two
@@ -183,23 +160,10 @@ def first_change(
 
 
 def locate(
-    order: int,
-    level: float,
-    by_position: float,
-    by_rate: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    low: float,
-    high: float,
-    at_low: float,
-    at_high: float,
-) -> float:
+    order: int, level: float, by_position: float, by_rate: float, position: float, rate: float,
+    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
+    low: float, high: float, at_low: float, at_high: float,
+) -> float:  # fmt: skip
     """Time at which a gauge, or its slope, changes its sign in a bracket.
 
     Illinois regula falsi on the exact solution; returns the end of the bracket on the far side of the
@@ -240,22 +204,10 @@ def locate(
 
 
 def contact_change(
-    contact: int,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    travel: float,
-    stop_stiffness: float,
-    stop_damping: float,
-    most_acceleration: float,
-    most_jerk: float,
-    duration: float,
-) -> tuple[float, int]:
+    contact: int, position: float, rate: float, stiffness: float, damping: float, drive: float,
+    drive_1: float, drive_2: float, drive_3: float, travel: float, stop_stiffness: float, stop_damping: float,
+    most_acceleration: float, most_jerk: float, duration: float,
+) -> tuple[float, int]:  # fmt: skip
     """When the carrier's contact with a stop first changes, and the contact that follows.
 
     Args:
@@ -309,21 +261,10 @@ def contact_change(
 
 
 def next_turn(
-    offset: float,
-    by_position: float,
-    by_rate: float,
-    bend: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    start: float,
-    duration: float,
-) -> float:
+    offset: float, by_position: float, by_rate: float, bend: float, position: float, rate: float,
+    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
+    start: float, duration: float,
+) -> float:  # fmt: skip
     """Time at which the gauge `q z + r z' - p t` next turns round; -1 if it does not.
 
     Args:
