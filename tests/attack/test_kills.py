@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from live_fmus import fmu_cache
-from running import started
+from commands import started
 from sweeps.sweep_files import NO_TRACES, written
 from sweeps.sweep_files import started as sweep_started
 

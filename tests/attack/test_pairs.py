@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from live_fmus import fmu_cache
-from running import started
+from commands import started
 
 from loomfmu import Trace
 
