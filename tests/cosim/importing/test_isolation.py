@@ -189,8 +189,8 @@ def test_the_processes_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
         [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
         cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
     )  # fmt: skip
-    trace = tmp_path / "results" / "motor.h5.partial"
-    until(lambda: trace.exists() and list((tmp_path / "tmp").glob("loomfmu-*")))
+    results, temporary = tmp_path / "results", tmp_path / "tmp"
+    until(lambda: list(results.glob("motor.h5.*.partial")) and list(temporary.glob("loomfmu-*")))
     ours.kill()
     ours.wait()
     until(lambda: not list((tmp_path / "tmp").glob("loomfmu-*")))  # the last that they do
