@@ -107,7 +107,9 @@ def _four_bar(given: Any, psi: Floats, rate: Floats, bend: Floats) -> tuple[Floa
 def belt(given: Any, found: dict[str, Any], speed: float) -> dict[str, Any]:
     """Margin and speed limit of the belt, equations (7) to (12) of Zhu and Zhou."""
     free = found["weft.travel"] - given.idle_travel - given.head_length
-    force = given.head_mass * found["weft.acceleration"] + given.yarn_tension
+    inwards = found["weft.velocity"] >= 0.0  # a giver carries the weft there, a taker on the way back
+    weft = np.where(inwards != given.taker, given.yarn_tension * (1.0 - 2.0 * given.taker), 0.0)
+    force = given.head_mass * found["weft.acceleration"] + weft
     factor = given.prescribed_length_factor
     if not given.prescribe_length_factor:
         factor = length_factor(given.guide_clearance)
@@ -116,7 +118,7 @@ def belt(given: Any, found: dict[str, Any], speed: float) -> dict[str, Any]:
     bend = found["weft.acceleration"] / (speed * speed)
     critical = euler / (factor * np.maximum(free, 1e-3)) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        spare = euler / (factor * free) ** 2 - given.yarn_tension
+        spare = euler / (factor * free) ** 2 - weft
         limit = np.minimum(NO_LIMIT, np.sqrt(np.maximum(spare, 0.0) / (given.head_mass * bend)))
     return {
         "free_length": free,

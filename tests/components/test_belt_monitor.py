@@ -7,6 +7,7 @@ import pytest
 from driving import assign, values
 from looms import RPM, Loom
 from reference import ALL_MACHINES, machine
+from scipy.optimize import minimize_scalar
 
 from loomfmu.components import BeltMonitor
 from loomfmu.machines import HEADS, parameters, table
@@ -347,9 +348,57 @@ def test_tension_alone_can_buckle():
     belt = Loom(rpm=100.0, yarn_tension=1e3).turn(0.5)
     assert belt.buckled
     assert belt.lowest_speed_limit == 0.0
-    pulled = Loom(rpm=700.0, yarn_tension=-1e3).turn(1.0)
+    pulled = Loom(rpm=700.0, yarn_tension=-1e3).turn(0.5)
     assert not pulled.buckled
     assert pulled.lowest_margin >= 1.0
+
+
+@pytest.mark.parametrize("taker", [False, True])
+def test_weft_loads_the_belt_only_while_the_head_carries_it(taker):
+    seen = []
+    Loom(rpm=500.0, yarn_tension=5.0, taker=taker).turn(
+        watch=lambda belt: seen.append((belt.velocity, belt.axial_force - belt.inertia_force))
+    )
+    # a giver pushes the weft in and returns empty; a taker goes in empty and pulls the weft out
+    moving = {
+        velocity > 0.0: {round(load, 9) for v, load in seen if v * velocity > 0.0} for velocity in (1, -1)
+    }
+    assert moving == ({True: {0.0}, False: {-5.0}} if taker else {True: {5.0}, False: {0.0}})
+
+
+@every_stroke
+@pytest.mark.parametrize("taker", [False, True])
+def test_speed_limits_of_giver_and_taker_in_either_stroke(taker, begin):
+    # the return mirrors the insertion in time, so each stroke's limit is (12) with that stroke's weft load
+    name, tension = "WL680-3600", 10.0
+    load = (0.0, -tension)[begin > 0.0] if taker else (tension, 0.0)[begin > 0.0]
+    of = machine(name)
+    found = minimize_scalar(
+        lambda angle: float(of.safe_speed(angle, 0.8, tension=load)),
+        bounds=(float(of.free_start()) + 1e-3, float(of.push_end()) - 1e-3), method="bounded",
+    )  # fmt: skip
+    limit = found.fun
+    belt = Loom(
+        name, rpm=100.0, begin=begin, taker=taker, yarn_tension=tension, prescribe_length_factor=True
+    ).turn(0.5)  # fmt: skip
+    # the quintic of steps of half a degree, as in the table of steps above
+    assert belt.lowest_speed_limit == pytest.approx(limit, rel=1e-8)
+
+
+def test_the_load_changes_where_the_head_turns_within_a_step():
+    # s = 1 + 2 u - 4 u^2 over a step of 0.1 s: the head turns at u = 1/4, 0.25 m further in than at the start
+    belt = BeltMonitor(
+        travel=1.0, velocity=20.0, acceleration=-800.0, head_mass=1e-6, yarn_tension=1.0, inputs_at_step_end=True,
+        speed=0.1, prescribe_length_factor=True,
+    )  # fmt: skip
+    belt.initialize(0.0)
+    belt.travel, belt.velocity = -1.0, -60.0
+    belt.step(0.0, 0.1)
+    deepest = 1.25 - belt.idle_travel - belt.head_length
+    expected = 1.0 - (1.0 - 8e-4) * (0.8 * deepest) ** 2 / (pi * pi * 0.25)
+    assert belt.lowest_margin == pytest.approx(
+        expected, abs=1e-9
+    )  # the place of a jump, by 40 golden sections
 
 
 def test_a_change_of_tension_within_a_step_is_joined():

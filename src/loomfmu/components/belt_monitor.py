@@ -4,13 +4,22 @@ from dataclasses import dataclass
 from math import fabs, inf, pi
 from typing import ClassVar
 
-from ..physics.belt import NO_LIMIT, critical_force, elastica_deflection, length_factor, margin, speed_limit
+from ..physics.belt import (
+    NO_LIMIT,
+    critical_force,
+    elastica_deflection,
+    length_factor,
+    margin,
+    speed_limit,
+    weft_load,
+)
 from ..physics.numerics.motion import (
     above_noise,
     bent,
     bump_noise,
     bumps,
     expected_bump,
+    joined_rate,
     joined_value,
     sample_noise,
 )
@@ -66,6 +75,9 @@ class BeltMonitor(ShaftDriven):
     prescribed_length_factor: float = parameter(
         "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
     )
+    taker: bool = parameter(
+        "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in"
+    )
     travel: float = input_(
         "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
     )
@@ -77,8 +89,9 @@ class BeltMonitor(ShaftDriven):
         "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
     yarn_tension: float = input_(
-        "N", 0.0, "Weft tension, which compresses the belt", display="cN", minimum=-1e6, maximum=1e6
-    )
+        "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
+        display="cN", minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
     guide_clearance: float = input_(
         "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",
         minimum=0.0, maximum=0.05, nominal=1e-3,
@@ -92,7 +105,7 @@ class BeltMonitor(ShaftDriven):
     )
     axial_force: float = output(
         "N", "Compression of the belt: inertia force and weft tension", nominal=100.0,
-        depends=("acceleration", "yarn_tension"),
+        depends=("velocity", "acceleration", "yarn_tension"),
     )  # fmt: skip
     critical_force: float = output(
         "N", "Critical load of the free section; inside the guide, that of a section of 1 mm",
@@ -215,6 +228,7 @@ class BeltMonitor(ShaftDriven):
         travel, second = joined_value(self.sampled_travel, start_rate, a0, a1, a2, a3, share)
         second = second / (step * step)
         tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
+        tension = weft_load(tension, joined_rate(start_rate, a0, a1, a2, a3, share), self.taker)
         factor = self.sampled_factor + share * (self.length_factor - self.sampled_factor)
         free_length = travel - self.idle_travel - self.head_length
         if limit:
@@ -309,21 +323,23 @@ class BeltMonitor(ShaftDriven):
     def judge(self, duration: float) -> None:
         """Bring the lowest margin and speed limit up to the present sample."""
         guide = self.idle_travel + self.head_length
-        force = self.head_mass * self.acceleration + self.yarn_tension
+        weft = weft_load(self.yarn_tension, self.velocity, self.taker)
+        force = self.head_mass * self.acceleration + weft
         here = margin(self.travel - guide, force, self.length_factor, self.bending_stiffness)
         if here < self.lowest_margin:
             self.lowest_margin = here
         if self.joined_turning:
             limit = speed_limit(
                 self.travel - guide, self.joined_bend, self.length_factor, self.bending_stiffness,
-                self.head_mass, self.yarn_tension,
+                self.head_mass, weft,
             )  # fmt: skip
             if limit < self.lowest_speed_limit:
                 self.lowest_speed_limit = limit
         turn = fabs(self.joined_angle - self.sampled_angle)
         outside = self.travel > guide or self.sampled_travel > guide
         near = duration > SHORTEST and outside and turn <= 0.25 * pi
-        sampled_force = self.head_mass * self.sampled_acceleration + self.sampled_force
+        sampled_weft = weft_load(self.sampled_force, self.sampled_velocity, self.taker)
+        sampled_force = self.head_mass * self.sampled_acceleration + sampled_weft
         if near and (force > 0.0 or sampled_force > 0.0):
             self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
         elif duration > SHORTEST:
@@ -343,7 +359,9 @@ class BeltMonitor(ShaftDriven):
         bend = self.joined_bend + self.bend_rate * lead
         self.free_length = travel - self.idle_travel - self.head_length
         self.inertia_force = self.head_mass * (self.acceleration + self.acceleration_rate * lead)
-        self.axial_force = self.inertia_force + self.yarn_tension
+        velocity = carried(self.velocity, self.acceleration, self.acceleration_rate, lead)
+        weft = weft_load(self.yarn_tension, velocity, self.taker)
+        self.axial_force = self.inertia_force + weft
         self.critical_force = critical_force(
             self.free_length if self.free_length > 1e-3 else 1e-3, self.length_factor, self.bending_stiffness
         )
@@ -352,7 +370,7 @@ class BeltMonitor(ShaftDriven):
         if self.joined_turning:
             self.speed_limit = speed_limit(
                 self.free_length, bend, self.length_factor, self.bending_stiffness, self.head_mass,
-                self.yarn_tension,
+                weft,
             )  # fmt: skip
         self.deflection = elastica_deflection(1.0 - self.margin, self.free_length)
         self.at_risk = self.free_length > 0.0 and self.axial_force > 0.0

@@ -52,7 +52,7 @@ def safe_speed(
         machine, head: names of published ones
         length_factor: column length factor [1]; from the clearance if not given
         clearance: of the belt in its guide [m]; that of a new belt, 0.3 mm, if not given
-        tension: of the weft [N]
+        tension: of the weft that a giver brings in [N]; 0 for a taker, whose belt it never compresses
         mass: of the head [kg]; that of the named head if not given
         stiffness: bending stiffness of the belt [N m2]
 

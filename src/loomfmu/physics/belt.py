@@ -131,6 +131,31 @@ def margin(free_length: float, axial_force: float, factor: float, stiffness: flo
     return 1.0 - axial_force * reduced * reduced / (pi * pi * stiffness)
 
 
+def weft_load(tension: float, velocity: float, taker: bool) -> float:
+    """Compression of the belt by the weft that its head carries, F_z of equation (12) with its direction.
+
+    The weft pulls back against the motion of the head. A giver carries it on the way in, pushed by its belt,
+    and returns empty; a taker goes in empty and draws the weft out, pulled by its belt. The source describes
+    both in section 1, but counts the tension as compression for either head.
+
+    Args:
+        tension: of the weft [N]
+        velocity: of the head, positive on its way in [m/s]
+        taker: whether the head takes the weft over, instead of bringing it
+
+    Returns:
+        compression [N], negative where the weft relieves the belt
+
+    >>> weft_load(2.0, 10.0, False), weft_load(2.0, -10.0, False)
+    (2.0, 0.0)
+    >>> weft_load(2.0, 10.0, True), weft_load(2.0, -10.0, True)
+    (0.0, -2.0)
+    """
+    if taker:
+        return 0.0 - tension if velocity < 0.0 else 0.0
+    return tension if velocity >= 0.0 else 0.0
+
+
 def speed_limit(
     free_length: float,
     slope: float,
@@ -151,7 +176,7 @@ def speed_limit(
         factor: column length factor [1]
         stiffness: bending stiffness [N m2]
         mass: of the head with the rigid section of the belt [kg]
-        tension: of the weft F_z [N]
+        tension: compression by the weft F_z [N]; negative where the weft relieves the belt
 
     Returns:
         shaft speed [rad/s]

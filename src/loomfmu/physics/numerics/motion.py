@@ -169,6 +169,16 @@ def joined_value(
     return value, a0 + u * (a1 + u * (a2 + u * a3))
 
 
+def joined_rate(start_rate: float, a0: float, a1: float, a2: float, a3: float, share: float) -> float:
+    """First derivative by u at a share of the way, from the coefficients of `joined`.
+
+    >>> joined_rate(0.0, 0.0, 0.0, 0.0, 20.0, 0.5)
+    0.3125
+    """
+    u = share
+    return start_rate + u * (a0 + u * (a1 / 2.0 + u * (a2 / 3.0 + u * a3 / 4.0)))
+
+
 def turns_of_cubic(a1: float, a2: float, a3: float) -> tuple[float, float]:
     """Where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` turns; -1 where it does not.
 
