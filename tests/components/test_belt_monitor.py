@@ -386,10 +386,10 @@ def test_speed_limits_of_giver_and_taker_in_either_stroke(taker, begin):
 
 
 def test_the_load_changes_where_the_head_turns_within_a_step():
-    # s = 1 + 2 u - 4 u^2 over a step of 0.1 s: the head turns at u = 1/4, 0.25 m further in than at the start
+    # s = 1 + 2 u - 4 u^2 over a step of 0.1 s: the head turns at u = 1/4, where it is 0.25 m further in
     belt = BeltMonitor(
-        travel=1.0, velocity=20.0, acceleration=-800.0, head_mass=1e-6, yarn_tension=1.0, inputs_at_step_end=True,
-        speed=0.1, prescribe_length_factor=True,
+        travel=1.0, velocity=20.0, acceleration=-800.0, head_mass=1e-6, yarn_tension=1.0,
+        inputs_at_step_end=True, speed=0.1, prescribe_length_factor=True,
     )  # fmt: skip
     belt.initialize(0.0)
     belt.travel, belt.velocity = -1.0, -60.0

@@ -1,9 +1,11 @@
 """Design functions: the physics of the FMUs, solved for a design. Uses numpy and scipy.
 
-`loom` finds safe speeds, clearances, masses and stiffnesses, `cam` and `cam_export` shedding cams, `reed` the
-dimensions of a beat-up linkage.
+`loom` finds safe speeds, clearances, masses and stiffnesses, `buckling` fits the length factor to buckling
+tests. `shed` finds where the warp has to be and when, `cam` and `rocker_cam` shedding cams for it,
+`cam_export` writes them. `reed` has the dimensions of a beat-up linkage, `guidance` its synthesis from
+places of its rod. `dobby` has two older drives of dobbies.
 """
 
-from . import cam, cam_export, loom, reed
+from . import buckling, cam, cam_export, dobby, guidance, loom, reed, rocker_cam, shed
 
-__all__ = ["cam", "cam_export", "loom", "reed"]
+__all__ = ["buckling", "cam", "cam_export", "dobby", "guidance", "loom", "reed", "rocker_cam", "shed"]

@@ -10,6 +10,7 @@ from ..errors import LoomfmuError
 from ..files import starts_with, write_file
 from .cam import Cam, Floats
 from .quantities import Quantity, read, whole
+from .rocker_cam import RockerCam
 
 COLUMNS = (
     "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
@@ -34,7 +35,7 @@ class Move(NamedTuple):
         return end if self.code == "G1" else f"{end} I{self.i:.4f} J{self.j:.4f}"
 
 
-def write_csv(cam: Cam, path: Path, overwrite: bool = False) -> None:
+def write_csv(cam: Cam | RockerCam, path: Path, overwrite: bool = False) -> None:
     """Write the points of profile and cutter's path, with pressure angle and radius of curvature.
 
     `overwrite` replaces a file that is not such a table. Raises LoomfmuError.
@@ -52,7 +53,7 @@ def write_csv(cam: Cam, path: Path, overwrite: bool = False) -> None:
     write_file(path, "\n".join([",".join(COLUMNS), *rows, ""]).encode(), TABLE, overwrite=overwrite)
 
 
-def write_dxf(cam: Cam, path: Path, overwrite: bool = False) -> None:
+def write_dxf(cam: Cam | RockerCam, path: Path, overwrite: bool = False) -> None:
     """Write profile, cutter's path and lowest circle as a drawing, each on a layer of its own.
 
     `overwrite` replaces a file that is not a drawing.
@@ -78,7 +79,7 @@ def write_dxf(cam: Cam, path: Path, overwrite: bool = False) -> None:
 
 
 def gcode(
-    cam: Cam,
+    cam: Cam | RockerCam,
     *,
     arcs: bool = True,
     tolerance: Quantity = 2e-6,
@@ -115,7 +116,7 @@ def gcode(
 
 
 def cutter_moves(
-    cam: Cam, *, arcs: bool = True, tolerance: Quantity = 2e-6
+    cam: Cam | RockerCam, *, arcs: bool = True, tolerance: Quantity = 2e-6
 ) -> tuple[tuple[float, float], list[Move]]:
     """Start and moves of the cutter's centre round the cam, clockwise and closed [mm], to 0.1 um."""
     points = np.round(1e3 * _open(cam.path)[::-1], 4)

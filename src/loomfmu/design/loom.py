@@ -18,7 +18,15 @@ from .quantities import Quantity, read, show
 BENDING_STIFFNESS = 0.25  # N m2, the carbon belt of Zhu and Zhou
 RPM = 2.0 * math.pi / 60.0
 NEW_BELT = 0.3e-3  # m, its clearance in the guide
-QUANTITIES = ("head", "length_factor", "clearance", "tension", "mass", "stiffness")  # besides the machine
+QUANTITIES = (
+    "head",
+    "length_factor",
+    "clearance",
+    "tension",
+    "mass",
+    "stiffness",
+    "deflection",
+)  # besides the machine
 
 
 @dataclass(frozen=True)
@@ -45,6 +53,7 @@ def safe_speed(
     tension: Quantity = 0.0,
     mass: Quantity | None = None,
     stiffness: Quantity = BENDING_STIFFNESS,
+    deflection: Quantity = 0.0,
 ) -> SafeSpeed:
     """Safe speed of a published machine, equations (9), (10) and (12) of Zhu and Zhou.
 
@@ -55,10 +64,11 @@ def safe_speed(
         tension: of the weft that a giver brings in [N]; 0 for a taker, whose belt it never compresses
         mass: of the head [kg]; that of the named head if not given
         stiffness: bending stiffness of the belt [N m2]
+        deflection: that the belt is allowed once it has buckled, at rest [m], section 4.2
 
     Raises:
         LoomfmuError: an unknown name, a quantity outside its limits, or a weft tension that alone buckles
-            the belt
+            the belt, or a deflection that it never reaches
 
     >>> round(safe_speed("WL680-3600").speed / RPM, 1)
     681.8
@@ -75,17 +85,35 @@ def safe_speed(
     named("head", head)
     weight = read("mass", parameters("BeltMonitor", head=head)["head_mass"] if mass is None else mass)
     factor = belt.length_factor(gap) if length_factor is None else read("length_factor", length_factor)
+    bow = read("deflection", deflection)
     start, end = window(machine)
 
     def limit(angle: float) -> float:
         position, _first, second = travel(angle)
-        return belt.speed_limit(position - guide, second, factor, stiffness, weight, tension)
+        free = position - guide
+        bent = stiffness * belt.bent_load_ratio(bow / free) if free > 0.0 else stiffness
+        return belt.speed_limit(free, second, factor, bent, weight, tension)
 
-    angle, speed = _lowest(limit, start, end)
+    angle, speed = _lowest(limit, _bent_from(machine, bow) if bow > 0.0 else start, end)
     if speed <= 0.0:
         raise LoomfmuError(f"{machine}: a weft tension of {tension:.6g} N buckles the belt at any speed")
     force = belt.critical_force(travel(angle)[0] - guide, factor, stiffness)
     return SafeSpeed(speed, angle, force, (start, end), travel(end)[0] - guide)
+
+
+def _bent_from(machine: str, deflection: float) -> float:
+    """Shaft angle from which the free belt is long enough for a deflection [rad]. Raises LoomfmuError."""
+    from scipy.optimize import brentq
+
+    guide, travel = _travel(machine)
+    start, end = window(machine)
+    needed = guide + deflection / belt.LARGEST_BEND
+    if travel(end)[0] <= needed:
+        raise LoomfmuError(
+            f"deflection = {show('deflection', deflection)}: the belt of {machine} is too short to bend more"
+            f" than {show('deflection', belt.LARGEST_BEND * (travel(end)[0] - guide))}"
+        )
+    return float(brentq(lambda angle: travel(angle)[0] - needed, start, end, xtol=1e-14))
 
 
 def _lowest(limit: Callable[[float], float], start: float, end: float) -> tuple[float, float]:

@@ -4,7 +4,7 @@ Source: Zhu and Zhou, J. Zhejiang Sci-Tech Univ. 45 (2021) 497, sections 3 and 4
 Tables 2 to 7.
 """
 
-from math import fabs, pi, sqrt
+from math import fabs, inf, pi, sqrt
 
 # A limit above which none is worth telling: 95,493 rev/min. Towards the edge of its window the limit
 # grows beyond every bound; outside it there is none.
@@ -238,3 +238,36 @@ def elastica_deflection(load_ratio: float, free_length: float) -> float:
         else:
             high = k
     return free_length * 0.5 * (low + high) / target
+
+
+# Where the pinned elastica is bent most, 2 K (1 - k^2) = E: its modulus, its deflection over its length
+MOST_BENT = 0.8374529602688741
+LARGEST_BEND = 0.4031401897056502
+
+
+def bent_load_ratio(bend: float) -> float:
+    """Load ratio at which a pinned column first has a deflection: `elastica_deflection` inverted.
+
+    Args:
+        bend: deflection over the length of the column [1]
+
+    Returns:
+        load ratio [1]: 1 without a deflection; `inf` from 0.4031 on, which no load gives
+
+    >>> round(bent_load_ratio(8.4e-3 / 0.174), 4)  # (686 / 685)^2 = 1.0029
+    1.0029
+    """
+    if bend <= 0.0:
+        return 1.0
+    if bend >= LARGEST_BEND:
+        return inf
+    low = 0.0
+    high = MOST_BENT
+    for _ in range(60):
+        k = 0.5 * (low + high)
+        if k < bend * complete_elliptic(k):
+            low = k
+        else:
+            high = k
+    root = 2.0 / pi * complete_elliptic(0.5 * (low + high))
+    return root * root

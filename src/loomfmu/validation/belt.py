@@ -3,10 +3,9 @@
 import math
 from functools import cache
 
-import numpy as np
-
 from ..components.weft_insertion import WeftInsertion
 from ..design import loom
+from ..design.buckling import LengthFactor, fit_length_factor
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics import belt as physics
 from ..units import STANDARD_GRAVITY
@@ -99,22 +98,17 @@ def _growth() -> tuple[float, float]:
     return min(slopes), max(slopes)
 
 
-def fitted_factors() -> dict[str, float]:
+@cache
+def fits() -> dict[str, LengthFactor]:
     """Length factor of each clearance, fitted to the measured loads of Table 2 by least squares."""
     rows = table("belt_buckling_experiment")
-    found = {}
-    for clearance in CLEARANCES:
-        pinned = np.array(
-            [physics.critical_force(1e-3 * float(row["free_length_mm"]), 1.0, 0.25) for row in rows]
-        )
-        load = np.array([float(row[f"c_{clearance}"]) for row in rows])
-        found[clearance] = float(np.sqrt(pinned @ pinned / (pinned @ load)))
-    return found
+    lengths = [1e-3 * float(row["free_length_mm"]) for row in rows]
+    return {c: fit_length_factor(lengths, [float(row[f"c_{c}"]) for row in rows]) for c in CLEARANCES}
 
 
 def table_2() -> Section:
     """Measured buckling loads."""
-    factors = fitted_factors()
+    factors = {clearance: fit.factor for clearance, fit in fits().items()}
     rows = []
     for row in table("belt_buckling_experiment"):
         length = 1e-3 * float(row["free_length_mm"])
@@ -134,7 +128,7 @@ def table_2() -> Section:
 
 def table_3() -> Section:
     """Length factors."""
-    factors = fitted_factors()
+    factors = {clearance: fit.factor for clearance, fit in fits().items()}
     printed = {row["clearance_mm"]: row["length_factor"] for row in table("length_factor")}
     rows = tuple(Row((c, Pair(printed[c], factors[c], 3))) for c in CLEARANCES)
     return Section(

@@ -8,6 +8,7 @@ from . import (
     accuracy,
     belt,
     cam,
+    design,
     errata_dobby,
     errata_laws,
     errata_others,
@@ -88,7 +89,8 @@ def text() -> str:
     of_sources = chapters()
     parts = [INTRO, _summary(of_sources), _missed(of_sources)]
     parts += [
-        chapter.markdown() for chapter in (*of_sources, errata(), findings.chapter(), accuracy.chapter())
+        chapter.markdown()
+        for chapter in (*of_sources, errata(), findings.chapter(), design.chapter(), accuracy.chapter())
     ]
     return "\n\n".join(parts) + "\n"
 
