@@ -8,6 +8,7 @@ from reference import MP, RPM, Jet, acos, atan2, cos, sin, sqrt
 
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.design.reed import crank_place, crank_rocker_without_quick_return, reed_dyad
+from loomfmu.physics.reed import servo_turn
 
 SPEED = float(30 * RPM)  # of the published motion
 ANGLES = [2 * pi * k / 720 for k in range(720)]
@@ -253,3 +254,85 @@ def test_masses_and_lengths_beyond_their_limits_are_refused():
         ReedBeatUp(reed_mass=-1.0)
     with pytest.raises(ValueError, match=r"ReedBeatUp.crank_length = 20000 mm is outside"):
         ReedBeatUp(crank_length=20.0)
+
+
+# Servo
+
+STEP = 1e-5  # rad, of the differences that give an energy
+SERVOS = {"half": (pi, 0.25), "short": (0.8, 0.5), "sharp": (2.0, 0.02), "whole": (2 * pi, 0.3)}
+every_servo = pytest.mark.parametrize(("run", "share"), SERVOS.values(), ids=SERVOS)
+
+
+@every_servo
+def test_servo_law_to_fifty_digits(run, share):
+    # by another way: the speed's definition, integrated and differentiated by mpmath
+    ramp = share * run
+    top = 2 * MP.pi / (MP.mpf(run) - MP.mpf(ramp))
+
+    def speed(x):
+        left = MP.mpf(run) / 2 - abs(x)
+        if left <= 0:
+            return MP.mpf(0)
+        part = min(left / MP.mpf(ramp), MP.mpf(1))
+        return top * (part - MP.sin(2 * MP.pi * part) / (2 * MP.pi))
+
+    for x in (0.0, 0.1 * run, -0.3 * run, 0.45 * run, -0.499 * run, min(0.6 * run, 3.0)):
+        turn, first, second = servo_turn(x, run, ramp)
+        knee = MP.sign(x) * min(abs(MP.mpf(x)), MP.mpf(run) / 2 - MP.mpf(ramp))
+        stop = MP.sign(x) * min(abs(MP.mpf(x)), MP.mpf(run) / 2)
+        assert turn == pytest.approx(float(MP.quad(speed, [0, knee, stop])), abs=4e-15)  # of a turn of 3
+        assert first == pytest.approx(float(speed(MP.mpf(x))), abs=1e-13 * float(top) / share)
+        assert second == pytest.approx(float(MP.diff(speed, MP.mpf(x))), abs=1e-13 * float(top) / ramp)
+
+
+@every_servo
+def test_servo_turns_once_in_every_revolution(run, share):
+    for revolution in (-3, 0, 2, 1000):
+        for x in (-1.0, 0.0, 0.3):
+            one, other = (servo_turn(at, run, share * run) for at in (x, x + 2 * pi * revolution))
+            # the angle's own rounding, times the speed and acceleration
+            assert other[0] - 2 * pi * revolution == pytest.approx(one[0], abs=1e-11)
+            assert other[1:] == pytest.approx(one[1:], abs=1e-9)
+
+
+def test_servo_stands_at_the_back_and_beats_up_in_time():
+    servo = {"servo": True, "run_angle": radians(120.0), "beat_up_angle": 0.3}
+    beat_up = placed(0.3, servo)
+    assert beat_up.position == pytest.approx(beat_up.front_limit, abs=1e-15)
+    for degrees_on in (60.1, 90.0, 180.0, 270.0, 299.9):
+        reed = placed(0.3 + radians(degrees_on), servo)
+        assert reed.position == pytest.approx(
+            reed.back_limit, abs=1e-7
+        )  # lengths rounded to 1 um: half a turn
+        assert (reed.velocity, reed.acceleration, reed.crank_torque) == (0.0, 0.0, 0.0)
+    # at its front the crank turns at 2 pi / (120 deg less a ramp of 30 deg): four times as fast as the shaft
+    assert beat_up.crank_velocity == pytest.approx(4.0 * SPEED, rel=1e-15)
+    assert beat_up.acceleration == pytest.approx(16.0 * placed(0.0).acceleration, rel=1e-12)
+
+
+@every_servo
+def test_servo_delivers_the_power_of_the_masses_and_the_shaft_none(run, share):
+    given = {"servo": True, "run_angle": run, "ramp_share": share, "rocker_inertia": 0.3, "reed_mass": 2.0}
+    for x in (0.2 * run, -0.45 * run, 0.4 * run):
+        reed = placed(x, given)
+        # kinetic energy from differences of positions alone, good to 1e-16 / 1e-5 and the square of the steps
+
+        def energy(at):
+            near = [placed(at + side * STEP, given) for side in (-1, 1)]
+            arm = [
+                each.rocker(each.beat_up_crank + servo_turn(at + side * STEP, run, share * run)[0], 1.0)[0]
+                for each, side in zip(near, (-1, 1), strict=True)
+            ]
+            rates = (near[1].position - near[0].position, arm[1] - arm[0])
+            return 0.5 * (2.0 * rates[0] ** 2 + 0.3 * rates[1] ** 2) * (SPEED / (2 * STEP)) ** 2
+
+        power = (energy(x + 1e-3) - energy(x - 1e-3)) / 2e-3 * SPEED
+        assert reed.crank_torque * reed.crank_velocity == pytest.approx(power, rel=2e-3, abs=1e-4)
+        assert reed.shaft_torque == 0.0
+
+
+@every_machine
+def test_without_a_servo_the_crank_takes_the_shaft_s_torque(given):
+    reed = placed(1.0, given)
+    assert reed.crank_torque == reed.shaft_torque
+    assert reed.crank_velocity == SPEED

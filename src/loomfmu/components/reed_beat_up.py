@@ -10,6 +10,7 @@ from ..physics.reed import (
     in_line_margin,
     reed_motion,
     rod_margin,
+    servo_turn,
     smallest_transmission_angle,
     transmission_angle,
 )
@@ -86,6 +87,17 @@ class ReedBeatUp(ShaftDriven):
         "rad", 0.0, "Shaft angle of the beat-up, the reed's front dead centre", display="deg",
         minimum=-7.0, maximum=7.0,
     )  # fmt: skip
+    servo: bool = parameter(
+        "1", False, "A servo turns the crank in part of the revolution; otherwise the shaft turns it evenly"
+    )
+    run_angle: float = parameter(
+        "rad", 3.141592653589793, "Shaft angle of the servo's run, with the beat-up in its middle (assumed)",
+        display="deg", minimum=0.01, maximum=6.283185307179586,
+    )  # fmt: skip
+    ramp_share: float = parameter(
+        "1", 0.25, "Share of the run in which the servo speeds up, and in which it slows down (assumed)",
+        minimum=0.001, maximum=0.5,
+    )  # fmt: skip
     reed_mass: float = parameter(
         "kg", 1.0, "Mass that moves with the reed (none published: the torque is per kilogram)",
         minimum=0.0, maximum=1e4,
@@ -131,14 +143,22 @@ class ReedBeatUp(ShaftDriven):
         nominal=0.1,
         depends=(),
     )
-    shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
+    shaft_torque: float = output(
+        "N.m", "Torque the shaft needs to drive the moving masses; 0 with a servo", nominal=10.0
+    )
+    crank_velocity: float = output(
+        "rad/s", "Velocity of the crank in its direction", display="rev/min", nominal=50.0
+    )
+    crank_torque: float = output(
+        "N.m", "Torque the crank needs in its direction, from the shaft or the servo", nominal=10.0
+    )
     beat_up_crank: float = state("rad", "Crank angle at the beat-up")
     closure: float = state("m", "Margin by which the crank-rocker closes over a whole turn")
     reach: float = state("m", "Margin by which the rod reaches the reed's line over the swing")
     clearance: float = state("rad", "Margin by which arm and rod stay out of line over the swing")
 
     def rocker(self, crank: float, crank_first: float) -> tuple[float, float, float]:
-        """Angle of the rocker at a crank angle, with its derivatives by the shaft angle."""
+        """Angle of the rocker at a crank angle, with its derivatives by the crank's turn."""
         return four_bar(
             crank, crank_first, 0.0, self.crank_length, self.coupler_length, self.rocker_length,
             -self.crank_x, -self.crank_y, self.assembly,
@@ -199,7 +219,7 @@ class ReedBeatUp(ShaftDriven):
         return self.step(time, 0.0)
 
     def reed(self, arm: float, first: float, second: float) -> tuple[float, float, float, float]:
-        """Reed coordinate with its derivatives by the shaft angle, and the pressure angle."""
+        """Reed coordinate with its derivatives by the crank's turn, and the pressure angle."""
         return reed_motion(arm, first, second, self.arm_length, self.rod_length, self.reed_height)
 
     def step(self, time: float, step_size: float) -> int:
@@ -207,18 +227,27 @@ class ReedBeatUp(ShaftDriven):
         theta, speed, acceleration = self.shaft(time, step_size)
         if too_far(theta):
             return 5
-        crank = self.beat_up_crank + self.crank_direction * (theta - self.beat_up_angle)
+        turned = theta - self.beat_up_angle
+        by_theta = 1.0
+        bend = 0.0
+        if self.servo:
+            turned, by_theta, bend = servo_turn(turned, self.run_angle, self.ramp_share * self.run_angle)
+        turning = by_theta * speed
+        quickening = bend * speed * speed + by_theta * acceleration
+        self.crank_velocity = turning
+        crank = self.beat_up_crank + self.crank_direction * turned
         angle, first, second = self.rocker(crank, 1.0 * self.crank_direction)
-        self.position, by_theta, bend, self.pressure_angle = self.reed(angle + self.arm_angle, first, second)
-        self.velocity = by_theta * speed
-        self.acceleration = bend * speed * speed + by_theta * acceleration
+        self.position, slope, curve, self.pressure_angle = self.reed(angle + self.arm_angle, first, second)
+        self.velocity = slope * turning
+        self.acceleration = curve * turning * turning + slope * quickening
         x = self.crank_x + self.crank_length * cos(crank)
         y = self.crank_y + self.crank_length * sin(crank)
         self.transmission_angle = transmission_angle(
             sqrt(x * x + y * y), self.coupler_length, self.rocker_length
         )
-        rocker_acceleration = second * speed * speed + first * acceleration
-        self.shaft_torque = (
-            self.reed_mass * self.acceleration * by_theta + self.rocker_inertia * rocker_acceleration * first
+        rocker_acceleration = second * turning * turning + first * quickening
+        self.crank_torque = (
+            self.reed_mass * self.acceleration * slope + self.rocker_inertia * rocker_acceleration * first
         )
+        self.shaft_torque = 0.0 if self.servo else self.crank_torque
         return 0

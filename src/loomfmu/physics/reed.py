@@ -7,7 +7,7 @@ for carbon fiber multi-layer loom", Journal of Textile Research (2017), doi 10.1
 sections 2 and 3, equations (1) to (13). Most of its equations are lost; the forms here were derived anew.
 """
 
-from math import acos, asin, atan2, cos, fabs, pi, sin, sqrt
+from math import acos, asin, atan2, cos, fabs, floor, pi, sin, sqrt
 
 
 def dead_centre(
@@ -151,3 +151,46 @@ def in_line_margin(middle: float, half_swing: float, arm: float, rod: float, hei
         if folded < clear:
             clear = folded
     return clear - half_swing
+
+
+def servo_turn(x: float, run: float, ramp: float) -> tuple[float, float, float]:
+    """Turn of a crank that a servo drives once in a revolution of the shaft, and that stands otherwise.
+
+    The source says that a servo runs intermittently once the weft is inserted, and turns the crank evenly
+    while it runs; how it starts and stops is our assumption. The crank turns at
+    v = 2 pi / (run - ramp) and over each ramp, w away from its standing end, at
+
+        v (w / r - sin(2 pi w / r) / (2 pi))
+
+    so that its acceleration is continuous and at most 2 v / r.
+
+    Args:
+        x: shaft angle from the beat-up, which is the middle of the run [rad]
+        run: shaft angle in which the crank turns once, up to 2 pi [rad]
+        ramp: shaft angle r in which it speeds up, and in which it slows down, up to run / 2 [rad]
+
+    Returns:
+        turn of the crank from the beat-up [rad], its first and second derivative by the shaft angle [1]
+
+    >>> servo_turn(0.0, pi, 0.5 * pi)
+    (0.0, 4.0, 0.0)
+    >>> [turn / pi for turn in servo_turn(3.0, pi, 0.5 * pi)]
+    [1.0, 0.0, 0.0]
+    """
+    turns = floor((x + pi) / (2.0 * pi))
+    past = x - 2.0 * pi * turns
+    side = 1.0 if past >= 0.0 else -1.0
+    left = 0.5 * run - fabs(past)
+    speed = 2.0 * pi / (run - ramp)
+    if left >= ramp:
+        return 2.0 * pi * turns + speed * past, speed, 0.0
+    if left <= 0.0:
+        return 2.0 * pi * turns + side * pi, 0.0, 0.0
+    u = 2.0 * pi * left / ramp
+    half = sin(0.5 * u)
+    rest = speed * ramp * (u * u - 4.0 * half * half) / (8.0 * pi * pi)
+    return (
+        2.0 * pi * turns + side * (pi - rest),
+        speed * (u - sin(u)) / (2.0 * pi),
+        -side * speed / ramp * 2.0 * half * half,
+    )

@@ -55,8 +55,8 @@ def weft_direction() -> Section:
         f"Section 4.3: safe speed of giver and taker, rev/min ({LOOM}, mu = 1; computed)",
         ("weft tension, N", "giver (left head), way in", "taker (right head), way in", "taker, way back"),
         tuple(rows),
-        intro="Inference: section 1 of the source has the left head bring the weft to the middle and the right"
-        " head draw it out. So the weft compresses the giver's belt on the way in, relieves the taker's on"
+        intro="Inference: section 1 of the source has the left head bring the weft to the middle and the"
+        " right head draw it out. So the weft compresses the giver's belt on the way in, relieves the take"
         " the way back, and bears on neither belt while its head is empty.",
         remarks=(
             "Table 7 counts the tension as compression for all four heads. By the source's own description"
