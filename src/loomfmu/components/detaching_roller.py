@@ -71,6 +71,13 @@ class DetachingRoller(ShaftDriven):
         "1", 1.0, "Fibres in the nip as a share of the maximum, used if use_table is false",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
+    prescribe_drafting_force: bool = parameter(
+        "1", False, "Use largest_drafting_force; otherwise half of what the nip holds, by (16)"
+    )
+    largest_drafting_force: float = parameter(
+        "N", 45.0, "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
+        minimum=0.0, maximum=1e5, nominal=10.0,
+    )  # fmt: skip
     division: float = output(
         "1", "Division of the nip, 0 to 40", nominal=10.0,
         depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
@@ -80,6 +87,10 @@ class DetachingRoller(ShaftDriven):
     )
     drafted_share: float = output("1", "Share of fibres in use; 0 outside divisions 18 to 30")
     drafting_force: float = output("N", "Force that drafts the fibres of a unit", nominal=10.0)
+    holding_force: float = output(
+        "N", "Force that the nip can hold: friction less what moves the top roller", nominal=100.0,
+        depends=_OF_MOTION,
+    )  # fmt: skip
     drafting_torque: float = output("N.m", "Torque of the drafting force on the back roller, M11")
     top_roller_torque: float = output("N.m", "Torque of a top roller on its roller, M12", depends=_OF_MOTION)
     inertia_torque: float = output("N.m", "Torque of a roller's own inertia, M13", depends=_OF_MOTION)
@@ -117,10 +128,14 @@ class DetachingRoller(ShaftDriven):
         )
         self.inertia_torque = self.roller_inertia * self.roller_acceleration
         resistance = self.top_roller_torque / self.roller_radius
-        self.drafting_force = drafting_force(self.drafted_share, self.friction, self.nip_load, resistance)
+        self.holding_force = self.friction * self.nip_load - resistance
+        if self.prescribe_drafting_force:
+            self.drafting_force = self.drafted_share * self.largest_drafting_force
+        else:
+            self.drafting_force = drafting_force(self.drafted_share, self.friction, self.nip_load, resistance)
         self.drafting_torque = self.drafting_force * self.roller_radius
         self.front_torque = self.top_roller_torque + self.inertia_torque
         self.back_torque = self.drafting_torque + self.front_torque
         self.unit_torque = self.back_torque + self.front_torque
         self.machine_torque = self.units * self.unit_torque
-        return 1 if self.drafted_share > 0.0 and self.drafting_force < 0.0 else 0
+        return 1 if self.drafted_share > 0.0 and self.holding_force < 0.0 else 0

@@ -973,3 +973,44 @@ def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
     assert [revolution for _angle, revolution in places] == [1, 1, 2, 3]
     expected = [(way * (start + turned)) % 360 for turned in (0, 108, 108, 216)]
     assert [math.degrees(angle) for angle, _revolution in places] == pytest.approx(expected, abs=1e-9)
+
+
+ROLLER = """title = "Roller"
+revolutions = 1
+[shaft]
+speed = "300 rev/min"
+[roller]
+component = "DetachingRoller"
+[[claims]]
+kind = "nip_holds"
+"""
+
+
+def roller_verdict(tmp_path, more="", **values):
+    return run(scenes.parse(ROLLER + more, "roller", values), output=tmp_path / "roller.h5").claims[0]
+
+
+@pytest.mark.parametrize(
+    ("force", "holds", "bound"),
+    [(60.0, False, 2.0), (48.0, True, 2.0), (35.0, True, 3.0), (30.0, False, 3.0)],
+)
+def test_the_nip_holds_two_to_three_times_the_drafting_force(tmp_path, force, holds, bound):
+    steady = {"roller.use_table": False, "roller.acceleration": 1000.0, "roller.fibre_share": 1.0}
+    given = steady | {"roller.prescribe_drafting_force": True, "roller.largest_drafting_force": force}
+    verdict = roller_verdict(tmp_path, **given)
+    # friction of 0.33 * 300 N less the top roller's inertia J2 r1 / r2^2 e, section 2 of the source
+    expected = (99.0 - 33.98e-6 * 12.5e-3 / 12.25e-3**2 * 1000.0) / force
+    assert (verdict.holds, verdict.bound) == (holds, bound)
+    assert verdict.worst == pytest.approx(expected, rel=1e-14)  # rounding
+
+
+def test_by_its_own_drafting_force_the_nip_holds_twice_as_much(tmp_path):
+    assert 2.0 <= roller_verdict(tmp_path).worst < 2.1
+    steady = {"roller.use_table": False, "roller.acceleration": 0.0, "roller.fibre_share": 1.0}
+    assert roller_verdict(tmp_path, **steady).worst == 2.0
+
+
+def test_a_nip_without_fibres_is_not_judged(tmp_path):
+    verdict = roller_verdict(tmp_path, **{"roller.use_table": False, "roller.fibre_share": 0.0})
+    assert not verdict.holds
+    assert "no fibres are drafted in this run" in verdict.note

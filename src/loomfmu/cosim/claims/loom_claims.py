@@ -94,6 +94,36 @@ class ReedClearOfRapier(_InShed):
         return self.verdict(trace, text, signal, self.clearance, worst, foremost.time, *notes)
 
 
+class NipHolds(Claim):
+    """The nip's largest holding force, while fibres are drafted, is 2 to 3 times the largest drafting force.
+
+    Below that the web slips in the nip, above it the top roller is loaded for nothing.
+    """
+
+    roller: str = argument(Name(), "roller")
+    at_least: float = argument(Quantity("1", low=0.0), 2.0)
+    at_most: float = argument(Quantity("1", low=0.0), 3.0)
+
+    needs = ("roller.holding_force", "roller.drafting_force")
+
+    def judge(self, trace: Signals) -> Verdict:
+        drafting = Motion(trace, f"{self.roller}.drafting_force")
+        holding = Motion(trace, f"{self.roller}.holding_force")
+        most = drafting.lowest(-1.0)
+        text, signal = "the nip holds the fibres", f"{self.roller}.holding_force / drafting_force"
+        if not most.value > 0.0:
+            note = "no fibres are drafted in this run"
+            return self.verdict(trace, text, signal, self.at_least, math.nan, math.nan, note)
+        held = holding.lowest(-1.0, drafting.beyond(0.0, 1.0))
+        ratio = held.value / most.value
+        high = ratio - self.at_least > self.at_most - ratio
+        notes = (drafting.note, holding.note, most.note, held.note)
+        return self.verdict(
+            trace, text, signal, self.at_most if high else self.at_least, ratio, most.time, *notes,
+            holds=self.at_least - SAME <= ratio <= self.at_most + SAME, sense=AT_MOST if high else AT_LEAST,
+        )  # fmt: skip
+
+
 class LocksInTime(Claim):
     """The pattern locks follow their law and let go within the time that they have.
 
