@@ -151,7 +151,9 @@ def test_a_wire_back_to_itself_carries_the_value_of_the_step_before(tmp_path: Pa
         in result.warnings
     )
     inertia, axial = (result.trace[f"belt.{name}"] for name in ("inertia_force", "axial_force"))
-    np.testing.assert_array_equal(axial[1:], inertia[1:] + inertia[:-1])
+    # while the head is on its way in: on its way back it carries no weft
+    np.testing.assert_array_equal(axial[1:180], inertia[1:180] + inertia[:179])
+    np.testing.assert_array_equal(axial[181:360], inertia[181:360])
     # at the start nothing was before: the exchange is repeated until it settles
     assert axial[0] == 2 * inertia[0]
 
@@ -179,7 +181,9 @@ yarn_tension = "5 N"
     # the damper is at rest: its acceleration is force / mass, the force is head * acceleration + 5 N
     assert math.isclose(force[0], 5.0 / (1.0 - head / mass), rel_tol=1e-14)
     assert math.isclose(carrier[0], force[0] / mass, rel_tol=1e-14)
-    np.testing.assert_array_equal(force[1:], head * carrier[:-1] + 5.0)
+    # on its way back, from half a turn on, the head carries no weft
+    np.testing.assert_array_equal(force[1:45], head * carrier[:44] + 5.0)
+    np.testing.assert_array_equal(force[46:90], head * carrier[45:89])
 
 
 def test_a_loop_that_does_not_settle_is_told(tmp_path: Path) -> None:
