@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from commands import started
+from live_fmus import fmu_cache
 from sweeps.sweep_files import NO_TRACES, written
 from sweeps.sweep_files import started as sweep_started
 

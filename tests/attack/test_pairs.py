@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from commands import started
+from live_fmus import fmu_cache
 
 from loomfmu import Trace
 
