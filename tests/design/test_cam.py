@@ -159,7 +159,7 @@ def test_any_rotor_law_makes_a_cam():
         (lambda: design_cam(highest_radius=None), "highest_radius: None is not a quantity"),
         (lambda: sampled_law(3), "lifts = 3 is not a list"),
         (lambda: gcode(design_cam(), cut="1 s"), "cut: '1 s' is in s"),
-        (lambda: design_cam(points=10), "points = 10 is not a whole number of 36 or more"),
+        (lambda: design_cam(points=10), "points = 10 must be a whole number, 36 or more"),
     ],
 )
 def test_impossible_laws_and_dimensions_are_refused(make, message):

@@ -63,11 +63,11 @@ def test_an_impossible_wish_is_answered_with_what_can_be_had():
     [
         (
             lambda: loom.clearance_for("600 rpm", "WL680-3600", length_factor=0.8),
-            "length_factor cannot be given",
+            "length_factor cannot be set",
         ),
         (
             lambda: loom.mass_for("600 rpm", "WL680-3600", mass=0.1),
-            "mass cannot be given: the mass is what is solved for",
+            "mass cannot be set: the function solves for the mass",
         ),
         (lambda: loom.mass_for("600 rpm", "WL680-3600", mas=0.1), "mas is unknown; did you mean 'mass'?"),
         (

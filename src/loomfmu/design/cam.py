@@ -48,7 +48,7 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
     x, y = listed("angles", angles, "rad"), listed("heights", heights, "m")
     if x.ndim != 1 or x.shape != y.shape or x.size < 4:
         raise LoomfmuError(
-            f"{x.size} angles and {y.size} heights: the spline needs as many of each, and at least four"
+            f"{x.size} angles and {y.size} heights: the spline needs as many heights as angles, at least four"
         )
     if not np.all(np.diff(x) > 0.0) or abs(x[0]) > 1e-9 or abs(x[-1] - 2.0 * TURN) > 1e-9:
         raise LoomfmuError("the angles of the control points must rise from 0 to 720 deg of the main shaft")
@@ -57,8 +57,8 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
     span = float(np.max(spline(tops[np.isfinite(tops)]), initial=np.max(y)) - y[0])
     if not span > 0.0 or abs(y[-1] - y[0]) > 1e-9 * span:
         raise LoomfmuError(
-            f"the heights of the control points start at {y[0]:.7g} and end at {y[-1]:.7g}: both ends must be"
-            " equal, and the spline must rise between them"
+            f"the heights of the control points start at {y[0]:.7g} and end at {y[-1]:.7g}: the ends must be"
+            " equal and the spline must rise between them"
         )
 
     def law(angle: Floats) -> tuple[Floats, Floats, Floats]:
@@ -69,7 +69,7 @@ def spline_law(angles: ArrayLike | None = None, heights: ArrayLike | None = None
 
 
 def sampled_law(lifts: ArrayLike) -> Law:
-    """Law through lifts at even angles over one turn of the cam, the end of the turn left out.
+    """Law through lifts at even angles over one turn of the cam, without its end.
 
     Between them lies the periodic spline of fifth degree. The lowest sample has the share 0, the highest 1.
 
@@ -84,9 +84,7 @@ def sampled_law(lifts: ArrayLike) -> Law:
 
     y = listed("lifts", lifts, "m")
     if y.ndim != 1 or y.size < 8 or not np.all(np.isfinite(y)) or np.ptp(y) == 0.0:
-        raise LoomfmuError(
-            f"{y.size} samples of the lift: at least eight are needed, all finite and not all equal"
-        )
+        raise LoomfmuError(f"{y.size} lifts: there must be at least eight, all finite and not all equal")
     shares = (y - y.min()) / np.ptp(y)
     closed = np.append(shares, shares[0])
     spline = make_interp_spline(np.linspace(0.0, TURN, closed.size), closed, k=5, bc_type="periodic")
@@ -94,7 +92,7 @@ def sampled_law(lifts: ArrayLike) -> Law:
 
 
 def lift_law(lift: Callable[[float], float], samples: int = 720) -> Law:
-    """Law of any function that gives the lift at an angle of the cam, by samples of it.
+    """Law of a function that gives the lift at an angle of the cam, from samples of it.
 
     >>> law = lift_law(lambda angle: 1 - np.cos(angle))
     >>> round(float(law(np.array([pi]))[0][0]), 12)
@@ -152,7 +150,7 @@ def design_cam(
 
     Args:
         law: from `spline_law`, `sampled_law` or `lift_law`
-        lowest_radius, highest_radius: where the law has the shares 0 and 1 [m]
+        lowest_radius, highest_radius: at the shares 0 and 1 of the law [m]
         roller_radius: of roller and cutter [m]
         law_on_roller: radii and law are those of the roller's centre, and the profile is offset inwards;
             otherwise they are the profile's, as in Appendix 2
@@ -208,9 +206,9 @@ def _curve(angle: Floats, r: Floats, r1: Floats, r2: Floats) -> tuple[Floats, Fl
 def _refuse_undercut(
     angle: Floats, curvature: Floats, tilt: Floats, roller_radius: float, outwards: float
 ) -> None:
-    """Refuse an offset curve that turns back: the roller would cut into the profile, or not fit it.
+    """Reject an offset curve that turns back: the roller would cut into the profile, or not fit it.
 
-    Outwards a hollow may not be tighter than the roller, inwards a crest. The same holds for the corner
+    Outwards, no hollow may be tighter than the roller; inwards, no crest. The same holds for the corner
     where the turn closes, unless it is too slight to matter.
     """
     kind = "hollow" if outwards > 0.0 else "crest"
@@ -234,8 +232,8 @@ def _refuse_undercut(
 def published_path() -> Floats:
     """Points of the cutter's path in the program of Appendix 3: its start and the ends of its arcs [m].
 
-    The program is not that of the published law: less the cutter's 19 mm its radii span 28.0 mm, from 81.7
-    to 109.7, where the law is drawn from 84 to 107.
+    The program does not follow the published law: minus the cutter's 19 mm its radii span 28.0 mm, from
+    81.7 to 109.7; those of the law go from 84 to 107.
 
     >>> radii = np.hypot(*published_path().T) - 0.019
     >>> [round(1000 * float(radius), 2) for radius in (radii.min(), radii.max(), np.ptp(radii))]

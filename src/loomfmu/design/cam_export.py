@@ -1,4 +1,4 @@
-"""A cam for the workshop: as a table, as a drawing, as a program for a milling machine. All in mm."""
+"""Export of a cam: a table, a drawing, a program for a milling machine. All in mm."""
 
 from io import StringIO
 from pathlib import Path
@@ -88,11 +88,11 @@ def gcode(
     feed: float = 150.0,
     spindle: float = 4000.0,
 ) -> str:
-    """Program that runs the cutter's centre clockwise round the cam, laid out as that of Appendix 3.
+    """Milling program that runs the cutter's centre clockwise round the cam, in the form of Appendix 3.
 
     Args:
         cam: what to mill, with a cutter of its roller's radius
-        arcs: G2 and G3 where they keep within the tolerance, otherwise G1 from point to point
+        arcs: use G2 and G3 where an arc stays within the tolerance, otherwise G1 from point to point
         tolerance: of an arc from the points that it replaces [m]
         passes: rounds, the first at the surface
         cut: depth from one round to the next [m]
@@ -140,7 +140,7 @@ def _open(curve: Floats) -> Floats:
 
 
 def _longest_arc(points: Floats, at: int, tolerance: float) -> tuple[int, Move | None]:
-    """The arc from a point that replaces the most of those that follow, up to a quarter of the curve."""
+    """The arc from a point that replaces most of the points after it, up to a quarter of the curve."""
     found: tuple[int, Move | None] = (at, None)
     farthest = min(len(points) - 1, at + len(points) // 4)
     for end in range(at + 2, farthest + 1, 2):

@@ -58,11 +58,11 @@ def safe_speed(
     """Safe speed of a published machine, equations (9), (10) and (12) of Zhu and Zhou.
 
     Args:
-        machine, head: names of published ones
+        machine, head: names of a published machine and head
         length_factor: column length factor [1]; from the clearance if not given
-        clearance: of the belt in its guide [m]; that of a new belt, 0.3 mm, if not given
+        clearance: of the belt in its guide [m]; 0.3 mm, that of a new belt, if not given
         tension: of the weft that a giver brings in [N]; 0 for a taker, whose belt it never compresses
-        mass: of the head [kg]; that of the named head if not given
+        mass: of the head [kg]; that of `head` if not given
         stiffness: bending stiffness of the belt [N m2]
         deflection: that the belt is allowed once it has buckled, at rest [m], section 4.2
 
@@ -117,7 +117,7 @@ def _bent_from(machine: str, deflection: float) -> float:
 
 
 def _lowest(limit: Callable[[float], float], start: float, end: float) -> tuple[float, float]:
-    """Place and value of the one minimum between two poles: a grid brackets it first."""
+    """Position and value of the only minimum between two poles, bracketed by a grid first."""
     from scipy.optimize import minimize_scalar
 
     step = (end - start) / 64
@@ -128,7 +128,7 @@ def _lowest(limit: Callable[[float], float], start: float, end: float) -> tuple[
 
 
 def window(machine: str) -> tuple[float, float]:
-    """Shaft angles from where the belt leaves its guide to where its head stops being pushed [rad]."""
+    """Shaft angles at which the belt leaves its guide and at which its head is no longer pushed [rad]."""
     from scipy.optimize import brentq
 
     guide, travel = _travel(machine)
@@ -158,7 +158,7 @@ def _travel(machine: str) -> tuple[float, Callable[[float], tuple[float, float, 
 def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **others: Any) -> float:
     """Largest guide clearance with which the belt is safe at a speed [m].
 
-    Raises LoomfmuError where none is small enough, naming the speeds within reach, or where any will do.
+    Raises LoomfmuError if no clearance is small enough, with the speeds in reach, or if every one is.
     """
     _refuse(others, "clearance", "length_factor")
     return _solve(
@@ -185,10 +185,10 @@ def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
 
 
 def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:
-    """Refuse a value for the quantity that is solved for, and for what `safe_speed` does not have."""
+    """Reject a value for the quantity solved for, and an argument that `safe_speed` does not have."""
     for name in given:
         if name in (sought, instead):
-            raise LoomfmuError(f"{name} cannot be given: the {sought} is what is solved for")
+            raise LoomfmuError(f"{name} cannot be set: the function solves for the {sought}")
         if name not in QUANTITIES:
             raise LoomfmuError(f"{name} is unknown{suggestion(name, QUANTITIES)}")
 
@@ -217,7 +217,11 @@ def _solve(
 
 
 def weft_insertion_rate(width: Quantity, speed: Quantity) -> float:
-    """Length of weft inserted in a time, `width * speed` [m/s] for a width [m] and a shaft speed [rad/s].
+    """Weft insertion rate: length of weft per time, `width * picks per time` [m/s].
+
+    Args:
+        width: in which weft is inserted [m]
+        speed: of the main shaft, one pick per revolution [rad/s]
 
     >>> round(weft_insertion_rate(3.6, 345 * RPM) * 60)  # m/min
     1242
@@ -226,7 +230,7 @@ def weft_insertion_rate(width: Quantity, speed: Quantity) -> float:
 
 
 def productivity_coefficient(width: Quantity, speed: Quantity) -> float:
-    """Weft-insertion rate over the square root of the width, `WIR / sqrt(width)` [m^0.5/s]."""
+    """Productivity coefficient: weft insertion rate over the square root of the width [m^0.5/s]."""
     return weft_insertion_rate(width, speed) / math.sqrt(read("width", width))
 
 

@@ -1,4 +1,4 @@
-"""Quantities that the design functions are given: numbers in SI, or texts with units, within limits."""
+"""Arguments of the design functions: numbers in SI or texts with units, within limits."""
 
 from numbers import Integral
 from typing import Any
@@ -17,13 +17,13 @@ BELT = {variable.name: variable for variable in variables_of(BeltMonitor)}
 
 
 def _free(unit: str, display: str, minimum: float, maximum: float, description: str) -> Variable:
-    """A quantity that no component has, declared as theirs are."""
+    """A quantity that no component has, declared like a variable of one."""
     return Variable(
         "", float, "parameter", "fixed", unit, display, 0.0, description, minimum=minimum, maximum=maximum
     )
 
 
-# by the names that the design functions call them: with the limits that the scenes have
+# by their names in the design functions, with the limits that they have in scenes
 KNOWN = {
     "speed": BELT["speed"],
     "clearance": BELT["guide_clearance"],
@@ -61,7 +61,7 @@ KNOWN = {
 
 
 def read(name: str, given: Any) -> float:
-    """A quantity in SI. Raises LoomfmuError, naming it, its limits and what was given.
+    """A quantity in SI. Raises LoomfmuError with its name, its value and its limits.
 
     >>> read("speed", "600 rpm") == read("speed", 20 * 3.141592653589793)
     True
@@ -70,7 +70,7 @@ def read(name: str, given: Any) -> float:
 
 
 def show(name: str, value: float) -> str:
-    """A value (SI) as people read it."""
+    """A value (SI) in its display unit."""
     return units.show(value, KNOWN[name].display)
 
 
@@ -93,7 +93,7 @@ def _number(where: str, given: Any, unit: str) -> float:
 
 
 def whole(name: str, given: Any, low: int) -> int:
-    """A whole number from a lowest one on. Raises LoomfmuError."""
+    """A whole number, at least `low`. Raises LoomfmuError."""
     if isinstance(given, bool) or not isinstance(given, Integral) or given < low:
-        raise LoomfmuError(f"{name} = {given!r} is not a whole number of {low} or more")
+        raise LoomfmuError(f"{name} = {given!r} must be a whole number, {low} or more")
     return int(given)

@@ -55,7 +55,7 @@ def frame_angle_for(swing: float, smallest: float) -> float:
 
 
 def crank_place(rocker: float, swing: float, slope: float, frame_angle: float) -> tuple[float, float]:
-    """Centre of the crank from the rocker's pivot: on the line of the chord of the swing, equation (10).
+    """Position of the crank's centre, relative to the rocker's pivot: on the chord's line, equation (10).
 
     The crank stands behind the swing, away from the reed.
 
@@ -84,8 +84,8 @@ def reed_dyad(
 ) -> tuple[float, float, float]:
     """Arm, rod and height that take the reed to two limits, with a given pressure angle at the front.
 
-    The rod is to be equally long at both limits, equation (2); with the chord of the swing given that is
-    one quadratic equation for the arm. The table of what the source prescribed is lost.
+    The rod is equally long at both limits, equation (2); with the chord of the swing given, that is one
+    quadratic equation for the arm. The source's table of given values is lost.
 
     Args:
         front, back: limits of the reed, from the rocker's pivot [m]

@@ -29,7 +29,7 @@ MACHINE_COLUMNS = {
 # the parameter that takes the mass of the rapier head
 HEAD_MASS = {"BeltMonitor": "head_mass", "WeftInsertion": "moving_mass"}
 
-# what a loom has one of -> the components that take something of it
+# kind of published data -> the components whose parameters it sets
 TAKERS = {
     "machine": tuple(dict.fromkeys(owner for owner, _name, _unit in MACHINE_COLUMNS.values())),
     "head": tuple(HEAD_MASS),
@@ -57,7 +57,7 @@ def parameters(component: str, *, machine: str | None = None, head: str | None =
     """Parameters (SI) that a component takes from a published machine and a rapier head.
 
     Raises:
-        LoomfmuError: no machine or head of that name; the message names the nearest.
+        LoomfmuError: there is no machine or head of that name; the message suggests the nearest.
 
     >>> parameters("BeltMonitor", machine="WL680-3600", head="G6300 left")
     {'head_length': 0.55, 'idle_travel': 0.243, 'head_mass': 0.1105}
@@ -86,7 +86,7 @@ def _machine_parameters(component: str, row: dict[str, str]) -> dict[str, Value]
 
 
 def named(kind: str, name: object) -> dict[str, str]:
-    """The data of a published machine or head. Raises LoomfmuError, naming the nearest."""
+    """The data of a published machine or head. Raises LoomfmuError with the nearest name."""
     rows = PUBLISHED[kind]
     if not isinstance(name, str) or name not in rows:
         raise LoomfmuError(f"there is no {kind} {name!r}{suggestion(str(name), rows)}")

@@ -6,8 +6,8 @@ Tables 2 to 7.
 
 from math import fabs, inf, pi, sqrt
 
-# A limit above which none is worth telling: 95,493 rev/min. Towards the edge of its window the limit
-# grows beyond every bound; outside it there is none.
+# Largest speed limit that is returned: 95,493 rev/min. Towards the edge of its window the limit grows
+# without bound; outside it there is none.
 NO_LIMIT = 1e4
 
 
@@ -109,9 +109,9 @@ def critical_force(free_length: float, factor: float, stiffness: float) -> float
 
 
 def margin(free_length: float, axial_force: float, factor: float, stiffness: float) -> float:
-    """Stability margin `1 - F / F_cr`, finite for every load; negative once the belt has buckled.
+    """Stability margin `1 - F / F_cr`, F_cr from (8): finite for every load, negative once the belt buckles.
 
-    It is 1 while the belt is inside its guide, above 1 under tension.
+    It is 1 while the belt is inside its guide and above 1 under tension.
 
     Args:
         free_length: length of the free section; negative inside the guide [m]
@@ -157,18 +157,13 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
 
 
 def speed_limit(
-    free_length: float,
-    slope: float,
-    factor: float,
-    stiffness: float,
-    mass: float,
-    tension: float,
-) -> float:
+    free_length: float, slope: float, factor: float, stiffness: float, mass: float, tension: float,
+) -> float:  # fmt: skip
     """Shaft speed at which the belt would just buckle at this angle, equations (9) and (12).
 
-    `sqrt((F_cr - F_z) / (m s''))`; without tension `(pi / (mu l)) sqrt(EI / (m s''))`. There is none
-    (`NO_LIMIT`) inside the guide and where the head does not push the belt; it is 0 where the weft
-    tension alone buckles it.
+    `sqrt((F_cr - F_z) / (m s''))`; without tension `(pi / (mu l)) sqrt(EI / (m s''))`. It is
+    `NO_LIMIT` inside the guide and where the head does not push the belt, and 0 where the weft tension
+    alone buckles it.
 
     Args:
         free_length: length l of the free section [m]
@@ -184,7 +179,7 @@ def speed_limit(
     if free_length <= 0.0 or slope <= 0.0:
         return NO_LIMIT
     reduced = factor * free_length
-    # not by the critical force, which knows no end towards the guide
+    # without the critical force, which grows without bound towards the guide
     if pi * pi * stiffness >= (tension + NO_LIMIT * NO_LIMIT * mass * slope) * reduced * reduced:
         return NO_LIMIT
     spare = critical_force(free_length, factor, stiffness) - tension
@@ -195,6 +190,9 @@ def speed_limit(
 
 def complete_elliptic(modulus: float) -> float:
     """Complete elliptic integral of the first kind K(k), by the arithmetic-geometric mean.
+
+    Args:
+        modulus: k, 0 to below 1 [1]
 
     >>> round(complete_elliptic(0.0) * 2 / pi, 12)
     1.0
@@ -207,10 +205,10 @@ def complete_elliptic(modulus: float) -> float:
 
 
 def elastica_deflection(load_ratio: float, free_length: float) -> float:
-    """Largest deflection of a buckled pinned column, exact elastica.
+    """Largest deflection of a buckled pinned column, from the exact elastica instead of (11).
 
     `F / F_cr = (2 K(k) / pi)^2` gives the modulus k by bisection, then `deflection / l = k / K(k)`.
-    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own figure is 8 mm.
+    Erratum: the printed (11) gives half of it, 4.2 mm, where the paper's own result is 8 mm.
 
     Args:
         load_ratio: compression over critical load [1]

@@ -29,8 +29,8 @@ def cantilever_stiffness(force: float, length: float, deflection: float) -> floa
 def lever_arm(diameter: float, clearance: float) -> float:
     """Lever arm of the restraint load, `a = 3 sqrt(D c + c^2)`, equation (7).
 
-    Deflection over end slope of a cantilever, `2 a / 3`, is set to the chord that the clearance cuts,
-    `2 sqrt((D/2 + c)^2 - (D/2)^2)`, (5) and (6).
+    A cantilever's deflection over its end slope, `2 a / 3`, is set equal to the chord that the clearance
+    cuts off, `2 sqrt((D/2 + c)^2 - (D/2)^2)`, (5) and (6).
 
     Args:
         diameter: bottom diameter D of the rapier wheel [m]
@@ -39,8 +39,8 @@ def lever_arm(diameter: float, clearance: float) -> float:
     Returns:
         lever arm [m]
 
-    Valid while the end slope `a / D` is small: at 0.2 the tangent that the source replaces by its angle
-    is 1.4 % larger.
+    Valid while the end slope `a / D` is small: the source replaces its tangent, at 0.2 1.4 % larger, by the
+    angle.
 
     >>> round(1000 * lever_arm(0.3955, 0.3e-3), 2)
     32.69
@@ -67,8 +67,8 @@ def bending_moment(stiffness: float, diameter: float) -> float:
 def restraint_load(stiffness: float, diameter: float, clearance: float) -> float:
     """Load with which each block holds the belt on the wheel, `F = 2 EI / (D a)`, equations (4) and (8).
 
-    The wrap angle has no part in it. Erratum: Table 3 prints 54.81 N for 430.0 mm and 0.1 mm, the equation
-    gives 59.10 N.
+    It does not depend on the wrap angle. Erratum: Table 3 prints 54.81 N for 430.0 mm and 0.1 mm, where the
+    equation gives 59.10 N.
 
     Args:
         stiffness: bending stiffness EI [N m2]

@@ -3,7 +3,7 @@
 Source: Korolev, thesis on rotary dobbies (Moscow), sections 5.2 and 5.3, equations (5.1) to (5.6). The
 dynamics behind the design formula, per unit of carrier mass and relative to the outer frame, are
 `z'' + c z' + k z = u(t)`; a stop adds its own spring and dashpot. Between changes of contact this is
-linear and the power series of its solution converges for every step, so it is summed to rounding.
+linear, and the power series of its solution, which converges for every step, is summed to rounding.
 """
 
 from math import atan2, exp, fabs, pi, sqrt
@@ -28,10 +28,10 @@ def design_stiffness(load: float, mass: float, acceleration: float, travel: floa
 
 
 def stop_damping_ratio(restitution: float) -> float:
-    """Damping ratio of a stop that throws a mass back with that share of its speed.
+    """Damping ratio of a stop that returns a mass with a given share of its speed.
 
-    A spring and dashpot that act only in compression and never pull let go when their force is zero,
-    after the time `(pi - atan2(2 r s, 1 - 2 r^2)) / (s w)`, `s = sqrt(1 - r^2)`; the speed left is
+    A spring and dashpot that act only in compression let go when their force is zero, after the time
+    `(pi - atan2(2 r s, 1 - 2 r^2)) / (s w)`, `s = sqrt(1 - r^2)`; the share of the speed left is
     `exp(-r w time)`. Solved for r by bisection. See Schwager and Poeschel, Granular Matter 9 (2007) 465.
 
     Args:
@@ -57,20 +57,13 @@ def stop_damping_ratio(restitution: float) -> float:
 
 
 def propagate(
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    duration: float,
-) -> tuple[float, float]:
+    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
+    drive_2: float, drive_3: float, duration: float,
+) -> tuple[float, float]:  # fmt: skip
     """State of `z'' + c z' + k z = u0 + u1 t + u2 t^2 + u3 t^3` after a duration.
 
-    The power series of the exact solution, summed until its terms vanish in rounding. Meant for
-    `sqrt(k) t` and `c t` up to about 1, where nothing cancels; longer steps are split by the caller.
+    The power series of the exact solution, summed until its terms are below rounding. Valid for `sqrt(k) t`
+    and `c t` up to about 1, where nothing cancels; the caller splits longer steps.
 
     Args:
         position, rate: z [m] and z' [m/s] at the start

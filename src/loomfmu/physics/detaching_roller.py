@@ -1,6 +1,6 @@
 """Detaching rollers of a cotton comber: the torques that drive them over a nip, and the drafting force.
 
-A nip is one revolution of the comb cylinder, told in 40 divisions. Each unit has a back and a front
+A nip is one revolution of the comb cylinder, counted in 40 divisions. Each unit has a back and a front
 roller, each with a top roller that it drives through the web.
 
 Source: study of the driving torque of the detaching rollers of the comber JSFA588, Cotton Textile
@@ -16,7 +16,7 @@ DRAFT_END = 30.0
 
 
 def division_of(shaft_angle: float) -> float:
-    """Division of the nip that a shaft angle falls in, 0 to 40, 40 left out.
+    """Division of the nip at a shaft angle [rad]: from 0 to below 40.
 
     >>> [division_of(angle) for angle in (0.0, 0.9 * pi, -0.5 * pi)]
     [0.0, 18.0, 30.0]
@@ -29,7 +29,7 @@ def division_of(shaft_angle: float) -> float:
 def top_roller_torque(
     acceleration: float, roller_radius: float, top_radius: float, top_inertia: float
 ) -> float:
-    """Torque M12 that the top roller's inertia asks of the roller, `J2 (r1 / r2)^2 e`, equation (11).
+    """Torque M12 on the roller from the top roller's inertia, `J2 (r1 / r2)^2 e`, equation (11).
 
     Args:
         acceleration: of the detaching roller e [rad/s2]
@@ -52,10 +52,10 @@ def top_roller_torque(
 def drafting_force(fibre_share: float, friction: float, nip_load: float, resistance: float) -> float:
     """Force that drafts the fibres out of the fringe, `F = n / (2 n_max) (mu P - f1)`, equation (19).
 
-    At the most fibres it takes half of what the nip can hold.
+    With the largest number of fibres it is half of what the nip can hold.
 
     Args:
-        fibre_share: fibres in the nip over the most of them, n / n_max [1]
+        fibre_share: fibres in the nip over their largest number, n / n_max [1]
         friction: static, between fibres and roller, mu [1]
         nip_load: load of the top roller P [N]
         resistance: f1 of the top roller on the web, its torque M12 over r1 [N]
@@ -86,16 +86,16 @@ def _motion_knot(index: int) -> tuple[float, float, float]:
     return 38.0, 0.0, 0.0
 
 
-# what the torques of the motion's table stand for: inertia of the roller times the square of the speed
+# torque per angular acceleration by shaft angle: the roller's inertia times the square of the shaft speed
 _MOTION_UNIT = 135.64e-6 * (10.0 * 3.141592653589793) ** 2
 
 
 def assumed_motion(division: float) -> tuple[float, float]:
-    """Motion of the detaching roller over a nip, an assumption: its curve stands only in a lost figure.
+    """Motion of the detaching roller over a nip, an assumption: the published curve is in a lost figure.
 
-    Between the knots of a table the acceleration follows cubics with level ends. Published are the knots
-    at 18.4 (1.18 N m at 300 nips/min) and 25 (-0.53 N m) and the order of the phases: back, forward, rest.
-    The other knots are chosen so that the roller comes to rest again at the end of the nip.
+    Between the knots of a table the acceleration follows cubics with level ends. The source publishes the
+    knots at 18.4 (1.18 N m at 300 nips/min) and 25 (-0.53 N m) and the order of the phases: back, forward,
+    rest. The other knots are chosen so that the roller is at rest again at the end of the nip.
 
     Args:
         division: of the nip, 0 to 40 [1]
@@ -123,10 +123,11 @@ def assumed_motion(division: float) -> tuple[float, float]:
 
 
 def assumed_fibre_share(division: float) -> float:
-    """Share of the most fibres in the nip, an assumption: the measured curve stands only in a lost figure.
+    """Fibres in the nip over their largest number, an assumption: the measured curve is in a lost figure.
 
-    Published are 0 up to 18 and from 30, and the most at 23.8. The rise is a cubic with level ends. The
-    fall is `((30 - d) / 6.2)^3`: 0.249 at 26.1, where the valleys of Table 2 at three speeds ask for 0.254.
+    The source publishes 0 up to 18 and from 30, and the largest number at 23.8. The rise is a cubic with
+    level ends. The fall is `((30 - d) / 6.2)^3`: 0.249 at 26.1, where the valleys of Table 2 at three speeds
+    require 0.254.
 
     Args:
         division: d of the nip, 0 to 40 [1]

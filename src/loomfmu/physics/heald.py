@@ -1,4 +1,4 @@
-"""Heald frame: motion from the rotor's angle, and the pattern that asks for it.
+"""Heald frame: motion from the rotor's angle, and the pattern of raised frames.
 
 Source: Korolev, thesis on rotary dobbies (Moscow), sections 2.5, 3.1 and 3.6.
 """
@@ -9,8 +9,8 @@ from math import cos, floor, pi, sin
 def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[float, float, float]:
     """Share of the stroke of a frame that changes at every pick: `(1 - cos(S/2)) / 2`.
 
-    Half a turn of the frame's crank belongs to one turn of the rotor. The share is written `sin(S/4)^2`, so
-    that nothing cancels where the frame has hardly left its rest.
+    The frame's crank makes half a turn per turn of the rotor, section 3.1. Computed as `sin(S/4)^2`, so that
+    nothing cancels near the rest position.
 
     Args:
         angle, velocity, acceleration: of the rotor [rad, rad/s, rad/s2]
@@ -41,7 +41,7 @@ def slow_points_passed(angle: float) -> int:
 
 
 def peg(word: int, pick: int) -> int:
-    """The bit that a pattern word of 16 picks holds for a pick: 1 for a raised frame.
+    """Bit of a pattern word of 16 picks for a pick: 1 for a raised frame.
 
     >>> [peg(0b0110, pick) for pick in range(4)]
     [0, 1, 1, 0]

@@ -7,6 +7,21 @@ measures", J. Zhejiang Sci-Tech Univ. 45 (2021) 497, section 2, equations (1) to
 from math import acos, atan2, cos, fabs, pi, sin, sqrt
 
 
+def closed_acos(ratio: float) -> float:
+    """`acos(ratio)`, where a linkage that closes may exceed 1 or -1 by rounding at a dead point.
+
+    A linkage that does not close must be rejected before, see `spherical_margin` and `four_bar_margin`.
+
+    >>> closed_acos(0.5) == acos(0.5), closed_acos(1.0000000000000002)
+    (True, 0.0)
+    """
+    if ratio > 1.0:
+        return 0.0
+    if ratio < -1.0:
+        return pi
+    return acos(ratio)
+
+
 def spherical_rocker(theta: float, rocker: float, cone: float) -> tuple[float, float, float]:
     """Angle of the rocker of a spherical crank-rocker and its first two derivatives, equation (1).
 
@@ -29,12 +44,7 @@ def spherical_rocker(theta: float, rocker: float, cone: float) -> tuple[float, f
     """
     a = cos(cone)
     b = sin(cone) * cos(theta)
-    ratio = cos(rocker) / sqrt(a * a + b * b)
-    if ratio > 1.0:
-        ratio = 1.0  # rounding at a dead point; a linkage that does not close is refused before
-    if ratio < -1.0:
-        ratio = -1.0
-    alpha = acos(ratio) - atan2(b, a)
+    alpha = closed_acos(cos(rocker) / sqrt(a * a + b * b)) - atan2(b, a)
     sin_alpha = sin(alpha)
     cos_alpha = cos(alpha)
     by_theta = -sin(cone) * sin_alpha * sin(theta)
@@ -48,7 +58,9 @@ def spherical_rocker(theta: float, rocker: float, cone: float) -> tuple[float, f
 
 
 def spherical_margin(rocker: float, cone: float) -> float:
-    """By how much the spherical linkage closes over a whole turn: `|cos b| - |cos g|`, negative if not.
+    """Margin by which the spherical linkage closes over a whole turn: `|cos b| - |cos g|`, negative if not.
+
+    Arguments as for `spherical_rocker`.
 
     >>> from math import radians
     >>> spherical_margin(radians(60), radians(28)) > 0, spherical_margin(radians(60), radians(61)) > 0
@@ -58,26 +70,19 @@ def spherical_margin(rocker: float, cone: float) -> float:
 
 
 def four_bar(
-    psi: float,
-    psi_first: float,
-    psi_second: float,
-    crank: float,
-    coupler: float,
-    output: float,
-    pivot_x: float,
-    pivot_y: float,
-    assembly: int,
-) -> tuple[float, float, float]:
+    psi: float, psi_first: float, psi_second: float, crank: float, coupler: float, output: float,
+    pivot_x: float, pivot_y: float, assembly: int,
+) -> tuple[float, float, float]:  # fmt: skip
     """Output angle of a planar four-bar C-D-K-G and its derivatives, equation (3).
 
-    D turns about the origin, K about the pivot G, the coupler DK joins them. The angle follows from
-    the triangle D-K-G, its derivatives from `|D - K|^2 = const`.
+    D turns about the origin, K about the pivot G; the coupler DK joins them. The angle follows from the
+    triangle D-K-G, its derivatives from `|D - K|^2 = const`.
 
     Args:
         psi, psi_first, psi_second: crank angle [rad] and its derivatives by the shaft angle [1]
         crank, coupler, output: lengths DC, DK, KG [m]
-        pivot_x, pivot_y: place of G [m]
-        assembly: +1 or -1, which of the two ways of closing the triangle
+        pivot_x, pivot_y: position of G [m]
+        assembly: +1 or -1, which of the two triangles
 
     Returns:
         output angle [rad] and its first and second derivative by the shaft angle [1]
@@ -93,11 +98,7 @@ def four_bar(
     y = crank * sin_psi - pivot_y
     length = sqrt(x * x + y * y)
     ratio = (length * length + output * output - coupler * coupler) / (2.0 * length * output)
-    if ratio > 1.0:
-        ratio = 1.0  # rounding at a dead point; a linkage that does not close is refused before
-    if ratio < -1.0:
-        ratio = -1.0
-    chi = atan2(y, x) + assembly * acos(ratio)
+    chi = atan2(y, x) + assembly * closed_acos(ratio)
     cos_chi = cos(chi)
     sin_chi = sin(chi)
     rod_x = x - output * cos_chi
@@ -116,18 +117,13 @@ def four_bar(
 
 
 def four_bar_margin(
-    psi_low: float,
-    psi_high: float,
-    crank: float,
-    coupler: float,
-    output: float,
-    pivot_x: float,
+    psi_low: float, psi_high: float, crank: float, coupler: float, output: float, pivot_x: float,
     pivot_y: float,
-) -> float:
-    """By how much a four-bar closes while its crank swings from `psi_low` to `psi_high` [m].
+) -> float:  # fmt: skip
+    """Margin by which a four-bar closes while its crank swings from `psi_low` to `psi_high` [m].
 
-    The distance D-G must stay between `|coupler - output|` and `coupler + output`; it is extreme at
-    the ends of the swing and where the crank points to G or away from it. Negative if it does not close.
+    The distance D-G must stay between `|coupler - output|` and `coupler + output`; it is extreme at the ends
+    of the swing and where the crank points to G or away from it. Negative if the four-bar does not close.
 
     >>> four_bar_margin(0.0, 3.0, 0.1, 0.2, 0.1, 0.2, 0.0) >= 0.0
     True
@@ -155,33 +151,24 @@ def four_bar_margin(
 
 
 def _within(angle: float, low: float, high: float) -> bool:
-    """Whether the angle, turned by whole turns, lies between low and high."""
+    """Whether the angle, plus or minus whole turns, lies between low and high."""
     turned = (angle - low) % (2.0 * pi)
     return turned <= high - low
 
 
 def weft_motion(
-    theta: float,
-    rocker: float,
-    cone: float,
-    offset: float,
-    planar: bool,
-    crank: float,
-    coupler: float,
-    output: float,
-    pivot_x: float,
-    pivot_y: float,
-    assembly: int,
-) -> tuple[float, float, float]:
+    theta: float, rocker: float, cone: float, offset: float, planar: bool, crank: float, coupler: float,
+    output: float, pivot_x: float, pivot_y: float, assembly: int,
+) -> tuple[float, float, float]:  # fmt: skip
     """Angle of the sector gear and its derivatives by the crank angle, equations (1) to (4).
 
     Args:
         theta: crank angle, shaft angle plus phase [rad]
         rocker, cone: the spherical linkage, see `spherical_rocker` [rad]
         offset: angle between the rocker's arms BC and DC [rad]
-        planar: whether a four-bar follows; without one the rocker is the sector gear
+        planar: whether a four-bar follows; otherwise the rocker itself is the sector gear
         crank, coupler, output, pivot_x, pivot_y: the four-bar, see `four_bar` [m]
-        assembly: its way of closing, +1 or -1
+        assembly: of the four-bar, +1 or -1
 
     Returns:
         angle [rad], first and second derivative [1]
@@ -193,7 +180,7 @@ def weft_motion(
 
 
 def wrapped(angle: float) -> float:
-    """The same angle between -pi and pi.
+    """The same angle between -pi and pi, for angles from -3 pi to 3 pi [rad].
 
     >>> wrapped(3.0), round(wrapped(4.0) + 2 * 3.141592653589793 - 4.0, 12)
     (3.0, 0.0)

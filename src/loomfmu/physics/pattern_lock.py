@@ -6,7 +6,7 @@ corrected form.
 
 from math import cos, pi, sin, sqrt
 
-# A time longer than any that matters: what a standing shaft leaves to the pawl.
+# Time available to the pawl when the shaft stands still; longer than any that matters.
 UNLIMITED_TIME = 1e6
 
 
@@ -27,11 +27,11 @@ def pawl_inertia(mass: float, length: float, width: float) -> float:
 
 
 def pawl_turn(length: float, width: float, rest_share: float) -> float:
-    """Whole turn of a pawl from one disc to the other, `(c + c0) / b`, equation (3.30).
+    """Turn of a pawl from one disc to the other, `phi0 = (c + c0) / b`, equation (3.30).
 
     Args:
         length, width: b and c [m]
-        rest_share: share c0 / c of its width that does not enter the slot [1]
+        rest_share: c0 / c, share of its width that stays outside the slot [1]
 
     Returns:
         turn [rad]
@@ -43,9 +43,9 @@ def pawl_turn(length: float, width: float, rest_share: float) -> float:
 
 
 def engagement(x: float, span: float, turn: float) -> tuple[float, float, float]:
-    """Turn of the pawl by the shaft angle: `phi0 (x/T - sin(2 pi x/T) / (2 pi))`, equations (3.33), (3.34).
+    """Turn of the pawl over the shaft angle: `phi0 (x/T - sin(2 pi x/T) / (2 pi))`, equations (3.33), (3.34).
 
-    At rest before and after; velocity and acceleration are continuous.
+    The pawl is at rest before and after; velocity and acceleration are continuous.
 
     Args:
         x: shaft angle since the engagement began [rad]
@@ -79,7 +79,7 @@ def largest_bend(span: float, turn: float) -> float:
         span, turn: T and phi0 [rad]
 
     Returns:
-        acceleration for unit shaft speed [1/rad]; erratum: its figure is printed as 0.32
+        acceleration at a shaft speed of 1 rad/s [1/rad]; erratum: its value is printed as 0.32
 
     >>> from math import radians
     >>> round(largest_bend(radians(75), radians(12)), 3)
@@ -109,9 +109,9 @@ def torque_speed_limit(inertia: float, bend: float, torque: float) -> float:
 
 
 def release_time(inertia: float, stiffness: float, arm: float) -> float:
-    """Time in which the spring throws the pawl over: a quarter of its swing, equations (3.38) and (3.47).
+    """Time in which the spring moves the pawl over: a quarter of a period, equations (3.38) and (3.47).
 
-    `T_f = pi / (2 k)`, `k^2 = C R^2 / I`, whatever the angle.
+    `T_f = pi / (2 k)`, `k^2 = C R^2 / I`, independent of the angle.
 
     Args:
         inertia: I [kg m2]
@@ -147,14 +147,14 @@ def available_time(angle: float, speed: float) -> float:
 
 
 def friction_power(coefficient: float, force: float, radius: float, speed: float, count: float) -> float:
-    """Power that the pawls lose on the discs they rub, `W = f N r w K`, equation (3.48).
+    """Power lost to friction between pawls and discs, `W = f N r w K`, equation (3.48).
 
     Args:
         coefficient: of friction f [1]
         force: of a pawl on its disc N [N]
-        radius: at which it rubs r [m]
+        radius: of the contact r [m]
         speed: of the disc w [rad/s]
-        count: of frames, with a pawl each, K [1]
+        count: of frames, with one pawl each, K [1]
 
     Returns:
         power [W]

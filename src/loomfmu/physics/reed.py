@@ -4,28 +4,25 @@ Frame: the rocker's pivot is the origin, the reed moves along x at a fixed heigh
 
 Source: Yuan, Chen, Jiang and Zhou, "Kinematics analysis and dimension synthesis of beating-up mechanism
 for carbon fiber multi-layer loom", Journal of Textile Research (2017), doi 10.13475/j.fzxb.20170102406,
-sections 2 and 3, equations (1) to (13). Most of its equations are lost; the forms here were derived anew.
+sections 2 and 3, equations (1) to (13). Most of its equations are lost; those here were derived again.
 """
 
 from math import acos, asin, atan2, cos, fabs, floor, pi, sin, sqrt
 
+from .linkage import closed_acos
+
 
 def dead_centre(
-    crank: float,
-    coupler: float,
-    rocker: float,
-    pivot_x: float,
-    pivot_y: float,
-    assembly: int,
+    crank: float, coupler: float, rocker: float, pivot_x: float, pivot_y: float, assembly: int,
     extended: bool,
-) -> float:
-    """Crank angle at which crank and coupler lie in line, so that the rocker is at an end of its swing.
+) -> float:  # fmt: skip
+    """Crank angle at which crank and coupler are in line, so that the rocker is at an end of its swing.
 
     Args:
         crank, coupler, rocker: lengths [m]
-        pivot_x, pivot_y: place of the rocker's pivot from the crank's centre [m]
-        assembly: way of closing the four-bar, as for `four_bar`
-        extended: whether the coupler goes on from the crank, or folds back over it
+        pivot_x, pivot_y: position of the rocker's pivot relative to the crank's centre [m]
+        assembly: of the four-bar, as for `four_bar`
+        extended: whether the coupler extends the crank or folds back over it
 
     Returns:
         crank angle [rad]
@@ -36,11 +33,7 @@ def dead_centre(
     reach = coupler + crank if extended else coupler - crank
     frame = sqrt(pivot_x * pivot_x + pivot_y * pivot_y)
     ratio = (frame * frame + reach * reach - rocker * rocker) / (2.0 * frame * reach)
-    if ratio > 1.0:
-        ratio = 1.0  # rounding; a linkage that does not close is refused before
-    if ratio < -1.0:
-        ratio = -1.0
-    angle = atan2(pivot_y, pivot_x) - assembly * acos(ratio)
+    angle = atan2(pivot_y, pivot_x) - assembly * closed_acos(ratio)
     return angle if extended else angle + pi
 
 
@@ -62,9 +55,9 @@ def transmission_angle(distance: float, coupler: float, rocker: float) -> float:
 
 
 def smallest_transmission_angle(crank: float, coupler: float, rocker: float, frame: float) -> float:
-    """Smallest transmission angle of a crank-rocker: where crank and frame lie in line, (11) and (12).
+    """Smallest transmission angle of a crank-rocker, with crank and frame in line, (11) and (12).
 
-    Where the rocker takes the same time to and fro it is `acos(sin(psi/2) / sin(b))` by the source's (13):
+    If the rocker takes the same time in both directions it is `acos(sin(psi/2) / sin(b))`, equation (13):
     62.754 deg for a swing psi of 13.610 deg and a frame angle b of 15 deg.
 
     >>> from math import degrees
@@ -112,7 +105,7 @@ def reed_motion(
 
 
 def rod_margin(middle: float, half_swing: float, arm: float, rod: float, height: float) -> float:
-    """By how much the rod reaches the reed's line over the whole swing of the arm [m]; negative if not.
+    """Margin by which the rod reaches the reed's line over the whole swing of the arm [m]; negative if not.
 
     Args:
         middle, half_swing: angle of the arm in the middle of its swing, half the swing [rad]
@@ -131,9 +124,10 @@ def rod_margin(middle: float, half_swing: float, arm: float, rod: float, height:
 
 
 def in_line_margin(middle: float, half_swing: float, arm: float, rod: float, height: float) -> float:
-    """How far the swing stays clear of the angles at which arm and rod lie in line [rad]; negative if not.
+    """Distance of the swing from the angles at which arm and rod are in line [rad]; negative if not clear.
 
-    There the reed turns back while the rocker goes on: its limits would not be those of the rocker.
+    At such an angle the reed reverses while the rocker goes on, so the reed's limits would not be at the
+    rocker's.
 
     Args: as for `rod_margin`
 
@@ -144,7 +138,7 @@ def in_line_margin(middle: float, half_swing: float, arm: float, rod: float, hei
     if fabs(height) <= arm + rod:
         clear = acos(cos(middle - asin(height / (arm + rod))))
     if fabs(height) <= fabs(arm - rod):
-        # with arm and rod equal the reed stands still as long as the arm points away from it
+        # with arm and rod equal the reed stands still while the arm points away from it
         folded = 0.0 if cos(middle) < 0.0 else pi
         if arm != rod:
             folded = acos(cos(middle - pi + asin(height / (arm - rod))))

@@ -2,12 +2,12 @@
 
 from math import cos, fabs, sin
 
-# Angle [rad] beyond which no mechanism is computed: it is known to 2e-7 rad there, after 3e8 revolutions
+# Angle [rad] beyond which no mechanism is computed; it is rounded to 2e-7 rad there, after 3e8 revolutions
 FARTHEST = 2e9
 
 
 def too_far(angle: float) -> bool:
-    """Whether an angle [rad] is so large that its rounding counts.
+    """Whether an angle [rad] is so large that its rounding matters.
 
     >>> too_far(1e9), too_far(-3e9)
     (False, True)
@@ -19,7 +19,7 @@ def ramp(time: float, duration: float) -> tuple[float, float, float]:
     """Smooth start-up: equivalent running time, share of full speed and its rate.
 
     The share of full speed is the quintic `10 u^3 - 15 u^4 + 6 u^5`, `u = time / duration`: velocity,
-    acceleration and jerk are continuous at both ends, and the ramp costs half its duration.
+    acceleration and jerk are continuous at both ends. The ramp delays the shaft by half its duration.
 
     Args:
         time: time since the start [s]
@@ -45,25 +45,21 @@ def ramp(time: float, duration: float) -> tuple[float, float, float]:
 
 
 def shaft_motion(
-    time: float,
-    speed: float,
-    start_angle: float,
-    ramp_duration: float,
-    ripple_amplitude: float,
+    time: float, speed: float, start_angle: float, ramp_duration: float, ripple_amplitude: float,
     ripple_order: int,
-) -> tuple[float, float, float]:
+) -> tuple[float, float, float]:  # fmt: skip
     """Angle, velocity and acceleration of a shaft that ramps up and ripples.
 
-    With the mean angle `p(t)` of the ramp the shaft turns at `p' (1 + A sin(n p))`: exactly
-    integrable, periodic in the shaft's own angle, never backwards while `A < 1`.
+    With the mean angle `p(t)` of the ramp the shaft turns at `p' (1 + A sin(n p))`: integrable in closed
+    form, periodic in the mean angle, never backwards while `A < 1`.
 
     Args:
         time: time since the start [s]
         speed: mean speed after the ramp [rad/s]
         start_angle: angle at time 0 [rad]
         ramp_duration: length of the start-up [s]
-        ripple_amplitude: share A of the speed by which it ripples [1]
-        ripple_order: ripples n in one revolution [1]
+        ripple_amplitude: A, relative to the speed [1]
+        ripple_order: n, ripples per revolution [1]
 
     Returns:
         angle [rad], velocity [rad/s], acceleration [rad/s2]
@@ -78,7 +74,7 @@ def shaft_motion(
     if ripple_amplitude == 0.0:
         return start_angle + turned, velocity, acceleration
     mean = start_angle + turned
-    # cos(n start) - cos(n mean), without cancellation at the first instants
+    # cos(n start) - cos(n mean), without cancellation near the start
     swing = 2.0 * sin(0.5 * ripple_order * (start_angle + mean)) * sin(0.5 * ripple_order * turned)
     factor = 1.0 + ripple_amplitude * sin(ripple_order * mean)
     slope = ripple_amplitude * ripple_order * cos(ripple_order * mean)
@@ -90,7 +86,7 @@ def shaft_motion(
 
 
 def carried(value: float, rate: float, second_rate: float, duration: float) -> float:
-    """A value carried over a step with its rates, `value + rate h + second_rate h^2 / 2`.
+    """A value extrapolated over a step with its rates, `value + rate h + second_rate h^2 / 2`.
 
     >>> carried(1.0, 2.0, 4.0, 0.5)
     2.5

@@ -1,22 +1,22 @@
 """Warp thread: extension from the shed's geometry and the viscoelastic law of its tension, exactly.
 
 Source: Korolev, thesis on rotary dobbies (Moscow), sections 3.5 and 5.1, equations (3.28) and (3.29), with
-the law after Kragelsky in the form that (3.29) belongs to: `F' + r F = b (x' + n x)`. Over a step the
-extension is a polynomial of the share u of the way; then so is the drive, and the force follows in closed
-form from the moments of a fading memory, which are computed without cancellation for every rate and step.
+the law after Kragelsky in the form that (3.29) solves: `F' + r F = b (x' + n x)`. Over a step the extension
+is a polynomial in the share u of the step, and so is the right side. The force follows in closed form from
+the moments of a fading memory, which are computed without cancellation for every rate and step.
 """
 
 from math import exp, fabs, sqrt
 
 
 def eye_pull(height: float, front: float, back: float) -> float:
-    """Share of its tension with which a thread pulls its heald eye back: the sum of its two sines.
+    """Share of its tension with which a thread pulls its heald eye back: the sines of its two parts, added.
 
-    It is also the extension's derivative by the height of the eye.
+    It is also the derivative of the extension by the height of the eye.
 
     Args:
-        height: of the eye above the line from the cloth's fell to the back rest [m]
-        front, back: distances of the eye from the fell and from the back rest, in that line [m]
+        height: of the eye above the line from the fell of the cloth to the back rest [m]
+        front, back: distances of the eye from the fell and from the back rest, along that line [m]
 
     Returns:
         share, with the sign of the height [1]
@@ -32,7 +32,7 @@ def thread_extension(
 ) -> tuple[float, float, float]:
     """Extension of a thread by its heald eye, `x = sqrt(l1^2 + y^2) - l1 + sqrt(l2^2 + y^2) - l2`.
 
-    Written as `y^2 / (sqrt(l^2 + y^2) + l)` for each part: nothing cancels in a nearly closed shed.
+    Each part is computed as `y^2 / (sqrt(l^2 + y^2) + l)`, so nothing cancels in a nearly closed shed.
 
     Args:
         height, velocity, acceleration: y of the eye and its rates [m, m/s, m/s2]
@@ -59,7 +59,7 @@ def thread_extension(
 
 
 def constant_rate_force(time: float, rate: float, stiffness: float, creep: float, relaxation: float) -> float:
-    """Force of a thread that is stretched from rest at a constant rate, `x = v t`.
+    """Force of a thread stretched from rest at a constant rate, `x = v t`, by the corrected (3.28).
 
     `F = b v [n t / r + (1 - n/r) (1 - exp(-r t)) / r]`, the exact solution of the law. Equation (3.29) is its
     counterpart for a force that rises at a constant rate.
@@ -84,8 +84,8 @@ def constant_rate_force(time: float, rate: float, stiffness: float, creep: float
 def fading(decay: float) -> tuple[float, float, float, float, float, float, float, float]:
     """`exp(-z)` and the moments of a fading memory, `I_k = integral of exp(-z (1 - u)) u^k`, u from 0 to 1.
 
-    `z I_k = 1 - k I_(k-1)`, run upwards from z = 3 on, and downwards from a series for I_6 below: either
-    way the rounding of one moment does not grow in the next.
+    `z I_k = 1 - k I_(k-1)`, upwards from I_0 for z >= 3, downwards from a series for I_6 below, so that the
+    rounding of one moment does not grow in the next.
 
     Args:
         decay: z, not negative [1]
@@ -121,18 +121,11 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
 
 
 def thread_drive(
-    stiffness: float,
-    creep: float,
-    start: float,
-    end: float,
-    a0: float,
-    a1: float,
-    a2: float,
-    a3: float,
-) -> tuple[float, float, float, float, float, float]:
-    """Right side of the law over a step, `b (x' + n x)`, as a polynomial of the share u of the way.
+    stiffness: float, creep: float, start: float, end: float, a0: float, a1: float, a2: float, a3: float,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """Right side of the law over a step, `b (x' + n x)`, as a polynomial in the share u of the step.
 
-    Both ends of the extension are met exactly, so that rounding does not add up over many steps.
+    The extension at both ends is exact, so rounding does not add up over many steps.
 
     Args:
         stiffness: b [N/m]
@@ -158,17 +151,10 @@ def thread_drive(
 
 
 def thread_force(
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
+    force: float, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
     share: float,
-) -> tuple[float, float]:
-    """Force of the thread at a share u of the way, and its integral by u up to there.
+) -> tuple[float, float]:  # fmt: skip
+    """Force of the thread at a share u of the step, and its integral over u from 0.
 
     Exact solution of `dF/du + z F = p0 + p1 u + .. + p5 u^5`:
 
@@ -178,7 +164,7 @@ def thread_force(
     Args:
         force: F0 at the start of the step [N]
         decay: z, the relaxation rate times the duration of the step [1]
-        p0 .. p5: the drive, from `thread_drive` [N]
+        p0 .. p5: right side of the law, from `thread_drive` [N]
         share: u [1]
 
     Returns:
@@ -196,17 +182,10 @@ def thread_force(
 
 
 def thread_growth(
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
+    force: float, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
     share: float,
-) -> float:
-    """Derivative of the force by u where it is `force`; see `thread_force`.
+) -> float:  # fmt: skip
+    """Derivative of the force by u, at a given force; see `thread_force`.
 
     >>> thread_growth(3.0, 2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
     4.0
@@ -216,10 +195,10 @@ def thread_growth(
 
 
 def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
-    """Whether the force can turn but once on the way: the drive's own derivative keeps its sign.
+    """Whether the force has at most one extreme in the step: the right side rises or falls throughout.
 
-    Between two turns of the force, `exp(z u) dF/du` turns too, and its derivative is `exp(z u)` times that
-    of the drive. Sufficient, not necessary: the first coefficient outweighs all others.
+    Between two extremes of the force `exp(z u) dF/du` has one too, and its derivative is `exp(z u)` times
+    that of the right side. Sufficient, not necessary: the first coefficient outweighs all others.
 
     >>> turns_once(1.0, 0.2, 0.0, 0.0, 0.0), turns_once(1.0, -1.0, 0.0, 0.0, 0.0)
     (True, False)
@@ -227,29 +206,32 @@ def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
     return fabs(p1) >= 2.0 * fabs(p2) + 3.0 * fabs(p3) + 4.0 * fabs(p4) + 5.0 * fabs(p5)
 
 
-def thread_locate(
-    turn: bool,
-    level: float,
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
-    low: float,
-    high: float,
-) -> float:
-    """Share of the way at which the force turns, or at which it passes a level.
+def thread_gauge(
+    turn: bool, level: float, force: float, decay: float, p0: float, p1: float, p2: float, p3: float,
+    p4: float, p5: float, share: float,
+) -> float:  # fmt: skip
+    """Zero where `thread_locate` looks: the derivative of the force by u, or the force minus a level.
 
-    Regula falsi after Illinois, every third step a halving, on the exact solution.
+    >>> thread_gauge(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    1.0
+    """
+    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, share)
+    return thread_growth(value, decay, p0, p1, p2, p3, p4, p5, share) if turn else value - level
+
+
+def thread_locate(
+    turn: bool, level: float, force: float, decay: float, p0: float, p1: float, p2: float, p3: float,
+    p4: float, p5: float, low: float, high: float,
+) -> float:  # fmt: skip
+    """Share of the step at which the force has an extreme, or at which it passes a level.
+
+    Regula falsi (Illinois), with a bisection every third step, on the exact solution.
 
     Args:
-        turn: True for the turn, False for the level
+        turn: True for the extreme, False for the level
         level: of the force [N]
         force .. p5: as for `thread_force`
-        low, high: bracket of u; what is sought changes its sign between them
+        low, high: bracket of u; the derivative, or force minus level, changes sign between them
 
     Returns:
         share [1]
@@ -257,10 +239,8 @@ def thread_locate(
     >>> round(thread_locate(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
     0.5
     """
-    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, low)
-    at_low = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, low) if turn else value - level
-    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, high)
-    at_high = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, high) if turn else value - level
+    at_low = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, low)
+    at_high = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, high)
     last = 0
     for count in range(100):
         if high - low <= 1e-15 or at_high == 0.0:
@@ -268,8 +248,7 @@ def thread_locate(
         u = high - at_high * (high - low) / (at_high - at_low)
         if u <= low or u >= high or count % 3 == 2:
             u = 0.5 * (low + high)
-        value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, u)
-        here = thread_growth(value, decay, p0, p1, p2, p3, p4, p5, u) if turn else value - level
+        here = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, u)
         if (here > 0.0) == (at_high > 0.0):
             high = u
             at_high = here

@@ -1,4 +1,4 @@
-"""How exact the components are: damper, belt and dwell over the number of steps in a revolution."""
+"""Accuracy of the components: damper, belt and dwell over the number of steps in a revolution."""
 
 import math
 
@@ -39,7 +39,7 @@ def chapter() -> Chapter:
 
 
 def damper_errors(law: int, rpm: float, given: dict[str, float]) -> list[float]:
-    """Largest error of the displacement for each number of steps, as a share of the largest displacement."""
+    """Largest error of the displacement for each number of steps, over the largest displacement."""
     finest = max(DAMPER_STEPS)
     exact = reference(rpm, finest, law, **given).displacement
     peak = float(np.max(np.abs(exact)))
@@ -58,7 +58,7 @@ def _order(errors: list[float], index: int) -> str:
 
 
 def damper() -> Section:
-    """HealdDamper against an integration."""
+    """HealdDamper compared with an integration."""
     found = [damper_errors(law, rpm, given) for _name, law, rpm, given in CASES]
     rows = []
     for index, steps in enumerate(DAMPER_STEPS):
@@ -71,13 +71,14 @@ def damper() -> Section:
         "Heald damper against an independent integration",
         ("steps", *heads),
         tuple(rows),
-        intro="Displacement of the carrier over the first turn in plain weave, against scipy's DOP853 with"
-        " events, rtol = 1e-12; errors as shares of the largest displacement, and the order seen from one"
-        " number of steps to the next. The law is the sloped sine with zeta = 0.5 if no other is named.",
+        intro="Displacement of the carrier over the first turn in plain weave, compared with scipy's DOP853"
+        " with events (rtol = 1e-12). Errors are relative to the largest displacement; the order is that from"
+        " one number of steps to the next. The law is the sloped sine with zeta = 0.5 unless another is"
+        " named.",
         remarks=(
-            "The frame runs between two samples on the quintic that joins them, which is of sixth order;"
-            " its third rate jumps 22.5 deg to either side of the slow point of the default law, and there"
-            " the order is four until, from 144 steps on, the jumps fall on samples.",
+            "Between two samples the frame is taken to move along the quintic that joins them, which is of"
+            " sixth order. With the default law the frame's jerk jumps 22.5 deg to either side of the slow"
+            " point, and the order is four until, from 144 steps on, the jumps fall on samples.",
         ),
         figures=(("accuracy.png", "Error of the heald damper over the steps in a revolution"),),
     )
@@ -142,15 +143,14 @@ def belt_and_dwell() -> Section:
     return Section(
         f"Belt and dwell over the steps in a revolution ({MACHINE} at {number(SPEED, 0)} rev/min)",
         (
-            "steps", "lowest margin", "error", "lowest speed limit, rev/min", "error, as a share",
+            "steps", "lowest margin", "error", "lowest speed limit, rev/min", "relative error",
             "error of the sampled dwell, rad",
         ),
         tuple(rows),
         intro=f"Exact: lowest margin {number(margin, 6)}, limit {number(limit, 4)} rev/min, dwell of the"
         f" default drive {number(math.degrees(dwell), 5)} deg.",
         remarks=(
-            "`dwell_angle` of `DobbyDrive` is that of the law itself and does not depend on the step; the"
-            " column is for the dwell as a claim finds it, from samples of lift, velocity and"
-            " acceleration.",
+            "`dwell_angle` of `DobbyDrive` follows from the law itself and does not depend on the step. The"
+            " column is for the dwell as a claim finds it, from samples of lift, velocity and acceleration.",
         ),
     )  # fmt: skip

@@ -55,7 +55,7 @@ def chapter() -> Chapter:
     """All tables of the belt."""
     return Chapter(
         "Rapier belt outside its guide (Zhu and Zhou, J. Zhejiang Sci-Tech Univ. 45 (2021) 497)",
-        "The frame of axes of the source's Figure 2 is lost. Pivot, assembly and crank phase of each"
+        "Figure 2 of the source, which defines its axes, is lost. Pivot, assembly and crank phase of each"
         " machine were identified from Tables 1 and 5; nothing else was adjusted.",
         (table_1(), table_2(), table_3(), figure_10(), *table_5(), *table_6(), table_7(), deflection()),
     )
@@ -75,16 +75,18 @@ def table_1() -> Section:
         )
         rows.append(Row((name, *cells)))
     return Section(
-        "Table 1: end of the positive acceleration, free start, longest free length",
+        "Table 1: end of the positive acceleration, angle at which the belt leaves its guide, longest free"
+        " length",
         (
-            "machine", "end, deg", "free start, deg", "longest free length at the computed end, mm",
+            "machine", "end, deg", "leaves its guide, deg", "longest free length at the computed end, mm",
             "at the published end, mm",
         ),
         tuple(rows),
         split=False,
         remarks=(
-            "The published longest free length is that at the published end, which is given in whole"
-            f" degrees: a degree there is worth {' to '.join(number(each, 0) for each in _growth())} mm.",
+            "The published longest free length is the one at the published end, which is printed in whole"
+            f" degrees; a degree there changes it by {' to '.join(number(each, 0) for each in _growth())}"
+            " mm.",
         ),
         figures=(
             ("travel.png", "Travel, velocity and acceleration of the rapier head at 400 rev/min (Figure 3)"),
@@ -136,7 +138,7 @@ def table_3() -> Section:
         ("clearance, mm", ""),
         rows,
         intro="Computed: least squares on the loads of Table 2, by equation (8).",
-        remarks=("`BeltMonitor` takes the published factors, not these.",),
+        remarks=("`BeltMonitor` uses the published factors, not these.",),
     )
 
 
@@ -144,7 +146,7 @@ def figure_10() -> Section:
     """Where the limit lies."""
     found = safe("WL680-3400", "G6300 left", 0.8)
     return Section(
-        "Figure 10 and section 4.1: where the lowest limit lies (WL680-3400, mu = 0.8, case I)",
+        "Figure 10 and section 4.1: the lowest speed limit (WL680-3400, mu = 0.8, case I)",
         ("quantity", ""),
         (
             Row(("shaft angle, deg", Pair("101.27", math.degrees(found.angle), 3, place=True))),
@@ -168,8 +170,8 @@ def table_5() -> tuple[Section, Section]:
     heads = tuple(f"mu = {mu}" for mu in FACTORS)
     title = "Table 5: safe speed over the length factor, rev/min (case I, 110.5 g)"
     remark = (
-        "By (9) the angle does not depend on mu, and n mu is the same in a row: what of the printed rows"
-        " varies is in Errata."
+        "By (9) the angle does not depend on mu, and n mu is constant along a row; Errata shows how far the"
+        " printed rows vary."
     )
     figures = (
         ("speed_over_width.png", "Safe speed against the width of the loom (Table 5)"),
@@ -187,7 +189,7 @@ def table_5() -> tuple[Section, Section]:
 
 
 def _load(printed: str, found: float) -> Pair | str:
-    """A load of Table 5, of which one is not printed."""
+    """A load of Table 5; one is not printed."""
     return Pair(printed, found, 1) if printed else f"not printed / {number(found, 1)}"
 
 
@@ -206,15 +208,15 @@ def table_6() -> tuple[Section, Section]:
             "Table 6: safe speed of the four heads, rev/min (mu = 0.8)",
             ("machine", *heads),
             tuple(speeds),
-            intro="The columns III and IV as corrected: the source prints them the other way round.",
+            intro="Columns III and IV are corrected: the source prints them interchanged.",
             split=False,
         ),
         Section(
             "Table 6: critical load at the safe speed, N (mu = 0.8)",
             ("machine", *heads),
             tuple(loads),
-            intro="Columns III and IV as corrected. By (8) to (10) the load cannot depend on the mass: it"
-            " is that of one angle, which the mass does not move.",
+            intro="Columns III and IV are corrected. By (8) to (10) the load cannot depend on the mass: the"
+            " mass does not change the angle at which the limit is lowest.",
             split=False,
         ),
     )
@@ -234,7 +236,7 @@ def table_7() -> Section:
         "Table 7: safe speed under a weft tension, rev/min (WL680-3600, mu = 1)",
         ("tension, gf", *CASES),
         tuple(rows),
-        intro="The tension is in gram-force, 9.80665 mN. The columns III and IV as corrected.",
+        intro="The tension is in gram-force (9.80665 mN). Columns III and IV are corrected.",
         split=False,
     )
 
@@ -247,7 +249,7 @@ def printed_deflection(load_ratio: float, length: float) -> float:
 
 
 def deflection() -> Section:
-    """How far the belt bends at 686 rev/min."""
+    """Deflection of the belt at 686 rev/min."""
     found = safe("WL680-3600", "G6300 left", 0.8)
     length = free_length("WL680-3600", found.angle)
     published = (686.0 / 685.0) ** 2
@@ -257,16 +259,16 @@ def deflection() -> Section:
         "Section 4.2 and Figure 11: deflection at 686 rev/min (WL680-3600, mu = 0.8, case I)",
         ("quantity", ""),
         (
-            Row(("exact elastica, against the published limit of 685 rev/min, mm",
+            Row(("exact elastica, with the published limit of 685 rev/min, mm",
                  Pair("8", bent[published], 1))),
             Row(
                 (
-                    "(11) as printed, against 685 rev/min, mm",
+                    "(11) as printed, with 685 rev/min, mm",
                     number(1e3 * printed_deflection(published, length), 1),
                 ),
-                "half of the elastica: see Errata",
+                "half of the exact deflection: see Errata",
             ),
-            Row((f"exact elastica, against the computed limit of {number(rpm(found), 1)} rev/min, mm",
+            Row((f"exact elastica, with the computed limit of {number(rpm(found), 1)} rev/min, mm",
                  number(bent[own], 1))),
         ),
         remarks=(f"The free length at the lowest limit is {number(1e3 * length, 1)} mm.",),

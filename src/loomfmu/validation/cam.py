@@ -37,7 +37,7 @@ def cam() -> Cam:
 
 
 def sections() -> tuple[Section, ...]:
-    """All that the source says of the cam."""
+    """Everything on the cam."""
     return table_4_2(), extremes(), profile(), program()
 
 
@@ -50,7 +50,7 @@ def table_4_2() -> Section:
         "Tables 4.1 and 4.2: heights of the warp at the control points, mm",
         ("quantity", ""),
         (
-            Row(("height of the shed on the axis of the stream, (4.2)", Pair("16.5", h, 2))),
+            Row(("height of the shed on the axis of the air stream, (4.2)", Pair("16.5", h, 2))),
             Row(("entry, lower warp, 657 deg, (4.4)", Pair(printed["657"], low - GAPS["5"], 2)),
                 "Table 4.2 prints 657: see Errata"),
             Row(("entry, upper warp, 295 deg, (4.5)", Pair(printed["295"], high + GAPS["4"], 2))),
@@ -72,7 +72,7 @@ def extremes() -> Section:
             Row(("warp above 15 mm, deg of shaft angle (conclusion 5 of section 4)",
                  Pair("140", above, 1, sense=">="))),
             Row(("largest travel of the frame, mm", number(1e3 * span, 2))),
-            Row(("lowest place of the frame, against its start, mm", number(1e3 * _lowest(), 3))),
+            Row(("lowest position of the frame, relative to its start, mm", number(1e3 * _lowest(), 3))),
             Row(("highest speed of the frame at a shaft speed of 1 rad/s, mm/s", number(1e3 * speed, 2))),
             Row(("highest acceleration of the frame at 1 rad/s, mm/s2", number(1e3 * acceleration, 2))),
             Row(("highest jerk of the frame at 1 rad/s, mm/s3", number(1e3 * span * of.highest_jerk, 2))),
@@ -83,9 +83,9 @@ def extremes() -> Section:
                  number(1e3 * FRAME * abs(of.cam_bend[5] - of.cam_bend[0]), 2))),
         ),
         remarks=(
-            "The figures that show these curves are lost; only the 140 deg stand in the text.",
-            "Section 4.2 says that other dobbies move their frames 2.1, 2.4 and 3.2 times as fast; their"
-            " strokes are not given, so that cannot be computed.",
+            "The figures that show these curves are lost; only the 140 deg are given in the text.",
+            "Section 4.2 says that other dobbies move their frames 2.1, 2.4 and 3.2 times as fast. That"
+            " cannot be computed, because their strokes are not given.",
         ),
         figures=(("spline_cam.png", "Travel, speed and acceleration of a frame on the spline cam (Figures"
                                     " 4.6 to 4.8)"),),
@@ -93,7 +93,7 @@ def extremes() -> Section:
 
 
 def _lowest() -> float:
-    """Lowest place of the frame [m]: the spline dips below its start."""
+    """Lowest position of the frame [m]: the spline dips below its start."""
     from scipy.optimize import minimize_scalar
 
     found = minimize_scalar(
@@ -118,7 +118,7 @@ def profile() -> Section:
             Row(("lowest radius of the working profile, mm", Pair("84", float(radii.min()), 2))),
             Row(("highest radius of the working profile, mm", Pair("107", float(radii.max()), 2))),
             Row(("highest radius with the printed scale, mm", number(84.0 + 212.963 * frame_span(), 2)),
-                "short of 107: see Errata"),
+                "less than 107: see Errata"),
             Row(("path of the cutter: lowest radius, mm", number(float(path.min()), 2))),
             Row(("path of the cutter: highest radius, mm", number(float(path.max()), 2))),
             Row(("largest pressure angle while it rises, deg", number(float(pressure.max()), 2))),
@@ -127,7 +127,7 @@ def profile() -> Section:
                  number(1e3 * float(of.curvature_radius[of.curvature_radius > 0.0].min()), 2))),
             Row(("smallest radius of curvature, hollows, mm",
                  number(-float(hollow.max()), 2) if hollow.size else "none")),
-            Row(("the source's radial offset of 19 mm inside the true one by up to, mm",
+            Row(("largest distance of the source's radial offset of 19 mm inside the true one, mm",
                  number(-1e3 * float(of.radial_excess().min()), 3))),
         ),
         figures=(("cam_profile.png", "Working and equidistant profile of the cam (Figure 4.9)"),),
@@ -138,13 +138,13 @@ def program() -> Section:
     """The program of Appendix 3."""
     radii = 1e3 * np.hypot(*published_path().T) - 19.0
     return Section(
-        "Appendix 3: the cutter's path less the cutter's radius of 19 mm",
+        "Appendix 3: the cutter's path minus the cutter's radius of 19 mm",
         ("quantity", ""),
         (
             Row(("lowest radius, mm", Pair("84", float(radii.min()), 2, misprint=True))),
             Row(("highest radius, mm", Pair("107", float(radii.max()), 2, misprint=True))),
             Row(("lift, mm", Pair("23", float(np.ptp(radii)), 2, misprint=True))),
         ),
-        intro="Published: the radii of Appendix 2. Computed: those of the points in the program of Appendix"
-              " 3.",
+        intro="Published: the radii of Appendix 2. Computed: the radii of the points in the program of"
+              " Appendix 3.",
     )  # fmt: skip

@@ -18,7 +18,7 @@ def section() -> Section:
     """All of them."""
     return Section(
         "Dobby: rotor laws (Korolev, sections 1.2, 3.1 and 3.4)",
-        ("where", "printed", "follows", "what fails with the printed form"),
+        ("where", "printed", "corrected", "what is wrong with the printed form"),
         (
             levers(), gears(), third_piece(), line_acceleration(), *line_constant(), line_angle(),
             last_acceleration(), sine_acceleration(), sine_angle(), *table_3_1(),
@@ -42,10 +42,10 @@ def levers() -> Row:
     return Row(
         (
             "(1.12)",
-            "the arc tangent of a ratio, within a quarter turn to either side",
-            "the angle that goes round",
-            f"at the slow point S' = {number(printed(math.pi), 3)} instead of {number(right, 3)}; in a turn"
-            f" of the shaft the rotor turns {number(turned, 0)} deg instead of 360",
+            "the arc tangent of a ratio, which stays within a quarter turn to either side",
+            "the angle, which goes all the way round",
+            f"at the slow point S' = {number(printed(math.pi), 3)} instead of {number(right, 3)}; per turn"
+            f" of the shaft the rotor turns by {number(turned, 0)} deg instead of 360",
         )
     )
 
@@ -107,8 +107,8 @@ def line_constant() -> tuple[Row, Row]:
                 "after (3.12)",
                 "eta = a0 / (4 w0)",
                 "eta = a0 / (4 w0^2)",
-                f"a0 goes with w0^2: at 400 rev/min eta would be {number(LINE * speed, 2)} instead of"
-                f" {number(LINE, 4)}, and the highest S' {number(fastest, 1)}",
+                f"a0 is proportional to w0^2: at 400 rev/min eta would be {number(LINE * speed, 2)} instead"
+                f" of {number(LINE, 4)}, and the highest S' {number(fastest, 1)}",
             )
         ),
         Row(
@@ -185,8 +185,9 @@ def sine_angle() -> Row:
             "(3.24)",
             "plus signs, sin(theta - pi/8)",
             "minus signs, sin((8/7)(theta - pi/8))",
-            f"half a turn of the shaft ends at {number(angle(1.0, 1.0), 1)} deg; with the signs put right"
-            f" at {number(angle(-1.0, 1.0), 1)}, with the sine too at {number(angle(-1.0, 8.0 / 7.0), 1)}",
+            f"after half a turn of the shaft the rotor is at {number(angle(1.0, 1.0), 1)} deg; with the signs"
+            f" corrected at {number(angle(-1.0, 1.0), 1)}, with the sine too at"
+            f" {number(angle(-1.0, 8.0 / 7.0), 1)}",
         )
     )
 
@@ -199,7 +200,7 @@ def table_3_1() -> tuple[Row, Row]:
                 "Table 3.1, zeta = 0.3",
                 "upper dwell of 80 deg from 150 to 235 deg",
                 "from 155 deg",
-                f"150 to 235 are {number(235.0 - 150.0, 0)} deg; the other three columns have 155",
+                f"150 to 235 is {number(235.0 - 150.0, 0)} deg; the other three columns have 155",
             )
         ),
         Row(
@@ -207,7 +208,7 @@ def table_3_1() -> tuple[Row, Row]:
                 "Table 3.1, zeta = 0.6",
                 "rise from 257 to 132 deg",
                 "from 257.5 to 132.5 deg",
-                f"centred on {number(0.5 * (257.0 + 132.0), 1)} deg where all others are on 195",
+                f"centred on {number(0.5 * (257.0 + 132.0), 1)} deg; all others are centred on 195",
             )
         ),
     )

@@ -7,7 +7,7 @@ from ..physics.detaching_roller import top_roller_torque
 from . import reed, roller
 from .sections import Row, Section, number
 
-HEADINGS = ("where", "printed", "follows", "what fails with the printed form")
+HEADINGS = ("where", "printed", "corrected", "what is wrong with the printed form")
 
 
 def sections() -> tuple[Section, ...]:
@@ -31,8 +31,8 @@ def of_reed() -> tuple[Row, ...]:
                     f"section 3.3, smallest transmission angle of {number(smallest, 0)} deg",
                     f"frame angle {number(printed, 3)} deg",
                     f"{number(right, 3)} deg",
-                    f"by (13) the printed one takes a swing of {number(math.degrees(swing), 3)} deg, not"
-                    f" the source's 13.610; with that it gives {number(math.degrees(found), 2)} deg",
+                    f"by (13) the printed one requires a swing of {number(math.degrees(swing), 3)} deg, not"
+                    f" the source's 13.610, with which it gives {number(math.degrees(found), 2)} deg",
                 )
             )
         )
@@ -46,20 +46,19 @@ def of_roller() -> tuple[Row, ...]:
     return (
         Row(("Table 1, valleys of M12, M13, M1, M2; Table 2, all valleys", "0.14, 0.53, 0.46, 0.61 N m, ..",
              "the same with a minus",
-             "the rollers turn back, forward and stop in each nip: a torque of their inertia that is never"
-             " below 0.53 N m would only speed them up")),
+             "the rollers turn back, turn forward and stop in each nip: an inertia torque that is never below"
+             " 0.53 N m would only speed them up")),
         Row(("section 4.1, inertias", "135.64e-6 and 33.98e-6 kg mm2", "kg m2",
-             f"M13 = 1.18 N m takes {peak} rad/s2 with kg m2; as printed it would take a million times"
-             " that")),
+             f"M13 = 1.18 N m is {peak} rad/s2 with kg m2; as printed it would be a million times that")),
         Row(("Table 1, M2", "peak 1.36, valley 0.61 N m",
              f"peak {number(1.18 + j2, 3)}, valley {number(-0.53 * (1.18 + j2) / 1.18, 3)} N m",
-             f"(13) adds 0.31 and 1.18 to {number(0.31 + 1.18, 2)}, 0.14 and 0.53 to"
-             f" {number(0.14 + 0.53, 2)}; M1, M and M0 carry the slip on")),
+             f"by (13) 0.31 + 1.18 = {number(0.31 + 1.18, 2)} and 0.14 + 0.53 = {number(0.14 + 0.53, 2)}; M1,"
+             " M and M0 repeat the slip")),
         Row(("Table 2, valley of M0 at 400 nips/min", "at division 18.4", "at 26.1",
-             "at 18.4 lies its peak; M, of which it is eight times, has its valley at 26.1")),
+             "its peak is at 18.4; M, an eighth of it, has its valley at 26.1")),
         Row(("section 4.3 against Table 2", "M0 rises to 60.65 N m", f"{number(8.0 * 7.57, 2)} N m",
-             f"8 times 7.57; and a growth of 177 % from 21.84 is {number(21.84 * 2.77, 1)}")),
+             f"8 times 7.57; a growth of 177 % from 21.84 gives {number(21.84 * 2.77, 1)}")),
         Row(("section 4.2 (2)", "the peak of M is that of M11 and M12", "that of M1 and M2",
-             f"0.68 and 0.31 make {number(0.68 + 0.31, 2)} N m, 1.36 and 1.36 make"
-             f" {number(1.36 + 1.36, 2)}; printed is 2.73")),
+             f"0.68 + 0.31 = {number(0.68 + 0.31, 2)} N m, 1.36 + 1.36 = {number(1.36 + 1.36, 2)}; 2.73 is"
+             " printed")),
     )  # fmt: skip

@@ -8,7 +8,7 @@ from ..units import STANDARD_GRAVITY
 from . import belt, wrap
 from .sections import Row, Section, number
 
-HEADINGS = ("where", "printed", "follows", "what fails with the printed form")
+HEADINGS = ("where", "printed", "corrected", "what is wrong with the printed form")
 
 
 def sections() -> tuple[Section, ...]:
@@ -32,7 +32,7 @@ def deflection() -> Row:
             f"{number(printed, 1)} mm at 686 against 685 rev/min",
             f"{number(exact, 1)} mm by the exact elastica",
             "text and Figure 11 of the source say 8 mm; the printed form gives"
-            f" {number(printed / exact, 2)} of the elastica",
+            f" {number(printed / exact, 2)} of the exact deflection",
         )
     )
 
@@ -48,7 +48,7 @@ def columns() -> tuple[Row, Row]:
             "Table 6, columns III and IV (WL680-3400)",
             f"III {row['n_III']}, IV {row['n_IV']} rev/min",
             f"III {own['III']}, IV {own['IV']} rev/min: interchanged",
-            "by (9) n sqrt(m) is the same in a row; as printed it is "
+            "by (9) n sqrt(m) is constant along a row; as printed it is "
             + ", ".join(f"{c} {product[c]}" for c in belt.CASES),
         )
     )
@@ -98,7 +98,7 @@ def factors() -> Row:
             f"Table 5, rows ({worst})",
             "n mu = " + ", ".join(number(product, 1) for product in products) + " rev/min",
             "one value for each row",
-            f"by (9) n goes with 1/mu; the printed rows vary by up to {number(spread, 1)} %",
+            f"by (9) n is proportional to 1/mu; the printed rows vary by up to {number(spread, 1)} %",
         )
     )
 
@@ -127,7 +127,7 @@ def references() -> tuple[Row, Row]:
                 "section 4.2",
                 "Table 7 and Figure 13 for the limit of 685 rev/min and the deflection",
                 "Tables 5 and 6, Figure 11",
-                "Table 7 holds no 685, and there is no Figure 13",
+                "Table 7 does not contain 685, and there is no Figure 13",
             )
         ),
         Row(
@@ -135,7 +135,7 @@ def references() -> tuple[Row, Row]:
                 "note under Table 5",
                 "mu = 0.8",
                 "mu = 0.8, 0.9 and 1.0",
-                "the columns of the table are those of three values of mu",
+                "the columns of the table are for these three values of mu",
             )
         ),
     )
@@ -150,7 +150,7 @@ def wrapped() -> Row:
             "Table 3, 430.0 mm and 0.1 mm",
             f"{row['c_0.1']} N",
             f"{number(wrap.load('430.0', '0.1'), 2)} N",
-            "by (8) F sqrt(c) is the same along a row but for c/D; as printed it is "
+            "by (8) F sqrt(c) is constant along a row, apart from c/D; as printed it is "
             + ", ".join(number(product, 2) for product in products),
         )
     )

@@ -1,4 +1,4 @@
-"""Findings of our own: what the published machines do that the sources do not tell. Computed, every one."""
+"""Findings of our own: what the equations say of the published machines and the sources do not."""
 
 import math
 
@@ -64,19 +64,19 @@ def damper() -> Section:
         "With the source's springs the carrier hits its stops",
         (
             "rev/min", f"contacts in {PICKS} picks", f"in {10 * PICKS}", "peak load, N", "load if fixed, N",
-            "acceleration over the frame's", "contacts with warp", "peak load with warp, N",
+            "peak acceleration over the frame's", "contacts with warp", "peak load with warp, N",
         ),
         tuple(_damper_row(rpm) for rpm in SPEEDS),
-        intro="From the closed shed in plain weave, the frame rising first; default drive, damper and warp."
-        f" All but the second count are those of the first {PICKS} picks.",
+        intro="Plain weave from the closed shed, the frame rising first; default drive, damper and warp."
+        f" Everything but the second count is for the first {PICKS} picks.",
         remarks=(
-            f"The carrier touches a stop from {touched} rev/min on, and from 250 rev/min on it goes on"
-            " hitting them, once or twice in a pick. With the uniform law, the one nearest to the source's"
-            f" test at 300 rev/min, it touches a stop from {cosine} rev/min on.",
-            f"The suspension swings at {number(frequency, 2)} Hz: three times as fast as a frame in plain"
-            f" weave at {number(frequency * 120.0 / 3.0, 0)} rev/min, as fast as one at"
+            f"The carrier touches a stop from {touched} rev/min on; from 250 rev/min on it keeps hitting"
+            " them, once or twice per pick. With the uniform law, the closest to the source's test at 300"
+            f" rev/min, it touches a stop from {cosine} rev/min on.",
+            f"The natural frequency of the suspension is {number(frequency, 2)} Hz: three times that of a"
+            f" frame in plain weave at {number(frequency * 120.0 / 3.0, 0)} rev/min, and equal to it at"
             f" {number(frequency * 120.0, 0)} rev/min.",
-            "Peak loads depend on the stops, of which nothing is published: 2000 N/mm and a restitution of"
+            "Peak loads depend on the stops. The source gives nothing on them; 2000 N/mm and a restitution of"
             " 0.5 are assumed.",
         ),
     )  # fmt: skip
@@ -86,7 +86,7 @@ def against_the_tables() -> Section:
     """Entries of the belt's tables that their own neighbours contradict."""
     return Section(
         "Entries of the belt's tables that contradict their own neighbours, rev/min",
-        ("entry", "published", "computed", "its neighbours"),
+        ("entry", "published", "computed", "from its neighbours"),
         (_widest(), _widest_case("III"), _widest_case("IV"), _odd_one()),
     )
 
@@ -121,12 +121,12 @@ def _odd_one() -> Row:
         number(belt.rpm(belt.safe(name, "G6300 left", 0.8)), 1)
         for name in ("WL450-4000", "WL450-3800", "WL450-4600")
     )
-    said = f"its neighbours in width, 3.8 and 4.6 m, have {' and '.join(neighbours)}"
-    return Row(("Table 5, WL450-4000, mu = 0.8", row["n_mu_0.8"], found, said))
+    around = f"{' and '.join(neighbours)} computed for the neighbouring widths, 3.8 and 4.6 m"
+    return Row(("Table 5, WL450-4000, mu = 0.8", row["n_mu_0.8"], found, around))
 
 
 def belt_design() -> Section:
-    """What a wanted speed asks for."""
+    """What a given speed requires."""
     rows = []
     for rpm in (600.0, 650.0, 700.0, 750.0):
         speed = rpm * RPM
@@ -136,18 +136,18 @@ def belt_design() -> Section:
         )  # fmt: skip
         rows.append(Row(cells))
     return Section(
-        f"What a wanted safe speed asks for ({LOOM}, case I; each alone, the others as they are)",
-        ("rev/min", "clearance, at most, mm", "head, at most, g", "bending stiffness, at least, N m2"),
+        f"What a given safe speed requires ({LOOM}, case I; one change at a time)",
+        ("rev/min", "largest clearance, mm", "largest head mass, g", "smallest bending stiffness, N m2"),
         tuple(rows),
         remarks=(
-            "As they are: clearance 0.3 mm, head 110.5 g, 0.25 N m2, safe up to"
+            "Unchanged: clearance 0.3 mm, head 110.5 g, 0.25 N m2, safe up to"
             f" {number(belt.rpm(belt.safe(LOOM, 'G6300 left', 0.8)), 1)} rev/min.",
         ),
     )
 
 
 def over_speed() -> Section:
-    """How soon a buckled belt is far out."""
+    """How fast the deflection of a buckled belt grows."""
     found = belt.safe(LOOM, "G6300 left", 0.8)
     length = belt.free_length(LOOM, found.angle)
     rows = []
@@ -160,12 +160,12 @@ def over_speed() -> Section:
         two = 0.5 * (low + high)
         low, high = (two, high) if elastica_deflection((1.0 + two) ** 2, length) < 2e-3 else (low, two)
     return Section(
-        f"A belt that is run above its safe speed ({LOOM}, mu = 0.8): deflection of the elastica",
+        f"Deflection of a belt that runs above its safe speed ({LOOM}, mu = 0.8; exact elastica)",
         ("above the limit, %", "deflection, mm"),
         tuple(rows),
         remarks=(
-            f"The 2 mm that the source allows are reached {number(100.0 * two, 3)} % above the limit:"
-            f" {number(two * belt.rpm(found), 2)} rev/min. There is no safety in a permitted deflection.",
+            f"The 2 mm that the source allows are reached {number(100.0 * two, 3)} % above the limit, which"
+            f" is {number(two * belt.rpm(found), 2)} rev/min. Permitting a deflection adds no safety.",
         ),
     )
 
@@ -192,15 +192,15 @@ def shed() -> Section:
         "The rapier is in the shed far longer than the frames dwell",
         (
             "machine", "head enters at, deg", "head is in the shed for, deg",
-            "way of a frame still to go at the entry, % of its stroke",
+            "travel left to a frame at the entry, % of its stroke",
         ),
         tuple(rows),
-        intro="Entry: the head's travel reaches the idle travel. Frames: default drive (sloped sine, zeta ="
+        intro="Entry: the head's travel equals the idle travel. Frames: default drive (sloped sine, zeta ="
               f" 0.5, slow point at 180 deg), which dwells for {dwell} deg.",
         remarks=(
-            "The stay is symmetric about the transfer at 180 deg, so a changing frame has as much left to"
-            " go when the head comes in as it has gone when the head leaves. The warp's height at the"
-            " head's station is what counts: `rapier_in_open_shed` judges it in a scene.",
+            "The stay is symmetric about the transfer at 180 deg: when the head leaves, a changing frame has"
+            " moved as far as it had left to go when the head entered. What counts is the height of the warp"
+            " at the head: `rapier_in_open_shed` judges it in a scene.",
         ),
     )  # fmt: skip
 
@@ -221,17 +221,17 @@ def limits() -> Section:
     )
     return Section(
         f"Speed limits of a {LOOM} with the default dobby, rev/min",
-        ("by", "limit"),
+        ("limited by", "limit"),
         rows,
         remarks=(
-            "40 m/s2 is the acceleration for which the source designs its springs. It is no limit of the"
-            " mechanism, but of that design.",
+            "40 m/s2 is the acceleration for which the source designs its springs: it limits that design,"
+            " not the mechanism.",
         ),
     )
 
 
 def unconnected() -> Section:
-    """What an FMU shows that is put into a tool with nothing wired."""
+    """What an FMU shows in a tool with nothing wired."""
     monitor, frame, wrap = BeltMonitor(), HealdFrame(), BeltWrap()
     for component in (monitor, frame, wrap):
         component.initialize(0.0)

@@ -18,7 +18,7 @@ RPM = math.pi / 30.0
 MASS, LENGTH, WIDTH = 0.170, 0.16, 0.03
 SPAN = math.radians(75.0)
 STIFFNESS, ARM, FORCE = 2500.0, 0.05, 20.0
-TWELVE = math.radians(12.0)  # with which the source goes on; its turn is 12.35 deg
+TWELVE = math.radians(12.0)  # the rounded turn that the source continues with; the exact one is 12.35 deg
 INERTIA = pawl_inertia(MASS, LENGTH, WIDTH)
 
 
@@ -28,7 +28,7 @@ def sections() -> tuple[Section, ...]:
 
 
 def limit(turn: float) -> float:
-    """Shaft speed up to which the spring is strong enough [rev/min]."""
+    """Shaft speed at which the pawl needs all of the spring's torque [rev/min]."""
     return torque_speed_limit(INERTIA, largest_bend(SPAN, turn), FORCE * ARM) / RPM
 
 
@@ -44,21 +44,23 @@ def speed() -> Section:
         ("quantity", ""),
         (
             Row(("moment of inertia of the pawl, 1e-6 kg m2, (3.31)", Pair("375", 1e6 * INERTIA, 1))),
-            Row(("the same as the source goes on with, 1e-6", Pair("3750", 1e6 * INERTIA, 1, misprint=True))),
+            Row(("moment of inertia that the source continues with, 1e-6 kg m2",
+                 Pair("3750", 1e6 * INERTIA, 1, misprint=True))),
             Row(("turn of the pawl, rad, (3.30)", Pair("0.216", turn, 4))),
-            Row(("turn of the pawl, deg", Pair("12", math.degrees(turn), 2)), "the source goes on with 12"),
+            Row(("turn of the pawl, deg", Pair("12", math.degrees(turn), 2)), "the source continues with 12"),
             Row(("torque of the spring, N m, (3.32)", Pair("1.0", FORCE * ARM, 2))),
             Row(("largest acceleration at 1 rad/s, 12 deg, 1/s2, (3.34)",
                  Pair("0.32", largest_bend(SPAN, TWELVE), 3, misprint=True))),
-            Row(("speed limit by the torque, 12 deg, rev/min", Pair("620", limit(TWELVE), 1, misprint=True))),
-            Row(("speed limit by the torque, 12.35 deg, rev/min", number(limit(turn), 1))),
+            Row(("speed limit from the torque, 12 deg, rev/min",
+                 Pair("620", limit(TWELVE), 1, misprint=True))),
+            Row(("speed limit from the torque, 12.35 deg, rev/min", number(limit(turn), 1))),
             Row(("release time, ms, (3.47)", Pair("1", 1e3 * release, 2, misprint=True))),
             Row(("time for 90 deg at 620 rev/min, ms", Pair("10", 1e3 * available, 2, misprint=True))),
-            Row(("speed limit by the release time, rev/min", number(lock.release_speed_limit / RPM, 1))),
+            Row(("speed limit from the release time, rev/min", number(lock.release_speed_limit / RPM, 1))),
         ),
         remarks=(
-            "The source's conclusion that the pawl is over in time holds; what limits the speed is the"
-            " torque, and below the 620 rev/min of the source.",
+            "The source's conclusion that the pawl moves over in time holds. What limits the speed is the"
+            " torque, at less than the source's 620 rev/min.",
         ),
     )  # fmt: skip
 
@@ -74,6 +76,11 @@ def power() -> Section:
         (
             Row(("at a shaft speed of 1 rad/s", Pair("1.63", unit, 3))),
             Row(("at 650 rev/min", Pair("111", fast, 1))),
-            Row(("at 650 rev/min, with the sum of the dobby", Pair("500", fast, 1, sense="<="))),
+            Row(
+                (
+                    "at 650 rev/min; the published limit is for the whole dobby",
+                    Pair("500", fast, 1, sense="<="),
+                )
+            ),
         ),
     )

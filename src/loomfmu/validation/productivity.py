@@ -1,4 +1,4 @@
-"""Korolev, figures of whole looms: Table 1.1, Table 1.4, Appendix 1."""
+"""Korolev, data of whole looms: Table 1.1, Table 1.4, Appendix 1."""
 
 import math
 
@@ -25,9 +25,9 @@ def coefficient() -> Section:
         rows.append(Row((row["machine"], row["width_m"], row["rate_m_min"], pair)))
     return Section(
         "Table 1.1: productivity coefficient, m/min over the square root of m",
-        ("loom", "width, m", "rate of weft insertion, m/min", ""),
+        ("loom", "width, m", "weft insertion rate, m/min", ""),
         tuple(rows),
-        intro="Computed: rate over the square root of the width. Ranges are shown by their ends.",
+        intro="Computed: rate over the square root of the width. Of a range, both ends are shown.",
     )
 
 
@@ -45,12 +45,12 @@ def floor_space() -> Section:
         )
         rows.append(Row((row["machine"], *pairs)))
     return Section(
-        "Table 1.4: rate of weft insertion and floor space",
+        "Table 1.4: weft insertion rate and floor space",
         ("loom", "area, m2", "rate, m/min", "rate over the area needed, m/min/m2"),
         tuple(rows),
         intro="Computed: width times depth; width in the reed times speed; printed rate over printed area.",
         split=False,
-        remarks=("The rate of the Somet is that of its woven width, 2 x 170 cm: see the next table.",),
+        remarks=("The printed rate of the Somet is for its woven width, 2 x 170 cm: see the next table.",),
     )
 
 

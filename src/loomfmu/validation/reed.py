@@ -34,7 +34,7 @@ def chapter() -> Chapter:
     return Chapter(
         "Reed beat-up (Yuan and others, Journal of Textile Research (2017), 10.13475/j.fzxb.20170102406)",
         "The source's tables and most of its equations are lost. The frame angle of 15 deg, the speed of 30"
-        " rev/min, the side of the reed's line and the place of the crank were identified from the"
+        " rev/min, the side of the reed's line and the position of the crank were identified from the"
         " published acceleration; nothing else was adjusted.",
         (synthesis(), motion(), over_frame_angle()),
     )
@@ -96,15 +96,15 @@ def motion() -> Section:
             Row(("the same with the reed's line above the arm, mm", _lengths(above))),
         ),
         remarks=(
-            "The design asks for 490, 330 and 160 mm; the source states that its machine misses each by"
-            " 0.06 %.",
+            "The design specifies 490, 330 and 160 mm; the source states that its machine deviates from"
+            " each by 0.06 %.",
         ),
         figures=(("reed.png", "Position, velocity and acceleration of the reed at 30 rev/min (Figure 6)"),),
     )  # fmt: skip
 
 
 def over_frame_angle() -> Section:
-    """What the source says of Figure 5: the smaller the angle, the larger the acceleration at the front."""
+    """Figure 5: the smaller the angle, the larger the acceleration at the front."""
     rows = []
     for angle in (10.0, 15.0, 20.0, 30.0):
         reed = identified(angle)
@@ -114,5 +114,5 @@ def over_frame_angle() -> Section:
         "Figure 5: acceleration at the front dead centre over the frame angle (computed)",
         ("frame angle, deg", "acceleration, mm/s2", "smallest transmission angle, deg"),
         tuple(rows),
-        remarks=("It grows as the frame angle falls, as the source says.",),
+        remarks=("Its magnitude grows as the frame angle decreases, as the source says.",),
     )

@@ -1,4 +1,4 @@
-"""The report: every chapter, what of it is reproduced, and the figures."""
+"""The report: every chapter, what is reproduced, and the figures."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -35,20 +35,20 @@ def _share(value: float) -> str:
 
 INTRO = f"""# Validation
 
-Every table and figure of the sources that has numbers to compute, beside what the components compute.
+The published numbers that can be computed, table by table, beside what the components compute.
 Written by `loomfmu validate`. Nothing was tuned to bring the two closer.
 
-- A published calculation counts as reproduced if the computed number lies within
-  {_share(CALCULATION)} of it, a measurement if within {_share(MEASUREMENT)}, and either if it is off by
-  no more than one unit of the last printed digit. For places on the shaft's circle, of which a percentage
-  means nothing, that unit alone counts.
-- Of what is not reproduced the last column says so, with both values; and all of it is listed below.
-- Published numbers are shown as they are printed, computed ones with more digits. The difference is that of
-  the computed number from the published one, in percent of the latter.
-- "Misprint" is what the section Errata shows by calculation.
-- Left out are tables with nothing to compute: prices, energy, ratings by experts and the like (Korolev,
-  Tables 1.2, 1.3, 2.1 to 2.5 and 3.2, and the rest of Appendix 1). Most figures of the sources are lost;
-  where one is named, its numbers stand in the text."""
+- A published calculation counts as reproduced if the computed number is within {_share(CALCULATION)} of
+  it, a measurement if within {_share(MEASUREMENT)}; either also counts if it differs by at most one unit of
+  the last printed digit. For angles that mark a position, where a percentage means nothing, only that unit
+  counts.
+- Whatever is not reproduced is marked in the last column, with both values, and listed below.
+- Published numbers are shown as printed, computed ones with more digits. The difference is computed minus
+  published, in percent of the published number.
+- "Misprint" means that the section Errata shows by calculation that the printed number is wrong.
+- Tables of prices, energy, expert ratings and the like are left out, because nothing in them can be computed
+  (Korolev, Tables 1.2, 1.3, 2.1 to 2.5 and 3.2, and the rest of Appendix 1). Most figures of the sources are
+  lost; where one is named, its numbers are given in the text."""
 
 
 def chapters() -> tuple[Chapter, ...]:
@@ -58,7 +58,7 @@ def chapters() -> tuple[Chapter, ...]:
         wrap.chapter(),
         Chapter(
             "Rotary dobby (Korolev, thesis, Moscow 2014)",
-            "Most of the source's curves stand in figures that are lost.",
+            "Most of the source's curves are in figures that are lost.",
             (
                 *rotor.sections(), *cam.sections(), *lock.sections(), *warp.sections(),
                 *productivity.sections(),
@@ -70,10 +70,10 @@ def chapters() -> tuple[Chapter, ...]:
 
 
 def errata() -> Chapter:
-    """All misprints."""
+    """The misprints of all sources."""
     return Chapter(
         "Errata",
-        "Every misprint and slip that was found in the sources, with the calculation that shows it. The"
+        "The misprints and slips found in the sources, each with the calculation that shows it. The"
         " components use the corrected forms.",
         (
             *errata_weft.sections(),
@@ -98,7 +98,7 @@ def text() -> str:
 def write(directory: Path, overwrite: bool = False) -> list[Path]:
     """Write the report into a directory, and its figures beside it if matplotlib is there.
 
-    `overwrite` replaces what is neither such a report nor a picture. Raises LoomfmuError.
+    `overwrite` also replaces files that are neither such a report nor a picture. Raises LoomfmuError.
     """
     path = directory / NAME
     check_target(path, REPORT, overwrite=overwrite)
@@ -107,7 +107,7 @@ def write(directory: Path, overwrite: bool = False) -> list[Path]:
 
 
 def _counts(pairs: list[Pair]) -> list[str]:
-    """How many numbers there are, are reproduced, are not, and are misprints of the source."""
+    """Counts of numbers, of those reproduced, and of misprints, measurements and others that are not."""
     missed = [pair for pair in pairs if not pair.reproduced]
     slips = [pair for pair in missed if pair.misprint]
     measured = [pair for pair in missed if pair.measured]
@@ -122,8 +122,8 @@ def _summary(of_sources: tuple[Chapter, ...]) -> str:
         "numbers",
         "reproduced",
         "misprints",
-        "measurements not met",
-        "not reproduced otherwise",
+        "measurements not reproduced",
+        "other numbers not reproduced",
     ]
     lines = [heads, ["---"] * len(heads)]
     everything: list[Pair] = []

@@ -64,22 +64,22 @@ def chapter() -> Chapter:
     """All of the detaching rollers."""
     return Chapter(
         "Detaching rollers of a comber (Cotton Textile Technology (2020) no. 4, article 5)",
-        "The motion of the rollers and the fibres in the nip stand in figures that are lost. First the"
-        " torques that follow from the published ones by the source's own equations; then those of the"
-        " built-in motion, an assumption that meets the peak and the valley of M13.",
+        "The motion of the rollers and the fibres in the nip are in figures that are lost. The first table"
+        " has the torques that follow from the published ones by the source's own equations, the next two"
+        " those of the built-in motion, an assumption that matches the peak and the valley of M13.",
         (from_table(), built_in(), table_2(), against_itself()),
     )
 
 
 def from_table() -> Section:
-    """What the equations make of the published extremes of M13."""
+    """Torques that follow from the published extremes of M13."""
     rows = []
     acceleration = {"peak": 1.18 / ROLLER_INERTIA, "valley": -0.53 / ROLLER_INERTIA}
     m12 = {k: top_roller_torque(e, ROLLER, TOP, TOP_INERTIA) for k, e in acceleration.items()}
     m11 = ROLLER * drafting_force(1.0, 0.33, 300.0, m12["valley"] / ROLLER)
     rows.append(Row(("M12, peak, (11)", Pair("0.31", m12["peak"], 4))))
     rows.append(Row(("M12, valley", Pair("-0.14", m12["valley"], 4)), "printed without its sign: see Errata"))
-    rows.append(Row(("M11, most fibres, M12 = -0.138 N m, (19)", Pair("0.68", m11, 4))))
+    rows.append(Row(("M11, largest number of fibres, M12 = -0.138 N m, (19)", Pair("0.68", m11, 4))))
     rows.append(Row(("M2, peak, (13)", Pair("1.36", 1.18 + m12["peak"], 4, misprint=True))))
     rows.append(Row(("M2, valley", Pair("-0.61", -0.53 + m12["valley"], 4, misprint=True))))
     return Section(
@@ -101,8 +101,8 @@ def built_in() -> Section:
         tuple(rows),
         split=False,
         remarks=(
-            "M13 is what the motion is made for, so it proves nothing; M12 follows from the inertias.",
-            "Published valleys with the minus signs that they have lost.",
+            "M13 proves nothing: the motion was made to match it. M12 follows from the inertias.",
+            "Published valleys are shown with the minus signs that they have lost.",
         ),
         figures=(
             ("roller.png", "Torques of the detaching rollers with the built-in motion (Figures 8 and 9)"),
@@ -132,14 +132,14 @@ def table_2() -> Section:
         split=False,
         labels=2,
         remarks=(
-            "All sums carry the slip of Table 1: they follow the printed M2, which is 9 % short. The"
-            " valleys depend on the assumed motion, too.",
+            "All sums repeat the slip of Table 1: they use the printed M2, which is 9 % too low. The valleys"
+            " also depend on the assumed motion.",
         ),
     )  # fmt: skip
 
 
 def against_itself() -> Section:
-    """What the rows of Table 2 make of each other."""
+    """Rows of Table 2, computed from one another."""
     printed = {(nips, name): (high, low) for nips, name, high, low in TABLE_2}
     first = float(printed["300", "M"][0])
     rows = [

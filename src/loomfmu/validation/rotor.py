@@ -54,12 +54,12 @@ def largest_lift_acceleration(law: str, reduction: float) -> float:
 
 
 def sections() -> tuple[Section, ...]:
-    """All that the source says of the rotor."""
+    """Everything on the rotor."""
     return (published_peaks(), peaks(), table_3_1(), prototype_dwells(), frame_acceleration())
 
 
 def published_peaks() -> Section:
-    """The three figures in the text."""
+    """The three numbers in the text."""
     harmonic = drive("harmonic ends", 0.7)
     taken_off = 1.0 - rotor("harmonic ends", 0.7, 0.0)[1]
     return Section(
@@ -67,14 +67,14 @@ def published_peaks() -> Section:
         ("quantity", ""),
         (
             Row(("harmonic ends: largest S''", Pair("1.6", harmonic.highest_acceleration, 4))),
-            Row(("harmonic ends: speed taken off at the slow point", Pair("0.7", taken_off, 4))),
+            Row(("harmonic ends: speed reduction at the slow point", Pair("0.7", taken_off, 4))),
             *(
-                Row((f"{law}: largest rotor speed over the shaft's",
+                Row((f"{law}: largest rotor speed relative to the shaft's",
                      Pair("1.4", drive(law, 0.7).highest_speed, 4)))
                 for law in ("sloped line", "sloped sine", "harmonic ends")
             ),
         ),
-        remarks=("The source does not say which law its ratio of 1.4 belongs to (section 3.6.1.2).",),
+        remarks=("The source does not say which law has its ratio of 1.4 (section 3.6.1.2).",),
     )  # fmt: skip
 
 
@@ -95,19 +95,19 @@ def peaks() -> Section:
     rows += [_peaks_row(law, z) for law in MODULATED for z in REDUCTIONS]
     rows += [_peaks_row(law, "") for law in MECHANISMS]
     return Section(
-        "Section 3.1: every rotor law (computed; the source's curves stand in lost figures)",
+        "Section 3.1: every rotor law (computed; the source's curves are in lost figures)",
         (
             "law", "zeta", "lowest S'", "highest S'", "highest S''", "highest S'''", "dwell, deg",
             "clear shed, deg",
         ),
         tuple(rows),
-        intro="Derivatives by the shaft angle. Dwell: a changing frame within 1.5 % of its stroke of its"
-        " end. Clear shed: within 8.325 %, which is a warp height of 15 mm or more of the largest 16.36 mm"
-        " of the spline cam.",
+        intro="Derivatives are with respect to the shaft angle. Dwell: shaft angle during which a changing"
+        " frame is within 1.5 % of its stroke of its end. Clear shed: the same with 8.325 %, which on the"
+        " spline cam is a warp height of at least 15 mm, the largest being 16.36 mm.",
         remarks=(
             "The dimensions of the slotted levers (pins at 100 and 100 mm, eccentricity 40 mm) and the"
-            " harmonics of the non-circular gears (-0.27, -0.13, -0.05, -0.025) are assumptions: none are"
-            " published.",
+            " harmonics of the non-circular gears (-0.27, -0.13, -0.05, -0.025) are assumptions; the source"
+            " gives none.",
         ),
         figures=(("rotor_laws.png", "Speed and acceleration of the rotor by all laws (Figures 3.2 and"
                                     " 3.3)"),),
@@ -133,8 +133,8 @@ def table_3_1() -> Section:
             "Measured on a loom STB-180 at 280 picks/min. No law gives the measured dwell: a law has"
             " neither the play nor the elasticity of the drive. Nothing was adjusted to bring the two"
             " together.",
-            "Rise and fall in the table are 360 deg less the dwell, and the dwells are centred on 195 deg,"
-            " but for the two misprints in Errata.",
+            "In the source's table rise and fall are 360 deg minus the dwell, and the dwells are centred on"
+            " 195 deg, apart from the two misprints in Errata.",
         ),
         figures=(("dwell.png", "Conditional dwell over the speed reduction (Figure 3.17)"),),
     )
@@ -153,13 +153,13 @@ def reduction_for(law: str, dwell: float) -> float | None:
 
 
 def prototype_dwells() -> Section:
-    """What the two dwells of section 2.5 ask of the laws."""
+    """Speed reduction that gives each law the two dwells of section 2.5."""
     rows = []
     for name, dwell in (("prototype, 135 to 225 deg", 90.0), ("KRU-20, 320 to 55 deg", 95.0)):
         cells = []
         for law in MODULATED:
             found = reduction_for(law, math.radians(dwell))
-            cells.append("none" if found is None else number(found, 3))
+            cells.append("not reached" if found is None else number(found, 3))
         rows.append(Row((name, number(dwell, 0), *cells)))
     return Section(
         "Section 2.5: speed reduction that each law needs for the dwells of the two dobbies (computed)",
@@ -182,7 +182,8 @@ def frame_acceleration() -> Section:
         tuple(rows),
         intro="Accelerations at 400 rev/min with a stroke of 98 mm; the published growth is measured.",
         remarks=(
-            "The source does not say which law its loom had: that the sloped sine agrees may be chance.",
+            "The source does not say which law its loom had, so the agreement of the sloped sine may be"
+            " chance.",
         ),
         figures=(("heald.png", "Motion of a heald frame and of its carrier (default drive, 250 rev/min)"),),
     )

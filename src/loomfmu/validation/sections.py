@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Context, Decimal
 
 # A computed number reproduces a published calculation if it lies within this share of it, a measurement
-# within the other, or either within one unit of the last printed digit; a place on the shaft's circle, of
+# within the other, or either within one unit of the last printed digit; a place on the shaft's circle, for
 # which a share means nothing, within that unit alone.
 CALCULATION = 0.02
 MEASUREMENT = 0.05
@@ -94,7 +94,7 @@ class Pair:
 
     @property
     def verdict(self) -> str:
-        """What to say where the number is not reproduced."""
+        """Both values, where the number is not reproduced."""
         if self.reproduced:
             return ""
         what = "measured" if self.measured else "published"
@@ -108,7 +108,7 @@ Cell = str | Pair
 
 @dataclass(frozen=True)
 class Row:
-    """Cells of a row, and what is to be said of it."""
+    """Cells of a row, and a remark on it."""
 
     cells: tuple[Cell, ...]
     remark: str = ""
@@ -116,7 +116,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Section:
-    """A table with its title, what stands before it, what is remarked after it, and its figures.
+    """A table with its title, an introduction, remarks after it, and its figures.
 
     With `split` every pair takes three columns, headed "published", "computed" and "difference, %";
     without it one cell holds all three. The first `labels` columns name a row. `figures` are names of
@@ -138,7 +138,7 @@ class Section:
         return [cell for row in self.rows for cell in row.cells if isinstance(cell, Pair)]
 
     def missed(self) -> Iterator[str]:
-        """A line for each row of which something is not reproduced: its label and both values."""
+        """A line for each row with a number that is not reproduced: its label and both values."""
         for row in self.rows:
             label = ", ".join(str(cell) for cell in row.cells[: self.labels])
             verdicts = self._verdicts(row)
@@ -192,13 +192,13 @@ class Section:
         return [*texts, self._remark(row)]
 
     def _remark(self, row: Row) -> str:
-        """What is said of a row: what of it is not reproduced, and its own remark."""
+        """Remark on a row: its numbers that are not reproduced, then its own remark."""
         missed = self._verdicts(row)
         parts = [f"not reproduced: {missed}" if missed else "", row.remark]
         return "; ".join(part for part in parts if part)
 
     def _verdicts(self, row: Row) -> str:
-        """What of a row is not reproduced, with both values."""
+        """Numbers of a row that are not reproduced, with both values."""
         return "; ".join(
             f"{head}: {cell.verdict}" if head else cell.verdict
             for head, cell in zip(self.heads, row.cells, strict=True)

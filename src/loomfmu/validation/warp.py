@@ -19,7 +19,7 @@ STEPS, TURNS = 360, 20
 
 @cache
 def woven(rpm: float, law: int) -> tuple[Floats, Floats]:
-    """Tension of the default thread over two picks, its start forgotten, and the height of its eye."""
+    """Tension of the default thread over two picks, after its start has faded, and the height of its eye."""
     line = HealdLine(rpm, STEPS, law=law)
     threads = WarpTension(inputs_at_step_end=True)
     line.feed(threads)
@@ -45,7 +45,7 @@ def tensions() -> Section:
     tension, height = woven(280.0, SLOPED_SINE)
     fast, fast_height = woven(300.0, UNIFORM)
     upper, lower = fast[fast_height > 0.0].max(), fast[fast_height < 0.0].max()
-    chosen = "what the default thread was chosen for, so it proves nothing"
+    chosen = "proves nothing: the default thread was chosen to give this"
     return Section(
         "Sections 3.5 and 5.1: measured tension of a warp thread",
         ("quantity", ""),
@@ -58,13 +58,13 @@ def tensions() -> Section:
                  Pair("76.6", 100.0 * float(upper), 1, measured=True))),
             Row(("highest, lower part, cN", Pair("26.2", 100.0 * float(lower), 1, measured=True))),
         ),
-        intro="No constant of the thread is published. The defaults are an assumption; two of them follow"
-              " from the measured means.",
+        intro="The source gives no constants of the thread. The defaults are assumptions; two of them"
+              " follow from the measured means.",
         remarks=(
-            "The maxima belong to another cloth and another drive. Their ratio of 2.9 asks for a shed far"
-            " less symmetric than the means do; nothing was adjusted to them.",
-            "The 40 to 42 blows of the heald eyes that were counted in a rise or fall are not in the model:"
-            " the eye moves with the frame.",
+            "The maxima are of another cloth and another drive. Their ratio of 2.9 requires a shed far less"
+            " symmetric than the means do. Nothing was adjusted to them.",
+            "The 40 to 42 blows of the heald eyes that were counted per rise or fall are not modelled: the"
+            " eye moves with the frame.",
         ),
     )  # fmt: skip
 
@@ -87,7 +87,7 @@ def springs() -> Section:
             Row(("inertia force of the frame, N, (5.5)", Pair("600", 15.0 * 40.0, 1))),
             Row(("stiffness of a spring, N/m, (5.6)", Pair("5960", stiffness, 2))),
             Row(("stiffness of a spring, N/mm", Pair("59.6", 1e-3 * stiffness, 3, misprint=True))),
-            Row(("way of the default carrier under both forces, mm", Pair("15", 1e3 * way, 3))),
+            Row(("displacement of the default carrier under both forces, mm", Pair("15", 1e3 * way, 3))),
             Row(("its natural frequency, Hz", number(frequency, 3))),
         ),
     )  # fmt: skip

@@ -60,7 +60,7 @@ def table_2() -> Section:
         "Table 2: measured restraint load, N",
         ("diameter, mm", "wrap, deg", *HEADS),
         tuple(rows),
-        intro="Computed: equation (8) with EI = 0.25 N m2, which knows no wrap angle.",
+        intro="Computed: equation (8) with EI = 0.25 N m2, in which the wrap angle does not appear.",
         split=False,
         labels=2,
         remarks=(_scatter(),),
@@ -68,20 +68,20 @@ def table_2() -> Section:
 
 
 def _scatter() -> str:
-    """How far the measured loads of the three wrap angles lie apart."""
+    """Spread of the loads measured at the three wrap angles."""
     groups: dict[tuple[str, str], list[float]] = {}
     for row in table("belt_wrap_experiment"):
         for clearance in CLEARANCES:
             groups.setdefault((row["D_mm"], clearance), []).append(float(row[f"c_{clearance}"]))
     most = max((max(loads) - min(loads)) / min(loads) for loads in groups.values())
     return (
-        f"Between the three wrap angles the measured loads differ by up to {number(100 * most, 1)} %: that"
-        " the wrap angle has no part in them is reproduced."
+        f"The loads measured at the three wrap angles differ by up to {number(100 * most, 1)} %. That the"
+        " wrap angle does not affect them is reproduced."
     )
 
 
 def table_3() -> Section:
-    """Loads that the source computes."""
+    """Computed loads."""
     rows = []
     for row in table("belt_wrap_theory"):
         diameter = row["D_mm"]

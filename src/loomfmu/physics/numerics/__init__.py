@@ -1,1 +1,1 @@
-"""Mathematics that knows no mechanism: splines, curves between samples."""
+"""Mathematics independent of any mechanism: splines, curves between samples."""

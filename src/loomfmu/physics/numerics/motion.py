@@ -2,30 +2,25 @@
 
 from math import fabs, sqrt
 
-# What a sample of a mechanism's motion is known to: sixteen roundings for the chain of its trigonometric
-# functions (on the published machines travel is off by 1 to 8 as a rule and by 27 at most, velocity by 2 and
-# by 10), and four for the time or angle that it belongs to; a rounding is 1.1e-16.
+# Relative rounding error of a sample of a mechanism's motion: sixteen roundings for the chain of its
+# trigonometric functions (on the published machines the travel is off by 1 to 8 as a rule and by at most 27,
+# the velocity by 2 and by at most 10), and four for its time or angle; a rounding is 1.1e-16.
 SAMPLE_ROUNDING = 1.8e-15
 PLACE_ROUNDING = 4.5e-16
 
 
 def bumps(
-    start: float,
-    start_rate: float,
-    start_second: float,
-    end: float,
-    end_rate: float,
-    end_second: float,
-) -> tuple[float, float]:
-    """Two bumps that the second derivative has between two samples, over the line between its ends.
+    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Two bumps of the second derivative between two samples, above the line between its ends.
 
-    Of the quintic that joins the samples. With u the share of the way it is
+    For the quintic that joins the samples. With u the share of the step the second derivative is
 
         (1 - u) A0 + u A1 + a u (1 - u) + b u (1 - u) (1 - 2 u)
         a = 6 [V1 - V0 - (A0 + A1)/2],  b = 60 [S1 - S0 - (V0 + V1)/2 + (A1 - A0)/12]
 
-    where a gives the right change of the rate and b that of the value. For a step h that is short against
-    the motion they are `-h^4 s''''/2` and `h^5 s'''''/12`.
+    where a makes the change of the rate right and b that of the value. For a step h that is short compared
+    with the motion they are `-h^4 s''''/2` and `h^5 s'''''/12`.
 
     Args:
         start, start_rate, start_second: value, rate and second rate by u at u = 0 (rates multiplied by
@@ -61,17 +56,12 @@ def bent(
 
 
 def joined(
-    start: float,
-    start_rate: float,
-    start_second: float,
-    end: float,
-    end_rate: float,
-    end_second: float,
-) -> tuple[float, float, float, float]:
-    """Second derivative of the quintic that joins two samples, as a cubic in the share u of the way.
+    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Second derivative of the quintic that joins two samples, as a cubic in the share u of the step.
 
-    Integrated twice it meets both samples, to rounding. By itself it carries, at a step h, 60 roundings of
-    the value over h^2: where the second derivative counts, see `above_noise`.
+    Integrated twice it meets both samples to rounding. Its own error at a step h is 60 roundings of the
+    value over h^2: where the second derivative itself is used, see `above_noise`.
 
     Arguments as for `bumps`; returns the coefficients of 1, u, u^2, u^3.
 
@@ -83,7 +73,7 @@ def joined(
 
 
 def sample_noise(size: float, rate: float, place: float) -> float:
-    """What the samples' own rounding may make of their difference.
+    """Largest rounding error in the difference of two samples.
 
     Args:
         size: sum of the sizes of both samples
@@ -97,7 +87,7 @@ def sample_noise(size: float, rate: float, place: float) -> float:
 
 
 def bump_noise(value_noise: float, rate_noise: float) -> tuple[float, float]:
-    """Noise of the two bumps, of the rate and of the value, from that of the samples; see `bumps`.
+    """Rounding errors of the two bumps, of the rate and of the value, from those of the samples; see `bumps`.
 
     >>> bump_noise(1e-15, 1e-17)
     (6e-17, 6.03e-14)
@@ -106,18 +96,18 @@ def bump_noise(value_noise: float, rate_noise: float) -> tuple[float, float]:
 
 
 def above_noise(bump: float, expected: float, noise: float) -> float:
-    """A bump, or what was expected of it where the two differ by no more than its noise.
+    """A bump, or its expected value if the two differ by no more than the rounding error (noise).
 
-    Without its bump of the value a second derivative s'' lacks up to `0.096 b / h^2 = 0.008 h^3 s'''''`;
-    with it, it has the noise of the samples, `0.096 * 60 e s / h^2`, e their rounding. The two are alike
-    where b is as large as its noise, at `h^5 = 720 e s / s'''''`: for e = 1e-15 and s''''' = 40 s at 3000
-    steps in a turn. With ten times as many steps there is 100,000 times as much noise as bump. So a bump
-    within its noise gives way to what is known otherwise: to `expected_bump`, or to 0. Likewise that of the
-    rate: it is `h^2 s'''' / 8` against a noise of `1.5 e s' / h`, alike at 300,000 steps in a turn.
+    Without the bump of the value a second derivative s'' is off by up to `0.096 b / h^2 = 0.008 h^3 s'''''`;
+    with it, by the noise of the samples, `0.096 * 60 e s / h^2`, e their rounding. Both are equal where b is
+    as large as its noise, at `h^5 = 720 e s / s'''''`: for e = 1e-15 and s''''' = 40 s at 3000 steps per
+    turn. With ten times as many steps the noise is 100,000 times the bump. So a bump within its noise is
+    replaced by `expected_bump`, or by 0. The same holds for the bump of the rate: `h^2 s'''' / 8` against a
+    noise of `1.5 e s' / h`, equal at 300,000 steps per turn.
 
     Args:
         bump: from `bumps`
-        expected: what is known of it otherwise, 0 if nothing is
+        expected: from `expected_bump`, or 0
         noise: from `bump_noise`
 
     >>> above_noise(3e-14, 1e-14, 6e-14), above_noise(3e-12, 1e-14, 6e-14)
@@ -127,18 +117,18 @@ def above_noise(bump: float, expected: float, noise: float) -> float:
 
 
 def expected_bump(before: float, step_before: float, by_rate: float, step: float) -> float:
-    """Bump of the value that follows from how the bumps of the rate change from one step to the next.
+    """Bump of the value, estimated from the change of the bumps of the rate from one step to the next.
 
-    Each stands for the fourth derivative in the middle of its step, `-2 a / h^4`; their difference over the
-    distance of the middles is the fifth. Its noise is that of the rates, so it stays good where the bump
-    from the values drowns; at coarse steps it is the less exact, by one order.
+    Each gives the fourth derivative in the middle of its step, `-2 a / h^4`; their difference over the
+    distance of the middles is the fifth. The noise is that of the rates, so the estimate is good where the
+    bump from the values is lost in noise; at coarse steps it is less accurate, by one order.
 
     Args:
         before, step_before: bump of the rate over the step before, and that step [s or rad]; 0 for none
         by_rate, step: the same of the present step
 
     Returns:
-        bump, 0 where the steps are too unlike to tell
+        bump; 0 if the steps differ too much
 
     >>> round(expected_bump(-60.0 * 0.5, 1.0, -60.0 * 1.5, 1.0), 12)  # u^5 from 0 to 1 and on to 2
     10.0
@@ -151,15 +141,9 @@ def expected_bump(before: float, step_before: float, by_rate: float, step: float
 
 
 def joined_value(
-    start: float,
-    start_rate: float,
-    a0: float,
-    a1: float,
-    a2: float,
-    a3: float,
-    share: float,
-) -> tuple[float, float]:
-    """Value and second derivative at a share of the way, from the coefficients of `joined`.
+    start: float, start_rate: float, a0: float, a1: float, a2: float, a3: float, share: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Value and second derivative at a share of the step, from the coefficients of `joined`.
 
     >>> joined_value(0.0, 0.0, 0.0, 0.0, 0.0, 20.0, 0.5)
     (0.03125, 2.5)

@@ -39,7 +39,7 @@ def cubic_piece(
 def slope_extremes(
     length: float, left: float, right: float, left_bend: float, right_bend: float
 ) -> tuple[float, float]:
-    """Lowest and highest slope of the piece: at its ends, or where the second derivative is 0.
+    """Lowest and highest slope of the piece, at its ends or where the second derivative is 0.
 
     Arguments as for `cubic_piece`.
 
@@ -63,9 +63,9 @@ def slope_extremes(
 def turning_points(
     length: float, left: float, right: float, left_bend: float, right_bend: float
 ) -> tuple[float, float]:
-    """The two distances at which the slope of the piece is 0, in order; a missing one lies at an end.
+    """The two distances at which the slope of the piece is 0, in order; a missing one is at an end.
 
-    Between them and the ends the piece rises or falls throughout. Arguments as for `cubic_piece`.
+    Between these and the ends the piece is monotone. Arguments as for `cubic_piece`.
 
     >>> turning_points(2.0, 0.0, 4.0, 6.0, -6.0)  # 3 x^2 - x^3
     (0.0, 2.0)
@@ -91,7 +91,7 @@ def turning_points(
 def stretch_above(
     level: float, length: float, left: float, right: float, left_bend: float, right_bend: float
 ) -> float:
-    """Length over which the piece lies at or above a level, found to rounding.
+    """Length over which the piece is at or above a level, found to rounding.
 
     Arguments as for `cubic_piece`.
 
@@ -116,7 +116,7 @@ def _part_above(
     level: float, low: float, high: float,
     length: float, left: float, right: float, left_bend: float, right_bend: float,
 ) -> float:  # fmt: skip
-    """As `stretch_above`, for a part from `low` to `high` over which the piece rises or falls throughout."""
+    """As `stretch_above`, for a part from `low` to `high` in which the piece is monotone."""
     at_low, _first, _second, _third = cubic_piece(low, length, left, right, left_bend, right_bend)
     at_high, _first, _second, _third = cubic_piece(high, length, left, right, left_bend, right_bend)
     if at_low >= level and at_high >= level:

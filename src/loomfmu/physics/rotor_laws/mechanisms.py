@@ -11,14 +11,14 @@ NONCIRCULAR_GEARS = 6
 
 
 def slotted_lever(x: float, radius: float, eccentricity: float) -> tuple[float, float, float, float]:
-    """Turn of a slotted lever about its own axis while its pin turns evenly about another.
+    """Angle of a slotted lever about its own axis while its pin turns uniformly about another, from (1.12).
 
     With q = radius, e = eccentricity and the slow point at x = 0:
 
         G = x - atan2(e sin x, q + e cos x)
 
-    the angle about the eccentric of a pin at the radius q about the shaft, both counted from the side
-    away from the eccentric. With `1 + cos x = 2 cos(x/2)^2` nothing cancels where the pin comes near to it.
+    the angle about the eccentric of a pin at the radius q about the shaft, both measured from the side away
+    from the eccentric. With `1 + cos x = 2 cos(x/2)^2` nothing cancels where the pin comes close to it.
 
     Args:
         x: angle of the pin about its axis, from the slow point [rad]
@@ -52,13 +52,13 @@ def slotted_levers(
 ) -> tuple[float, float, float, float]:
     """Rotor angle of the drive with eccentric slotted levers, from equation (1.12), and its derivatives.
 
-    The source gives the speed alone, with its slow point at alpha = pi. Its integral, with
-    F(x; q, e) = x + atan2(e sin x, q - e cos x), r, b, e the three arguments:
+    The source gives only the speed, with the slow point at alpha = pi. Its integral, with
+    F(x; q, e) = x + atan2(e sin x, q - e cos x) and r, b, e the three arguments:
 
         S(x) = F(F(x + pi; r, e); b, e) - pi
 
     which is `slotted_lever` applied twice. Erratum: (1.12) prints the arc tangent of a ratio, which stays
-    within a quarter turn to either side; the angle meant goes round.
+    within a quarter turn to either side; the angle goes all the way round.
 
     Args:
         x: shaft angle from the slow point [rad]
@@ -85,7 +85,7 @@ def slotted_levers(
 def slotted_levers_place(
     angle: float, lever_radius: float, driven_radius: float, eccentricity: float
 ) -> float:
-    """Shaft angle at which the rotor of `slotted_levers` has an angle [rad].
+    """Shaft angle [rad] at which the rotor of `slotted_levers` has a given angle [rad].
 
     By the law of sines each lever gives `x = G + asin((e/q) sin G)`.
 
@@ -103,12 +103,12 @@ def noncircular_gears(
 
         S = x + sum over k = 1..4 of (a_k / k) sin k x
 
-    with a_0 = 1, for the rotor to turn once in a turn of the shaft. Erratum: (1.14) prints a factor 1/k
-    in the speed: it is not the derivative of (1.13), nor (1.15) its derivative.
+    with a_0 = 1, so that the rotor makes one turn per turn of the shaft. Erratum: (1.14) prints a factor 1/k
+    in the speed; it is not the derivative of (1.13), and (1.15) is not its derivative.
 
     Args:
         x: shaft angle from the slow point [rad]
-        a1, a2, a3, a4: shares of the speed by which it varies 1 to 4 times in a turn [1]
+        a1, a2, a3, a4: relative amplitudes of the first four harmonics of the speed [1]
 
     Returns:
         S [rad], S' [1], S'' [1], S''' [1]
@@ -135,8 +135,8 @@ def noncircular_gears(
 def gear_speed_extremes(a1: float, a2: float, a3: float, a4: float) -> tuple[float, float]:
     """Lowest and highest speed of `noncircular_gears` over a turn.
 
-    In c = cos x the speed is of the fourth degree: its derivative, a cubic, is searched between the two
-    places where that turns, so that no minimum is missed.
+    In c = cos x the speed is a polynomial of fourth degree. The zeros of its derivative are searched between
+    the extremes of that cubic, so no extreme of the speed is missed.
 
     >>> [round(speed, 12) for speed in gear_speed_extremes(0.0, 0.5, 0.0, 0.0)]
     [0.5, 1.5]
@@ -168,7 +168,7 @@ def gear_speed_extremes(a1: float, a2: float, a3: float, a4: float) -> tuple[flo
 
 
 def _turns(q0: float, q1: float, q2: float) -> tuple[float, float]:
-    """Zeros of `q0 + q1 c + q2 c^2` between -1 and 1, in order; a missing one lies at an end."""
+    """Zeros of `q0 + q1 c + q2 c^2` between -1 and 1, in order; a missing one is at an end."""
     first = -1.0
     second = 1.0
     inside = q1 * q1 - 4.0 * q0 * q2
@@ -186,7 +186,7 @@ def _turns(q0: float, q1: float, q2: float) -> tuple[float, float]:
 
 
 def _zero_between(low: float, high: float, k0: float, k1: float, k2: float, k3: float) -> float:
-    """Where the cubic, which rises or falls throughout from `low` to `high`, is 0; `high` if nowhere."""
+    """Zero of the cubic, which is monotone from `low` to `high`; `high` if there is none."""
     at_low = k0 + low * (k1 + low * (k2 + low * k3))
     at_high = k0 + high * (k1 + high * (k2 + high * k3))
     if at_low * at_high >= 0.0:

@@ -1,9 +1,9 @@
 """Rotor laws of the dobby's speed modulator.
 
-The rotor turns once in a pick, slowed to `1 - z` of the mean speed at the slow point `x = 0` and sped
-up in between. Source: Korolev, thesis on rotary dobbies (Moscow), section 3.1, equations (3.1) to
-(3.27), in the corrected form: each law returns to `S(2 pi) = 2 pi`, with velocity and acceleration
-continuous, which the printed (3.7), (3.13), (3.22) and (3.24) do not give.
+The rotor makes one turn per pick. It slows down to `1 - z` of the mean speed at the slow point `x = 0` and
+speeds up in between. Source: Korolev, thesis on rotary dobbies (Moscow), section 3.1, equations (3.1) to
+(3.27), in the corrected form: each law closes, `S(2 pi) = 2 pi`, with continuous velocity and acceleration,
+which the printed (3.7), (3.13), (3.22) and (3.24) do not.
 
 All four laws are symmetric, `S(2 pi - x) = 2 pi - S(x)`, so each is written for half a turn.
 """
@@ -21,7 +21,7 @@ def harmonic_ends(x: float, reduction: float) -> tuple[float, float, float]:
 
     Args:
         x: shaft angle from the slow point [rad]
-        reduction: share z of the speed taken off at the slow point [1]
+        reduction: z, relative speed reduction at the slow point [1]
 
     Returns:
         S [rad], S' [1], S'' [1]
@@ -41,7 +41,7 @@ def harmonic_ends(x: float, reduction: float) -> tuple[float, float, float]:
 
 
 def sloped_line(x: float, reduction: float) -> tuple[float, float, float]:
-    """Law with harmonic ends and an acceleration that falls on a line, equations (3.10) to (3.15).
+    """Law with harmonic ends and an acceleration that falls linearly, equations (3.10) to (3.15).
 
     As `harmonic_ends`, with ends over pi/8. Erratum: (3.13) prints `7 pi/8` for `-8/(7 pi)`.
 
@@ -125,7 +125,7 @@ def rotor_law(law: int, x: float, reduction: float) -> tuple[float, float, float
     Args:
         law: 1 uniform, 2 harmonic ends, 3 sloped line, 4 sloped sine
         x: shaft angle from the slow point [rad]
-        reduction: share of the speed taken off at the slow point, 0 to 1 [1]
+        reduction: relative speed reduction at the slow point, 0 to 1 [1]
 
     Returns:
         S [rad], S' [1], S'' [1]
@@ -142,9 +142,9 @@ def rotor_law(law: int, x: float, reduction: float) -> tuple[float, float, float
 def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
     """Shaft angle during which a changing frame stays within a share of its stroke, section 2.5.
 
-    The frame has left its end by the share `(1 - cos(S/2)) / 2`; the dwell lies on both sides of the
-    slow point, so it is twice the x at which `S = 4 asin(sqrt(tolerance))`, found to rounding by
-    Newton steps kept inside a bracket.
+    The frame is `(1 - cos(S/2)) / 2` of its stroke away from its end; the dwell is symmetric about the slow
+    point, so it is twice the x at which `S = 4 asin(sqrt(tolerance))`, found to rounding by Newton steps
+    kept inside a bracket.
 
     Args:
         law, reduction: as for `rotor_law`
@@ -181,8 +181,8 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
 def highest_rates(law: int, reduction: float) -> tuple[float, float, float]:
     """Largest speed, acceleration and jerk of a law, from its pieces.
 
-    The speed is highest at `x = pi`, the acceleration where an end piece has its crest, and the jerk at
-    the slow point.
+    The speed is highest at `x = pi`, the acceleration at the crest of an end piece, and the jerk at the slow
+    point.
 
     Args:
         law, reduction: as for `rotor_law`

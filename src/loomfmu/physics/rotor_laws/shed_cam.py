@@ -15,12 +15,12 @@ def not_a_knot(
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Second derivatives at six points of the cubic spline with "cubic ends", Appendix 2.
 
-    The first two pieces are one cubic, and so are the last two. With h the distances of the points and d
-    the slopes of the chords, for i = 2..5
+    The first two pieces are one cubic, and so are the last two. With h the distances between the points
+    and d the slopes of the chords, for i = 2..5
 
         h(i-1) M(i-1) + 2 (h(i-1) + h(i)) M(i) + h(i) M(i+1) = 6 (d(i) - d(i-1))
 
-    where `M1 = M2 + (h1/h2)(M2 - M3)` and `M6 = M5 + (h5/h4)(M5 - M4)`; solved by elimination.
+    with `M1 = M2 + (h1/h2)(M2 - M3)` and `M6 = M5 + (h5/h4)(M5 - M4)`; solved by elimination.
 
     Args:
         x1 to x6: places, increasing
@@ -61,10 +61,10 @@ def not_a_knot(
 
 
 def cam_phase(x: float, top: float) -> tuple[float, float]:
-    """Rotor angle that stands for the cam's phase, and its derivative: a line to either side of the top.
+    """Rotor angle as the phase of the cam, and its derivative: linear to either side of the top.
 
-    A frame under the cam has no crank; its rotor angle says only which pick it is in: 0 where the spline
-    starts, 2 pi at the highest point, 4 pi at the end of two picks.
+    A frame driven by the cam has no crank; its rotor angle only shows the pick: 0 at the start of the
+    spline, 2 pi at the highest point, 4 pi at the end of two picks.
 
     Args:
         x: shaft angle from the start of the spline, 0 to 4 pi [rad]

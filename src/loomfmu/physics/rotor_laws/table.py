@@ -1,7 +1,7 @@
 """Rotor law given by a table: a periodic cubic spline through evenly spaced points of one turn.
 
-The spline is that of the deviation `S - x`, which is the same at both ends of a turn. With the knots
-evenly spaced its second derivatives have a closed form, so nothing need be stored.
+The spline interpolates the deviation `S - x`, which is equal at both ends of a turn. As the knots are evenly
+spaced, its second derivatives have a closed form and need not be stored.
 """
 
 from math import pi, sqrt
@@ -10,13 +10,13 @@ TABLE = 8
 
 
 def bend_weight(distance: int, points: int) -> float:
-    """Share that a second difference has in the second derivative of the periodic spline, knots apart.
+    """Weight of a second difference in the second derivative of the periodic spline, some knots away.
 
     With h = 2 pi / n between the knots the second derivatives M solve
 
         M(k-1) + 4 M(k) + M(k+1) = (6 / h^2) D(k),    D(k) = y(k-1) - 2 y(k) + y(k+1)
 
-    and as the system is the same at every knot, so is its solution, with z = sqrt(3) - 2:
+    The system is the same at every knot, and so is its solution, with z = sqrt(3) - 2:
 
         M(k) = (6 / h^2) sum over m = 0..n-1 of D(k+m) (z^m + z^(n-m)) / (2 sqrt(3) (1 - z^n))
 
@@ -25,7 +25,7 @@ def bend_weight(distance: int, points: int) -> float:
         points: n, knots in a turn, at least 3
 
     Returns:
-        factor of D(k+m), with 6 / h^2 [1/rad2]
+        factor of D(k+m), 6 / h^2 included [1/rad2]
 
     >>> even = sum(bend_weight(m, 36) for m in range(36))  # all D alike: M = D / h^2
     >>> round(even * (2 * pi / 36) ** 2, 12)
