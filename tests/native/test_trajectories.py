@@ -115,6 +115,17 @@ def test_random_parameters_inputs_and_steps(native, name):
     check()
 
 
+@pytest.mark.parametrize("law", range(1, 10))
+def test_every_law_of_the_dobby(native, law):
+    given = {"law": law, "speed_reduction": 0.6, "speed": 31.0}
+    component, instance = COMPONENTS["DobbyDrive"](**given), native("DobbyDrive").start(**given)
+    assert component.initialize(0.0) == 0
+    for step in range(300):
+        time, size = 0.002 * step, 0.002
+        assert component.step(time, size) == 0 and instance.step(time, size) == OK
+        compare(component, instance)
+
+
 @every_fmu
 def test_long_runs(native, name):
     # states that live from step to step: a difference would grow

@@ -20,6 +20,7 @@ LAW_COLOURS = {
     "sloped sine": GREEN,
     "slotted levers": PURPLE,
     "non-circular gears": SKY,
+    "plateau": RED,
 }
 
 STYLE: Any = {

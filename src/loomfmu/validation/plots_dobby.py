@@ -7,7 +7,6 @@ import numpy as np
 
 from ..components.heald_damper import HealdDamper
 from ..machines import table
-from ..physics.rotor_laws.rotor import dwell_angle
 from . import cam, rotor
 from .chain import HealdLine
 from .plot_style import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw
@@ -15,7 +14,7 @@ from .plot_style import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ALL_LAWS = (*rotor.LAWS, *rotor.MECHANISMS)
+ALL_LAWS = (*rotor.LAWS, *rotor.MECHANISMS, *rotor.INFERRED)
 
 
 def rotor_laws(figure: "Figure") -> None:
@@ -24,7 +23,7 @@ def rotor_laws(figure: "Figure") -> None:
     angles = np.linspace(0.0, 2.0 * math.pi, 721)
     for law in ALL_LAWS:
         motion = np.array([rotor.rotor(law, 0.7, angle) for angle in angles])
-        style = "--" if law in rotor.MECHANISMS else "-"
+        style = "-" if law in rotor.LAWS else "--"
         for panel, column in zip(panels, (1, 2), strict=True):
             panel.plot(np.degrees(angles), motion[:, column], style, color=LAW_COLOURS[law], label=law)
     panels[0].axhline(1.4, color=BLACK, lw=1.0, ls=":")
@@ -37,16 +36,17 @@ def rotor_laws(figure: "Figure") -> None:
     )  # fmt: skip
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=10)
-    panels[0].set_title("Rotor laws at zeta = 0.7 (dashed: assumed dimensions)", fontsize=12)
+    panels[0].set_title("Rotor laws at zeta = 0.7 (dashed: assumed or inferred dimensions)", fontsize=12)
 
 
 def dwell(figure: "Figure") -> None:
     """Dwell over the speed reduction."""
     axes = figure.subplots()
     reductions = np.linspace(0.0, 0.8, 81)
-    for law, number_of in rotor.LAWS.items():
-        values = [math.degrees(dwell_angle(number_of, float(z), rotor.TOLERANCE)) for z in reductions]
-        axes.plot(reductions, values, color=LAW_COLOURS[law], label=law)
+    for law in (*rotor.LAWS, *rotor.INFERRED):
+        values = [math.degrees(rotor.new_drive(law, float(z)).dwell_angle) for z in reductions]
+        style = "-" if law in rotor.LAWS else "--"
+        axes.plot(reductions, values, style, color=LAW_COLOURS[law], label=law)
     rows = table("heald_dwell_experiment")
     axes.plot(
         [float(row["speed_reduction"]) for row in rows], [float(row["upper_dwell_deg"]) for row in rows], "o",
@@ -57,7 +57,9 @@ def dwell(figure: "Figure") -> None:
         ylim=(40.0, 150.0),
     )  # fmt: skip
     axes.legend(loc="upper left")
-    axes.set_title("Dwell within 1.5 % of the stroke: measured and by the laws alone", fontsize=12)
+    axes.set_title(
+        "Dwell within 1.5 % of the stroke: measured and by the laws (dashed: inferred)", fontsize=12
+    )
 
 
 def heald(figure: "Figure") -> None:

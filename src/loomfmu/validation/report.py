@@ -9,6 +9,7 @@ from . import (
     belt,
     cam,
     design,
+    dwells,
     errata_dobby,
     errata_laws,
     errata_others,
@@ -60,7 +61,7 @@ def chapters() -> tuple[Chapter, ...]:
             "Rotary dobby (Korolev, thesis, Moscow 2014)",
             "Most of the source's curves are in figures that are lost.",
             (
-                *rotor.sections(), *cam.sections(), *lock.sections(), *warp.sections(),
+                *rotor.sections(), dwells.section(), *cam.sections(), *lock.sections(), *warp.sections(),
                 *productivity.sections(),
             ),
         ),

@@ -1,4 +1,4 @@
-"""DobbyDrive with levers, gears, a spline cam or a table, and the HealdFrame that follows its lift."""
+"""DobbyDrive with levers, gears, a spline cam, a table or a plateau, and a HealdFrame behind it."""
 
 from itertools import pairwise
 from math import asin, cos, degrees, pi, radians, sin, sqrt
@@ -15,11 +15,12 @@ from scipy.optimize import brentq
 from loomfmu.components import DobbyDrive, HealdFrame
 from loomfmu.machines import table
 from loomfmu.physics.rotor_laws.mechanisms import noncircular_gears, slotted_levers
+from loomfmu.physics.rotor_laws.plateau import plateau_peaks
 from loomfmu.physics.rotor_laws.rotor import rotor_law
 
 LAWS = (
     "uniform", "harmonic_ends", "sloped_line", "sloped_sine", "slotted_levers", "noncircular_gears",
-    "spline_cam", "table",
+    "spline_cam", "table", "plateau",
 )  # fmt: skip
 NUMBER = {name: number for number, name in enumerate(LAWS, start=1)}
 ROTORS = [name for name in LAWS if name != "spline_cam"]
@@ -218,7 +219,40 @@ def test_peaks_of_a_table(points):
     assert drive.highest_jerk == pytest.approx(max(abs(exact.c[0] * 6.0)), abs=1e-11)
 
 
+def test_peaks_of_the_plateau():
+    for reduction in (0.0, 0.5, 1.0):
+        drive = dobby("plateau", speed_reduction=reduction, plateau_angle=1.6, ramp_angle=0.7)
+        expected = plateau_peaks(reduction, 0.8, 0.7)
+        assert (drive.highest_speed, drive.highest_acceleration, drive.highest_jerk) == expected
+
+
 # Dwells
+
+
+@pytest.mark.parametrize(
+    ("reduction", "dwell"), [("0.3", "80.40"), ("0.4", "93.80"), ("0.5", "111.62"), ("0.7", "141.36")]
+)
+def test_dwell_of_the_plateau_in_fifty_digits(reduction, dwell):
+    z, p, r = MP.mpf(float(reduction)), MP.pi / 4, MP.mpf(radians(40.9))
+    gain = z * MP.pi / (MP.pi - p - r / 2)
+    reach = 4 * MP.asin(MP.sqrt(MP.mpf(0.015)))
+
+    def angle(x):
+        u = (x - p) / r
+        bent = r * (u * u / 2 - (1 - MP.cos(2 * MP.pi * u)) / (4 * MP.pi**2)) if u > 0 else 0
+        return (1 - z) * x + gain * bent
+
+    exact = 2 * MP.findroot(lambda x: angle(x) - reach, (0.5, 1.2), solver="anderson", tol=1e-40)
+    drive = dobby("plateau", speed_reduction=float(reduction))
+    assert drive.dwell_angle == pytest.approx(float(exact), abs=2e-15 / (1.0 - float(reduction)))  # rounding
+    assert degrees(drive.dwell_angle) == pytest.approx(float(dwell), abs=0.005)  # two decimals
+
+
+def test_on_the_plateau_the_dwell_is_that_of_a_slow_uniform_rotor():
+    uniform = dobby("uniform").dwell_angle
+    for reduction in (0.1, 0.3, 0.4):
+        slow = dobby("plateau", speed_reduction=reduction, plateau_angle=2.0).dwell_angle
+        assert slow == pytest.approx(uniform / (1.0 - reduction), rel=1e-14)  # rounding
 
 
 def crossing(spline, target):
@@ -429,6 +463,11 @@ def test_a_table_that_turns_back_is_refused():
     assert "its lowest speed is -" in refused("table", **rising)
     # a table meant for fewer points than are told
     assert "36 points" in refused("table", **{f"table_{k + 1}": 2.0 * pi * k / 12 for k in range(12)})
+
+
+def test_a_plateau_and_a_ramp_beyond_half_a_turn_are_refused():
+    assert "ramp_angle" in refused("plateau", plateau_angle=4.0, ramp_angle=1.2)
+    dobby("plateau", plateau_angle=pi, ramp_angle=0.5 * pi)  # the highest speed at one point only
 
 
 def test_cams_that_make_no_law_are_refused():

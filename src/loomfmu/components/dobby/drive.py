@@ -13,6 +13,7 @@ from ...physics.rotor_laws.mechanisms import (
     slotted_levers,
     slotted_levers_place,
 )
+from ...physics.rotor_laws.plateau import PLATEAU, plateau_peaks
 from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
@@ -136,6 +137,10 @@ class DobbyDrive(RotorLaws):
                 _lowest, self.highest_speed = gear_speed_extremes(*self.gear_harmonic)
             self.highest_acceleration = self.largest(False)
             self.highest_jerk = self.largest(True)
+        elif self.law == PLATEAU:
+            self.highest_speed, self.highest_acceleration, self.highest_jerk = plateau_peaks(
+                self.speed_reduction, 0.5 * self.plateau_angle, self.ramp_angle
+            )
         else:
             self.highest_speed, self.highest_acceleration, self.highest_jerk = highest_rates(
                 self.law, self.speed_reduction

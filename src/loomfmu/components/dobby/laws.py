@@ -12,6 +12,7 @@ from ...physics.rotor_laws.mechanisms import (
     noncircular_gears,
     slotted_levers,
 )
+from ...physics.rotor_laws.plateau import PLATEAU, plateau_law
 from ...physics.rotor_laws.rotor import dwell_angle, rotor_law
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, not_a_knot
 from ...physics.rotor_laws.table import TABLE, bend_weight
@@ -46,6 +47,9 @@ class RotorLaws(LawParameters):
             " and rises by {cam_span}; both ends must be equal, and it must rise"
         ),
         TOO_FAR,
+        Problem(
+            "half of plateau_angle = {plateau_angle} and ramp_angle = {ramp_angle} exceed 180 deg; reduce one"
+        ),
     )
 
     def check(self) -> int:
@@ -65,6 +69,8 @@ class RotorLaws(LawParameters):
                 return 3
         elif self.law == SPLINE_CAM:
             return self.check_cam()
+        elif self.law == PLATEAU and 0.5 * self.plateau_angle + self.ramp_angle > pi + 1e-12:
+            return 7
         return 0
 
     def check_cam(self) -> int:
@@ -185,6 +191,8 @@ class RotorLaws(LawParameters):
             self.load(index if index > 0 else 0)
             ahead, first, second, _third = self.piece(x - self.segment_start)
             return x + ahead, 1.0 + first, second
+        if self.law == PLATEAU:
+            return plateau_law(x, self.speed_reduction, 0.5 * self.plateau_angle, self.ramp_angle)
         return rotor_law(self.law, x, self.speed_reduction)
 
     def cam(self, x: float) -> tuple[float, float, float]:
@@ -204,7 +212,7 @@ class RotorLaws(LawParameters):
         """
         if self.law == SPLINE_CAM:
             return self.angle_above(self.cam_height[0] + (1.0 - tolerance) * self.cam_span)
-        if self.law == SLOTTED_LEVERS or self.law == NONCIRCULAR_GEARS or self.law == TABLE:
+        if self.law >= SLOTTED_LEVERS:
             reach = 4.0 * asin(sqrt(tolerance))
             late = self.place_of(reach)
             return late - self.place_of(-reach)

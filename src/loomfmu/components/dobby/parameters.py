@@ -16,11 +16,12 @@ class LawParameters(ShaftDriven):
         "1", 4, "Rotor law",
         choices=(
             "uniform", "harmonic_ends", "sloped_line", "sloped_sine", "slotted_levers", "noncircular_gears",
-            "spline_cam", "table",
+            "spline_cam", "table", "plateau",
         ),
     )  # fmt: skip
     speed_reduction: float = parameter(
-        "1", 0.5, "Share by which the rotor slows down at the slow point, zeta (harmonic_ends, sloped_...)",
+        "1", 0.5,
+        "Share by which the rotor slows down at the slow point, zeta (harmonic_ends, sloped_..., plateau)",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     slow_point: float = parameter(
@@ -79,6 +80,14 @@ class LawParameters(ShaftDriven):
             minimum=-2.0 * pi, maximum=4.0 * pi,
         )
         for point in range(36)
+    )  # fmt: skip
+    plateau_angle: float = parameter(
+        "rad", 0.5 * pi, "Shaft angle of lowest speed, half to either side of the slow point (plateau)",
+        display="deg", minimum=0.0, maximum=2.0 * pi,
+    )  # fmt: skip
+    ramp_angle: float = parameter(
+        "rad", 40.9 * pi / 180.0, "Shaft angle from lowest to highest speed (plateau)", display="deg",
+        minimum=pi / 180.0, maximum=pi,
     )  # fmt: skip
     cam_bend: tuple[float, ...] = array(
         state("m", f"Second derivative of the cam's spline at control point {number}")
