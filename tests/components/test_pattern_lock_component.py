@@ -117,16 +117,27 @@ def test_shaft_is_carried_over_a_step():
 
 
 @pytest.mark.parametrize(("share", "rpm"), [(TWELVE, 562.4), (0.15, 554.3)])
-def test_speed_limits(share, rpm):
-    lock = PatternLock(rest_share=share)
+def test_speed_limits_of_the_source(share, rpm):
+    # a constant torque is that of a spring without stiffness; the release then has only its preload
+    lock = PatternLock(rest_share=share, spring_stiffness=1e-3)
     lock.initialize(0.0)
-    assert lock.speed_limit / RPM == pytest.approx(rpm, abs=0.05)
-    assert lock.speed_limit == lock.torque_speed_limit
+    assert lock.torque_speed_limit / RPM == pytest.approx(rpm, abs=0.05)
+    # and the source's release is that of a spring without preload
+    lock = PatternLock(rest_share=share, spring_force=1e-6)
+    lock.initialize(0.0)
     assert lock.release_speed_limit / RPM == pytest.approx(1232, abs=0.5)
     assert lock.release_time == pytest.approx(12.17e-3, abs=5e-6)
 
 
-@pytest.mark.parametrize(("rpm", "in_time"), [(400, True), (554, True), (555, False), (620, False)])
+def test_speed_limits_with_one_torque():
+    lock = PatternLock()
+    lock.initialize(0.0)
+    assert lock.speed_limit == lock.torque_speed_limit
+    assert lock.torque_speed_limit / RPM == pytest.approx(824.66, abs=5e-3)
+    assert lock.release_time == pytest.approx(8.764e-3, abs=5e-7)
+
+
+@pytest.mark.parametrize(("rpm", "in_time"), [(400, True), (824, True), (825, False), (900, False)])
 def test_the_spring_is_strong_enough_up_to_the_limit(rpm, in_time):
     lock, rows = turned(speed=rpm * RPM, steps=7200, turns=1)
     assert lock.in_time is in_time
@@ -137,19 +148,21 @@ def test_the_spring_is_strong_enough_up_to_the_limit(rpm, in_time):
 
 
 def test_620_turns():
-    # the source's limit: time enough, but a spring that is a fifth too weak
-    lock, rows = turned(speed=620 * RPM, steps=7200, turns=1, rest_share=TWELVE)
-    assert lock.available_time == pytest.approx(24.2e-3, abs=5e-5)
+    # the source's limit: time enough, but a spring of its constant torque is a fifth too weak
+    lock, rows = turned(
+        speed=620 * RPM, steps=7200, turns=1, rest_share=TWELVE, spring_stiffness=1e-3, available_angle=pi
+    )
+    assert lock.available_time == pytest.approx(2.0 * 24.2e-3, abs=1e-4)
     assert lock.release_time < lock.available_time
     assert not lock.in_time
     assert min(row[3] for row in rows) == pytest.approx(-0.215, abs=5e-3)
 
 
 def test_a_dwell_too_short():
-    lock = PatternLock(available_angle=radians(20), speed=300 * RPM)
+    lock = PatternLock(available_angle=radians(20), speed=400 * RPM)
     lock.initialize(0.0)
     assert lock.speed_limit == lock.release_speed_limit < lock.torque_speed_limit
-    assert lock.release_speed_limit / RPM == pytest.approx(20 / 6 / 12.1727e-3, abs=0.05)  # deg in ms
+    assert lock.release_speed_limit / RPM == pytest.approx(20 / 6 / 8.76383e-3, abs=0.05)  # deg in ms
     assert not lock.in_time
 
 

@@ -16,13 +16,15 @@ from loomfmu.physics.pattern_lock import (
     pawl_inertia,
     pawl_turn,
     release_time,
+    spring_torque,
     torque_speed_limit,
 )
 
 RPM = pi / 30.0
 SPAN = radians(75)
 MASS, LENGTH, WIDTH = 0.170, 0.16, 0.03
-STIFFNESS, ARM, TORQUE = 2500.0, 0.05, 20.0 * 0.05
+STIFFNESS, ARM, FORCE, TURN = 2500.0, 0.05, 20.0, 0.215625
+TORQUE = FORCE * ARM
 INERTIA = pawl_inertia(MASS, LENGTH, WIDTH)
 
 # The engagement
@@ -105,9 +107,38 @@ def test_whole_turn():
 @pytest.mark.parametrize(("turn", "rpm"), [(radians(12), 562), (pawl_turn(LENGTH, WIDTH, 0.15), 554)])
 def test_speed_limit_by_the_spring(turn, rpm):
     bend = largest_bend(SPAN, turn)
-    limit = torque_speed_limit(INERTIA, bend, TORQUE)
+    limit = torque_speed_limit(INERTIA, SPAN, turn, FORCE, 0.0, ARM)  # the source's constant torque
     assert limit / RPM == pytest.approx(rpm, abs=0.5)  # whole turns
     assert INERTIA * bend * limit**2 == pytest.approx(TORQUE, rel=1e-14)  # rounding
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1.0, 2500.0, 1e6])
+@pytest.mark.parametrize("force", [1e-6, 20.0, 1e4])
+def test_speed_limit_is_where_the_contact_force_just_vanishes(force, stiffness):
+    # M - I phi'' w^2 in fifty digits: nowhere below 0 at the limit, and 0 where it is least
+    limit = MP.mpf(torque_speed_limit(INERTIA, SPAN, TURN, force, stiffness, ARM))
+
+    def left(share):
+        wave = 2 * MP.pi * share
+        angle = MP.mpf(TURN) * (share - MP.sin(wave) / (2 * MP.pi))
+        torque = MP.mpf(ARM) * (force + MP.mpf(stiffness) * MP.mpf(ARM) * (MP.mpf(TURN) - angle))
+        needed = MP.mpf(INERTIA) * 2 * MP.pi * MP.mpf(TURN) / MP.mpf(SPAN) ** 2 * MP.sin(wave) * limit**2
+        return (torque - needed) / torque
+
+    shares = [MP.mpf(k) / 400 for k in range(1, 400)]
+    least = min(shares, key=left)
+    step = MP.mpf(1) / 400
+    place = MP.findroot(lambda share: MP.diff(left, share), (least - step / 7, least + step / 7), tol=1e-30)
+    assert abs(place - least) < 2 * step
+    assert abs(left(place)) < 1e-13  # rounding of a dozen operations
+    assert all(left(share) > -1e-13 for share in shares)
+
+
+def test_one_torque_for_both_limits():
+    assert spring_torque(TURN, TURN, FORCE, STIFFNESS, ARM) == TORQUE  # (3.32), at the end of the turn
+    # (3.37), with the angle counted from the end and without preload
+    found = spring_torque(0.0, TURN, 0.0, STIFFNESS, ARM)
+    assert found == pytest.approx(STIFFNESS * ARM**2 * TURN, rel=1e-15)
 
 
 def test_printed_speed_limit_does_not_follow():
@@ -124,7 +155,7 @@ def test_printed_speed_limit_does_not_follow():
 
 
 def test_release_time():
-    time = release_time(INERTIA, STIFFNESS, ARM)
+    time = release_time(INERTIA, TURN, 0.0, STIFFNESS, ARM)
     assert time == pytest.approx(12.17e-3, abs=5e-6)
     # erratum: the source takes I = 3750e-6, and divides by k^2 for k
     k_squared = STIFFNESS * ARM**2 / 3750e-6
@@ -138,16 +169,33 @@ def test_time_that_is_left():
     assert left == pytest.approx(24.2e-3, abs=5e-5)
     assert left != pytest.approx(0.01, rel=0.5)  # erratum: printed as 0.01 s
     # the pawl is over in half of it, though not in a twentieth
-    assert release_time(INERTIA, STIFFNESS, ARM) / left == pytest.approx(0.503, abs=5e-4)
-    assert radians(90) / release_time(INERTIA, STIFFNESS, ARM) / RPM == pytest.approx(1232, abs=0.5)
+    free = release_time(INERTIA, TURN, 0.0, STIFFNESS, ARM)
+    assert free / left == pytest.approx(0.503, abs=5e-4)
+    assert radians(90) / free / RPM == pytest.approx(1232, abs=0.5)
 
 
 def test_release_is_a_quarter_of_a_swing():
     # (3.38) with the corrected k: from phi0 at rest to 0, whatever phi0
     k = sqrt(STIFFNESS * ARM**2 / INERTIA)
-    time = MP.mpf(release_time(INERTIA, STIFFNESS, ARM))
+    time = MP.mpf(release_time(INERTIA, TURN, 0.0, STIFFNESS, ARM))
     assert abs(MP.cos(k * time)) < 1e-15  # the quarter, rounded
     assert MP.cos(k * time / 2) > 0.7
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("force", [0.0, 1e-3, 20.0, 1e5])
+def test_release_with_preload_by_energy(force):
+    # I phi'^2 / 2 is the work of the spring, so the time is the integral of d phi / phi'; with phi = phi0 v^2
+    # the root at the start is gone
+    turn, arm, stiffness = MP.mpf(TURN), MP.mpf(ARM), MP.mpf(STIFFNESS)
+
+    def pace(v):
+        work = arm * (force + stiffness * arm * turn) - stiffness * arm**2 * turn * v * v / 2  # over phi
+        return 2 * MP.sqrt(MP.mpf(INERTIA) * turn / (2 * work))
+
+    exact = MP.quad(pace, [0, 0.5, 1])
+    found = release_time(INERTIA, TURN, force, STIFFNESS, ARM)
+    assert found == pytest.approx(float(exact), rel=2e-15)  # rounding
 
 
 @given(st.floats(0.0, 7.0), st.floats(0.0, 1e4))

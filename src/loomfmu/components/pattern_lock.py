@@ -8,10 +8,10 @@ from ..physics.pattern_lock import (
     available_time,
     engagement,
     friction_power,
-    largest_bend,
     pawl_inertia,
     pawl_turn,
     release_time,
+    spring_torque,
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
@@ -52,8 +52,8 @@ class PatternLock(ShaftDriven):
         minimum=1e-3, maximum=6.283185307179586,
     )  # fmt: skip
     spring_force: float = parameter(
-        "N", 20.0, "Force of the spring, and of the pawl on its disc", minimum=1e-6, maximum=1e6,
-        nominal=10.0,
+        "N", 20.0, "Preload of the spring at the end of the turn; force of the pawl on its disc",
+        minimum=1e-6, maximum=1e6, nominal=10.0,
     )  # fmt: skip
     spring_stiffness: float = parameter(
         "N/m", 2500.0, "Stiffness of the spring", display="N/mm", minimum=1e-3, maximum=1e9, nominal=1e3
@@ -82,7 +82,10 @@ class PatternLock(ShaftDriven):
     turn_velocity: float = output("rad/s", "Velocity of the pawl", nominal=10.0, rate="turn_acceleration")
     turn_acceleration: float = output("rad/s2", "Acceleration of the pawl", nominal=1000.0)
     inertia_torque: float = output("N.m", "Torque the spring needs to overcome the pawl's inertia")
-    torque_margin: float = output("1", "Share of the spring's torque left over by the pawl's inertia")
+    torque_margin: float = output(
+        "1",
+        "Share of the spring's torque left over by the pawl's inertia; above 1 where it slows the pawl down",
+    )
     release_time: float = output(
         "s", "Time the spring takes to throw the pawl over", display="ms", variability="discrete",
         nominal=0.01, depends=(),
@@ -121,12 +124,13 @@ class PatternLock(ShaftDriven):
         """Find what depends on the parameters alone and place the pawl."""
         self.inertia = pawl_inertia(self.pawl_mass, self.pawl_length, self.pawl_width)
         self.whole_turn = pawl_turn(self.pawl_length, self.pawl_width, self.rest_share)
-        self.release_time = release_time(self.inertia, self.spring_stiffness, self.lever_arm)
-        self.torque_speed_limit = torque_speed_limit(
-            self.inertia,
-            largest_bend(self.engagement_angle, self.whole_turn),
-            self.spring_force * self.lever_arm,
+        self.release_time = release_time(
+            self.inertia, self.whole_turn, self.spring_force, self.spring_stiffness, self.lever_arm
         )
+        self.torque_speed_limit = torque_speed_limit(
+            self.inertia, self.engagement_angle, self.whole_turn, self.spring_force, self.spring_stiffness,
+            self.lever_arm,
+        )  # fmt: skip
         self.release_speed_limit = self.available_angle / self.release_time
         self.speed_limit = self.torque_speed_limit
         if self.release_speed_limit < self.speed_limit:
@@ -149,7 +153,9 @@ class PatternLock(ShaftDriven):
         self.turn_velocity = first * speed
         self.turn_acceleration = second * speed * speed + first * acceleration
         self.inertia_torque = self.inertia * self.turn_acceleration
-        self.torque_margin = 1.0 - fabs(self.inertia_torque) / (self.spring_force * self.lever_arm)
+        self.torque_margin = 1.0 - self.inertia_torque / spring_torque(
+            angle, self.whole_turn, self.spring_force, self.spring_stiffness, self.lever_arm
+        )
         self.available_time = available_time(self.available_angle, fabs(speed))
         self.in_time = self.release_time <= self.available_time and fabs(speed) <= self.torque_speed_limit
         # at the limit itself the pawl is in time: the instant that is found lies just beyond

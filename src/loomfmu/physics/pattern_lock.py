@@ -4,7 +4,7 @@ Source: Korolev, thesis on rotary dobbies (Moscow), section 3.6.1, equations (3.
 corrected form.
 """
 
-from math import cos, pi, sin, sqrt
+from math import asin, cos, pi, sin, sqrt
 
 # Time available to the pawl when the shaft stands still; longer than any that matters.
 UNLIMITED_TIME = 1e6
@@ -88,43 +88,85 @@ def largest_bend(span: float, turn: float) -> float:
     return 2.0 * pi * turn / (span * span)
 
 
-def torque_speed_limit(inertia: float, bend: float, torque: float) -> float:
-    """Shaft speed at which the pawl's inertia uses up the torque of its spring.
+def spring_torque(turned: float, turn: float, force: float, stiffness: float, arm: float) -> float:
+    """Torque of the spring on the pawl, `M = R [P + C R (phi0 - phi)]`: (3.32) and (3.37) as one.
 
-    `sqrt(M / (I bend))`, from the condition before (3.35).
+    The source takes it as constant for the torque, `P R`, and without preload for the time, `C R^2 phi`.
+
+    Args:
+        turned: angle phi that the pawl has turned [rad]
+        turn: whole turn phi0 [rad]
+        force: of the spring at the end of the turn, its preload P [N]
+        stiffness: of the spring C [N/m]
+        arm: lever arm R [m]
+
+    Returns:
+        torque [N m]
+
+    >>> spring_torque(0.25, 0.25, 20.0, 2500.0, 0.05), spring_torque(0.0, 0.25, 20.0, 2500.0, 0.05)
+    (1.0, 2.5625)
+    """
+    return arm * (force + stiffness * arm * (turn - turned))
+
+
+def torque_speed_limit(
+    inertia: float, span: float, turn: float, force: float, stiffness: float, arm: float
+) -> float:
+    """Shaft speed at which the pawl's inertia needs all of the spring's torque, somewhere in the engagement.
+
+    The least of `sqrt(M / (I phi''))`, from the condition before (3.35), with M from `spring_torque` and
+    phi'' from `engagement`; found to rounding by bisection of its derivative, between the crest of phi'' and
+    the middle. With a stiffness of 0 it is at the crest: the source's `sqrt(P R / (I bend))`.
 
     Args:
         inertia: I [kg m2]
-        bend: largest second derivative of the turn by the shaft angle [1/rad]
-        torque: of the spring M [N m]
+        span: shaft angle T of the engagement [rad]
+        turn, force, stiffness, arm: as for `spring_torque`
 
     Returns:
         speed [rad/s]
 
     >>> from math import radians
-    >>> round(torque_speed_limit(375.4e-6, largest_bend(radians(75), radians(12)), 1.0) * 30 / pi)
+    >>> round(torque_speed_limit(375.4e-6, radians(75), radians(12), 20.0, 0.0, 0.05) * 30 / pi)
     562
     """
-    return sqrt(torque / (inertia * bend))
+    low = 0.25
+    high = 0.5
+    for _ in range(60):
+        share = 0.5 * (low + high)
+        wave = 2.0 * pi * share
+        torque = spring_torque(turn * (share - sin(wave) / (2.0 * pi)), turn, force, stiffness, arm)
+        falling = stiffness * arm * arm * turn * (1.0 - cos(wave))
+        if 2.0 * pi * torque * cos(wave) + falling * sin(wave) > 0.0:
+            low = share
+        else:
+            high = share
+    angle, _first, bend = engagement(low * span, span, turn)
+    return sqrt(spring_torque(angle, turn, force, stiffness, arm) / (inertia * bend))
 
 
-def release_time(inertia: float, stiffness: float, arm: float) -> float:
-    """Time in which the spring moves the pawl over: a quarter of a period, equations (3.38) and (3.47).
+def release_time(inertia: float, turn: float, force: float, stiffness: float, arm: float) -> float:
+    """Time in which the spring moves the pawl over from rest, equations (3.38) to (3.47) with a preload.
 
-    `T_f = pi / (2 k)`, `k^2 = C R^2 / I`, independent of the angle.
+    `I phi'' = M` with M from `spring_torque`: `T_f = acos(d / (phi0 + d)) / k`, `d = P / (C R)`,
+    `k^2 = C R^2 / I`. Without preload it is a quarter of a period, `pi / (2 k)`, independent of the turn.
 
     Args:
         inertia: I [kg m2]
-        stiffness: of the spring C [N/m]
-        arm: lever arm R [m]
+        turn, force, stiffness, arm: as for `spring_torque`; the stiffness is positive
 
     Returns:
         time [s]; erratum: the source divides by k^2 and finds 0.001 s
 
-    >>> round(1e3 * release_time(375.4e-6, 2500.0, 0.05), 2)
+    >>> round(1e3 * release_time(375.4e-6, 0.2156, 0.0, 2500.0, 0.05), 2)  # as in the source
     12.17
+    >>> round(1e3 * release_time(375.4e-6, 0.2156, 20.0, 2500.0, 0.05), 2)
+    8.76
     """
-    return 0.5 * pi * sqrt(inertia / (stiffness * arm * arm))
+    full = stiffness * arm * turn  # force that the turn adds to the preload
+    # acos(P / (P + full)), without cancellation for a large preload
+    angle = 2.0 * asin(sqrt(0.5 * full / (force + full)))
+    return angle * sqrt(inertia / (stiffness * arm * arm))
 
 
 def available_time(angle: float, speed: float) -> float:

@@ -8,7 +8,7 @@ from ..components.dobby.drive import DobbyDrive
 from ..components.warp_tension import WarpTension
 from ..design.cam import TURN, published_path
 from ..machines import table
-from ..physics.pattern_lock import available_time, largest_bend, pawl_turn, release_time, torque_speed_limit
+from ..physics.pattern_lock import available_time, largest_bend, pawl_turn, release_time
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..physics.warp import constant_rate_force
 from . import cam, lock
@@ -73,7 +73,7 @@ def _of_torque() -> tuple[Row, ...]:
     turn, own = math.radians(12.0), pawl_turn(lock.LENGTH, lock.WIDTH, 0.15)
     bend = largest_bend(lock.SPAN, turn)
     torque = lock.INERTIA * bend * (620.0 * lock.RPM) ** 2
-    mistaken = torque_speed_limit(375e-6, 0.32, 1.0)
+    mistaken = math.sqrt(1.0 / (375e-6 * 0.32))
     limit = lock.limit(turn)
     start = 1.0 - 2.0 * math.pi / lock.SPAN
     return (
@@ -98,8 +98,9 @@ def _of_release() -> tuple[Row, ...]:
     own = pawl_turn(lock.LENGTH, lock.WIDTH, 0.15)
     k_squared = lock.STIFFNESS * lock.ARM**2 / lock.INERTIA
     printed = lock.STIFFNESS * lock.ARM**2 / 3750e-6
-    release = 1e3 * release_time(lock.INERTIA, lock.STIFFNESS, lock.ARM)
-    slow = 1e3 * release_time(3750e-6, lock.STIFFNESS, lock.ARM)
+    release, slow = (
+        1e3 * release_time(inertia, own, 0.0, lock.STIFFNESS, lock.ARM) for inertia in (lock.INERTIA, 3750e-6)
+    )
     left = 1e3 * available_time(math.radians(90.0), 620.0 * lock.RPM)
     return (
         Row(("before (3.38)", "k^2 = C R^2 / phi", "C R^2 / I",

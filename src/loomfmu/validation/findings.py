@@ -14,6 +14,7 @@ from ..physics.belt import elastica_deflection
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, rotor_law
 from . import belt, cam, rotor
 from .chain import RPM, carrier
+from .lock import limit as lock_limit
 from .sections import Chapter, Row, Section, number
 
 SPEEDS = (200.0, 225.0, 250.0, 275.0, 300.0, 400.0, 500.0, 600.0)
@@ -215,6 +216,7 @@ def limits() -> Section:
         Row(("belt, clearance 0.3 mm", number(belt.rpm(belt.safe(LOOM, "G6300 left", 0.8)), 1))),
         Row(("belt, worn to 0.8 mm", number(belt.rpm(belt.safe(LOOM, "G6300 left", 1.0)), 1))),
         Row(("pattern lock, torque of its spring", number(lock.torque_speed_limit / RPM, 1))),
+        Row(("pattern lock, constant torque as in the source", number(lock_limit(lock.whole_turn), 1))),
         Row(("pattern lock, release time", number(lock.release_speed_limit / RPM, 1))),
         Row(("frames at 40 m/s2, default drive, stroke 98 mm", number(math.sqrt(40.0 / crest) / RPM, 1))),
         Row(("frames at 40 m/s2, spline cam", number(math.sqrt(40.0 / spline) / RPM, 1))),

@@ -28,14 +28,14 @@ def sections() -> tuple[Section, ...]:
 
 
 def limit(turn: float) -> float:
-    """Shaft speed at which the pawl needs all of the spring's torque [rev/min]."""
-    return torque_speed_limit(INERTIA, largest_bend(SPAN, turn), FORCE * ARM) / RPM
+    """Shaft speed at which the pawl needs all of a constant torque of the spring [rev/min]."""
+    return torque_speed_limit(INERTIA, SPAN, turn, FORCE, 0.0, ARM) / RPM
 
 
 def speed() -> Section:
     """Section 3.6.1.1."""
     turn = pawl_turn(LENGTH, WIDTH, 0.15)
-    release = release_time(INERTIA, STIFFNESS, ARM)
+    release = release_time(INERTIA, turn, 0.0, STIFFNESS, ARM)
     available = available_time(math.radians(90.0), 620.0 * RPM)
     lock = PatternLock()
     lock.initialize(0.0)
@@ -54,13 +54,22 @@ def speed() -> Section:
             Row(("speed limit from the torque, 12 deg, rev/min",
                  Pair("620", limit(TWELVE), 1, misprint=True))),
             Row(("speed limit from the torque, 12.35 deg, rev/min", number(limit(turn), 1))),
+            Row(("the same with stiffness and preload", number(lock.torque_speed_limit / RPM, 1))),
             Row(("release time, ms, (3.47)", Pair("1", 1e3 * release, 2, misprint=True))),
             Row(("time for 90 deg at 620 rev/min, ms", Pair("10", 1e3 * available, 2, misprint=True))),
-            Row(("speed limit from the release time, rev/min", number(lock.release_speed_limit / RPM, 1))),
+            Row(("release time with preload, ms", number(1e3 * lock.release_time, 2))),
+            Row(("speed limit from the release time, rev/min",
+                 number(math.radians(90.0) / release / RPM, 1))),
+            Row(("the same with preload, rev/min", number(lock.release_speed_limit / RPM, 1))),
         ),
         remarks=(
             "The source's conclusion that the pawl moves over in time holds. What limits the speed is the"
-            " torque, at less than the source's 620 rev/min.",
+            " torque: with the source's constant torque to less than its 620 rev/min.",
+            "The source takes the torque of the spring as constant, 1.0 N m, for the one limit and as"
+            " proportional to the angle, without preload, for the other. The component has one torque for"
+            " both, `R [P + C R (phi0 - phi)]`. That the 20 N are its preload, the force at the end of the"
+            " turn, is an assumption: were they the force at the start, the spring would be slack before the"
+            " end.",
         ),
     )  # fmt: skip
 

@@ -866,32 +866,33 @@ def test_the_reed_is_clear_of_the_rapier(tmp_path):
 
 
 def test_the_pattern_locks_are_in_time_up_to_their_speed_limit(tmp_path):
-    """By torque the limit is 554 rev/min: at 600 the claim fails, at 540 it holds."""
+    """By torque the limit is 825 rev/min: at 850 the claim fails, at 800 it holds."""
     claim = 'kind = "locks_in_time"'
-    fails = judged(tmp_path, claim)
+    fails = judged(tmp_path, claim, **{"shaft.speed": "850 rev/min"})
     assert not fails.holds
-    assert str(fails).startswith("FAILS: the pattern locks are in time: shaft.velocity, 600 rev/min at 0 s")
-    assert str(fails).endswith(", bound 554.2603 rev/min")
-    assert judged(tmp_path, claim, **{"shaft.speed": "540 rev/min"}).holds
-    assert not judged(tmp_path, claim, **{"shaft.speed": "-600 rev/min"}).holds
+    assert str(fails).startswith("FAILS: the pattern locks are in time: shaft.velocity, 850 rev/min at 0 s")
+    assert str(fails).endswith(", bound 824.6588 rev/min")
+    assert judged(tmp_path, claim, **{"shaft.speed": "800 rev/min"}).holds
+    assert not judged(tmp_path, claim, **{"shaft.speed": "-850 rev/min"}).holds
 
 
 def test_the_locks_are_judged_by_the_shafts_speed_between_the_samples(tmp_path):
-    """A ripple of 5 % on 540 rev/min reaches 567, between the samples where these are as far apart as it."""
-    ripple = {"shaft.speed": "540 rev/min", "shaft.ripple_amplitude": 0.05, "shaft.ripple_order": 8}
+    """A ripple of 5 % on 800 rev/min reaches 840, between the samples where these are as far apart as it."""
+    ripple = {"shaft.speed": "800 rev/min", "shaft.ripple_amplitude": 0.05, "shaft.ripple_order": 8}
     coarse = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=8, **ripple)
     assert not coarse.holds
     assert coarse.note == "the samples are too far apart to be sure: take more steps"
     fine = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=360, **ripple)
     assert not fine.holds
     # the cubics through 45 samples of an oscillation: (2 pi / 45)^4 / 384 = 1e-6 of its amplitude
-    assert math.isclose(fine.worst, 18 * math.pi * 1.05, rel_tol=1e-7)
+    assert math.isclose(fine.worst, 80 / 3 * math.pi * 1.05, rel_tol=1e-7)
     assert fine.note == ""
 
 
 def test_a_lock_that_turns_by_itself_is_judged_at_the_samples_and_says_so(tmp_path):
     alone = 'kind = "locks_in_time"'
-    found = judged(tmp_path, alone, **{"lock.follow_shaft": False, "lock.speed": "540 rev/min"})
+    own = {"lock.follow_shaft": False, "lock.speed": "540 rev/min", "shaft.speed": "850 rev/min"}
+    found = judged(tmp_path, alone, **own)
     assert found.holds
     assert found.note == (
         "lock.in_time is known only at the samples: the lock does not follow shaft.velocity"
