@@ -158,6 +158,42 @@ def figure_10() -> Section:
     )
 
 
+def with_idle_travel(machine: str, idle_travel: float, factor: float) -> tuple[float, float, float]:
+    """Safe speed [rev/min] and critical load [N], and where the belt leaves its guide [rad] (case I).
+
+    For another idle travel [m] than the published one.
+    """
+    from scipy.optimize import brentq, minimize_scalar
+
+    mass = float(parameters("BeltMonitor", head="G6300 left")["head_mass"])
+    guide = idle_travel + float(parameters("BeltMonitor", machine=machine)["head_length"])
+
+    def limit(angle: float) -> float:
+        position, _first, second = travel(machine, angle)
+        return physics.speed_limit(position - guide, second, factor, loom.BENDING_STIFFNESS, mass, 0.0)
+
+    start = float(brentq(lambda angle: travel(machine, angle)[0] - guide, 0.0, math.pi, xtol=1e-14))
+    end = loom.window(machine)[1]
+    found = minimize_scalar(limit, bounds=(start, end), method="bounded", options={"xatol": 1e-12})
+    load = physics.critical_force(travel(machine, float(found.x))[0] - guide, factor, loom.BENDING_STIFFNESS)
+    return float(found.fun) / loom.RPM, load, start
+
+
+def _other_idle_travel() -> str:
+    """A possible explanation of the speeds and loads of the WL450-4000."""
+    found = [with_idle_travel("WL450-4000", 0.386, float(mu)) for mu in FACTORS]
+    speeds, loads = (", ".join(number(each[k], 1) for each in found) for k in (0, 1))
+    longest = 1e3 * (free_length("WL450-4000", math.radians(104.0)) - 0.030)
+    leaves = number(math.degrees(found[0][2]), 1)
+    return (
+        "WL450-4000, possible explanation (an inference): with an idle travel of 386 mm for the printed 356"
+        f" mm the speeds would be {speeds} rev/min and the loads of the next table {loads} N, close to the"
+        f" published ones. But Table 1 needs 356 mm: with 386 mm the belt would leave its guide at {leaves}"
+        f" deg (published 89) and its longest free length would be {number(longest, 0)} mm (371). A larger"
+        " wheel would do as well; the cause cannot be settled."
+    )
+
+
 def table_5() -> tuple[Section, Section]:
     """Safe speeds and loads over the length factor."""
     speeds, loads = [], []
@@ -179,7 +215,8 @@ def table_5() -> tuple[Section, Section]:
     )
     return (
         Section(
-            title, ("machine", *heads, "at shaft angle, deg"), tuple(speeds), remarks=(remark,), split=False,
+            title, ("machine", *heads, "at shaft angle, deg"), tuple(speeds), split=False,
+            remarks=(remark, _other_idle_travel()),
             figures=figures,
         ),
         Section(

@@ -112,9 +112,10 @@ def wl450_4000() -> Row:
         (
             "Tables 5 and 6, WL450-4000",
             ", ".join(row[f"n_mu_{mu}"] for mu in belt.FACTORS) + " rev/min",
-            ", ".join(number(speed, 1) for speed in found) + " rev/min",
+            ", ".join(number(speed, 1) for speed in found) + " rev/min by Table 1",
             "its window and its free length follow from Table 1, its speeds do not: at the printed 475"
-            f" rev/min the lowest margin is {number(margin, 3)}",
+            f" rev/min the lowest margin is {number(margin, 3)}; which of the tables is wrong cannot be"
+            " settled",
         )
     )
 
