@@ -100,7 +100,16 @@ def test_productivity():
     rate = loom.weft_insertion_rate(3.6, 600 * RPM)
     assert rate == pytest.approx(36.0, rel=1e-12)  # 3.6 m ten times a second
     assert loom.productivity_coefficient(3.6, 600 * RPM) == pytest.approx(36.0 / math.sqrt(3.6), rel=1e-12)
-    assert loom.spare_part_cost(100.0, 2.0, 9.0, 0.5) == pytest.approx(106.0, rel=1e-12)
+
+
+def test_spare_part_cost():
+    assert loom.spare_part_cost(9.0, 100.0, 2.0, 0.5) == pytest.approx(106.0, rel=1e-12)
+    assert loom.spare_part_cost(0.0) == 59.8  # the constants of an air-jet loom, US dollars
+    # 3.3 exp(1.22 ln 10) by hand: 10^1.22 = 16.595869
+    assert loom.spare_part_cost(10.0) == pytest.approx(59.8 + 3.3 * 16.595869, abs=1e-5)
+    for years in (-1.0, math.nan):
+        with pytest.raises(LoomfmuError, match=r"years = .* must be 0 or more"):
+            loom.spare_part_cost(years)
 
 
 # ---- quantities

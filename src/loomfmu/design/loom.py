@@ -234,6 +234,19 @@ def productivity_coefficient(width: Quantity, speed: Quantity) -> float:
     return weft_insertion_rate(width, speed) / math.sqrt(read("width", width))
 
 
-def spare_part_cost(fixed: float, share: float, parts: float, exponent: float) -> float:
-    """Cost of spare parts, `C = x + p n^y`, in the currency of `fixed` and `share`."""
-    return float(fixed + share * parts**exponent)
+def spare_part_cost(years: float, fixed: float = 59.8, yearly: float = 3.3, exponent: float = 1.22) -> float:
+    """Cost of spare parts for 100,000 picks, `C = x + p n^y`, equation (1.1).
+
+    Args:
+        years: of service of the loom, n, not negative
+        fixed, yearly, exponent: x, p and y; by default those of air-jet looms, for US dollars
+
+    Raises:
+        LoomfmuError: a number of years below 0
+
+    >>> round(spare_part_cost(10.0), 2)
+    114.57
+    """
+    if not years >= 0.0:
+        raise LoomfmuError(f"years = {years:.7g} must be 0 or more")
+    return float(fixed + yearly * years**exponent)

@@ -11,7 +11,7 @@ from ..machines import table
 from ..physics.pattern_lock import available_time, largest_bend, pawl_turn, release_time
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..physics.warp import constant_rate_force
-from . import cam, lock
+from . import cam, cyclograms, lock
 from .sections import Row, Section, number
 
 HEADINGS = ("where", "printed", "corrected", "what is wrong with the printed form")
@@ -20,6 +20,9 @@ HEADINGS = ("where", "printed", "corrected", "what is wrong with the printed for
 def sections() -> tuple[Section, ...]:
     """All of them."""
     return (
+        Section(
+            "Dobby: factors and cyclograms (Korolev, sections 2.2 and 2.5)", HEADINGS, cyclograms.misprints()
+        ),
         Section("Dobby: spline cam (Korolev, section 4, Appendices 2 and 3)", HEADINGS, of_cam()),
         Section("Dobby: pattern lock (Korolev, section 3.6.1)", HEADINGS, of_lock()),
         Section("Dobby: warp and heald carrier (Korolev, sections 3.5 and 5.3)", HEADINGS, of_warp()),

@@ -9,6 +9,7 @@ from . import (
     belt,
     cam,
     design,
+    cyclograms,
     dwells,
     errata_dobby,
     errata_laws,
@@ -48,8 +49,8 @@ Written by `loomfmu validate`. Nothing was tuned to bring the two closer.
   published, in percent of the published number.
 - "Misprint" means that the section Errata shows by calculation that the printed number is wrong.
 - Tables of prices, energy, expert ratings and the like are left out, because nothing in them can be computed
-  (Korolev, Tables 1.2, 1.3, 2.1 to 2.5 and 3.2, and the rest of Appendix 1). Most figures of the sources are
-  lost; where one is named, its numbers are given in the text."""
+  (Korolev, Tables 1.2, 1.3, 2.1, 2.3 to 2.5 and 3.2, and the rest of Appendix 1). Most figures of the
+  sources are lost; where one is named, its numbers are given in the text."""
 
 
 def chapters() -> tuple[Chapter, ...]:
@@ -61,8 +62,8 @@ def chapters() -> tuple[Chapter, ...]:
             "Rotary dobby (Korolev, thesis, Moscow 2014)",
             "Most of the source's curves are in figures that are lost.",
             (
-                *rotor.sections(), dwells.section(), *cam.sections(), *lock.sections(), *warp.sections(),
-                *productivity.sections(),
+                *cyclograms.sections(), *rotor.sections(), dwells.section(), *cam.sections(),
+                *lock.sections(), *warp.sections(), *productivity.sections(),
             ),
         ),
         reed.chapter(),
