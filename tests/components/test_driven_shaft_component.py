@@ -380,7 +380,10 @@ def test_a_torque_of_the_step_before_wants_a_shaft_that_outweighs_the_masses():
 def test_its_torques_are_wired_to_outputs_of_the_same_unit():
     unit = {name: {v.name: v for v in variables_of(each)} for name, each in COMPONENTS.items()}
     owner = {"weft": "WeftInsertion", "reed": "ReedBeatUp"}
-    for sink, source in wires("shaft", {"shaft": DrivenShaft}).items():
+    found = wires({"shaft": DrivenShaft})
+    assert found
+    for sink, source in found.items():
+        sink = sink.removeprefix("shaft.")
         instance, variable = source.split(".")
         given, taken = unit[owner[instance]][variable], unit["DrivenShaft"][sink]
         assert (given.causality, taken.causality) == ("output", "input")

@@ -43,7 +43,7 @@ AT_ONE_RADIAN: dict[str, dict[str, Any]] = {
     "WarpTension": {"pretension": 0.01, "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2},
     "HealdDamper": {"carrier_mass": 10.0, "spring_stiffness": 1.0, "stop_stiffness": 1e6},
     "PatternLock": {"spring_force": 2.0, "spring_stiffness": 2e3},
-    "DetachingRoller": {"nip_load": 0.5},
+    "DetachingRoller": {"nip_load": 0.5, "largest_drafting_force": 0.1},
 }
 
 
@@ -53,7 +53,7 @@ def scale(unit: str, speed: float) -> float:
     Time is told in turns of the shaft, length as it is, and mass in a unit that shrinks with the root of
     the speed, so that neither masses nor forces leave their limits.
     """
-    kilograms, _metres, seconds, _radians = units.unit(unit).dimension
+    kilograms, _metres, seconds, *_others = units.unit(unit).dimension
     return float(fabs(speed) ** (-seconds - 0.5 * kilograms))
 
 
