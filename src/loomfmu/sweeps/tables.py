@@ -108,9 +108,9 @@ def _axis(axis: Axis) -> Any:
 
 def _value(signal: str, port: Port) -> Any:
     about = _about(port.unit, port.display, port.description)
-    if port.choices:
+    if port.meanings:
         about["meanings"] = " ".join(port.meanings)
-        about["first_meaning"] = str(port.first_choice)
+        about["first_meaning"] = str(port.numbers[0])
     return pa.field(signal, TYPES[port.kind], metadata=about)
 
 

@@ -113,7 +113,7 @@ def _variable(scene: Scene, key: str, instance: str, variable: str) -> Varied:
         probe.set(variable, given)
         value = probe.values[name]
         port = fmu.ports[name]
-        return port.choices[int(value) - port.first_choice] if port.choices else value
+        return port.choice(value) if port.choices else value
 
     if name not in fmu.ports or fmu.ports[name].causality not in ("parameter", "input"):
         read(0)  # says what is wrong

@@ -106,8 +106,8 @@ def _definition(base: Any) -> Definition | None:
 def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str, Definition | None]) -> Port:
     kind, declared = KINDS[variable.type], variable.declaredType
     items = declared.items if variable.type == "Enumeration" and declared else []
-    values = [int(item.value) for item in items]
-    in_a_row = values == list(range(values[0], values[0] + len(values))) if values else False
+    choices = sorted((int(item.value), item.name) for item in items)
+    values = [value for value, _name in choices]
 
     def said(attribute: str) -> Any:
         """An attribute of the variable, or else of its declared type."""
@@ -128,8 +128,8 @@ def _port(variable: Any, name: str, rates: dict[str, str], definitions: dict[str
         maximum=max(values) if values else _limit(kind, said("max")),
         start=None if variable.start is None else _start(variable.type, variable.start),
         description=variable.description or "",
-        choices=tuple(item.name for item in items) if in_a_row else (),
-        first_choice=values[0] if values else 1,
+        choices=tuple(choice for _value, choice in choices),
+        numbers=tuple(values),
         rate=rates.get(variable.name),
         own=variable.name,
         base_type=variable.type,

@@ -98,7 +98,7 @@ class Port:
     start: Value | None
     description: str
     choices: tuple[str, ...] = ()
-    first_choice: int = 1
+    numbers: tuple[int, ...] = ()  # of the choices, ascending
     rate: str | None = None
     own: str = ""
     base_type: str = ""
@@ -138,8 +138,13 @@ class Port:
 
     @property
     def meanings(self) -> tuple[str, ...]:
-        """The choices without blanks, as lists in files have them, which blanks separate."""
-        return tuple(_joined(choice) for choice in self.choices)
+        """The choices without blanks, as lists in files have them; none if their numbers leave gaps."""
+        in_a_row = len(self.numbers) == 0 or self.numbers[-1] - self.numbers[0] + 1 == len(self.numbers)
+        return tuple(_joined(choice) for choice in self.choices) if in_a_row else ()
+
+    def choice(self, number: float) -> str:
+        """The choice that a number stands for."""
+        return self.choices[self.numbers.index(int(number))]
 
     def _choice(self, given: str, where: str) -> int:
         """The number of a choice, whichever of blank, - and _ its name is written with."""
@@ -147,7 +152,7 @@ class Port:
         found = given if given in self.choices else alike[0] if len(alike) == 1 else None
         if found is None:
             raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(given, self.choices)}")
-        return self.choices.index(found) + self.first_choice
+        return self.numbers[self.choices.index(found)]
 
     def _quantity(self, given: Any) -> float:
         if self.unit in units.UNITS:
@@ -172,6 +177,9 @@ class Port:
         if self.kind == "Integer":
             if value != int(value):
                 raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
+            if self.numbers and value not in self.numbers:
+                known = ", ".join(f"{n} ({c})" for n, c in zip(self.numbers, self.choices, strict=True))
+                raise LoomfmuError(f"{where} = {value:.7g} is not one of {known}")
             return int(value)
         return value
 

@@ -76,6 +76,8 @@ def take(actions: Iterable[Action], time: float, end: float, status: int | None 
         status = None
         if not OK <= found <= WARNING:
             failure = action.slave.failed(found, action.call.name, time)
+            if isinstance(failure, Ended) and failure.time > end and not _at_end(failure, time, end):
+                failure = Ended(failure.name, time)  # it cannot have ended after this step
             if not _at_end(failure, time, end):
                 raise failure
             ended = ended or cast(Ended, failure)

@@ -63,7 +63,7 @@ def channels(plan: Plan, master: Master) -> list[Channel]:
                 real=kind == "Real",
                 rate=port.rate,
                 meanings=meanings,
-                first_flag=port.first_choice if port.choices else 0,
+                first_flag=port.numbers[0] if port.numbers else 0,
                 boolean=kind == "Boolean",
             )
         )

@@ -88,7 +88,8 @@ class Instance:
             raise LoomfmuError(f"{self.name}.{key} is unknown{hint}")
         port = self.fmu.ports[name]
         if not _can_be_set(port):
-            kind = "an output" if port.causality == "output" else "a state"
+            kinds = {"output": "an output", "structuralParameter": "a structural parameter"}
+            kind = kinds.get(port.causality, "a state")
             raise LoomfmuError(f"{self.name}.{key} is {kind} of {self.fmu.name} and cannot be set")
         where = f"{self.name}.{key}"
         self.values[name] = port.value(given, where)

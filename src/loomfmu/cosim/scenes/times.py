@@ -21,6 +21,9 @@ class Times:
     step: float | None = None
 
 
+EXAMPLES = {"duration": "2 s", "step": "1 ms"}
+
+
 def times_of(tables: dict[str, Any]) -> Times:
     """Duration and step as the tables of a scene say them. Raises LoomfmuError for a mixture of both ways."""
     given = [key for key in TIMES if key in tables]
@@ -28,6 +31,11 @@ def times_of(tables: dict[str, Any]) -> Times:
         revolutions = number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9)
         steps = number(tables.get("steps_per_revolution", 1440), "steps_per_revolution", 1, 1e9, whole=True)
         return Times(revolutions, int(steps))
+    if len(given) == 1:
+        missing = "duration" if given == ["step"] else "step"
+        raise LoomfmuError(
+            f'{given[0]} is given but not {missing}: say {missing} = "{EXAMPLES[missing]}" as well'
+        )
     if set(given) != {"duration", "step"}:
         raise LoomfmuError(
             f"{' and '.join(given)}: a scene runs either by duration and step,"

@@ -55,11 +55,11 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
             )
         ends.append((name, variable))
     to, origin = (instances[name].fmu.ports[variable] for name, variable in ends)
+    if origin.kind != to.kind:
+        raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
     reason = mismatch(str(source), origin, sink, to)
     if reason:
         raise LoomfmuError(f"{where}: {reason}")
-    if origin.kind != to.kind:
-        raise LoomfmuError(f"{where}: {source} is of type {origin.kind}, {sink} of type {to.kind}")
     return Wire(source=ends[1], sink=ends[0])
 
 

@@ -144,7 +144,7 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
         port = instance.fmu.ports[name]
         parameter = SubElement(listed, "ssv:Parameter", name=port.own)
         if port.choices:
-            SubElement(parameter, "ssv:Enumeration", value=port.choices[int(value) - port.first_choice])
+            SubElement(parameter, "ssv:Enumeration", value=port.choice(value))
             continue
         attributes = {"value": str(value).lower() if port.kind == "Boolean" else repr(value)}
         if port.kind == "Real" and port.has_unit and port.definition is not None:
