@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from live_fmus import fmu_cache
 
+from loomfmu import arguments as cli_arguments
 from loomfmu import cli
 from loomfmu.cosim.scenes import scene
 from loomfmu.sweeps import plan
@@ -61,7 +62,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
 def test_commands_are_understood(page: Path) -> None:
     for arguments in commands(page):
-        cli._parser().parse_args(arguments)  # exits where it does not understand
+        cli_arguments.parser().parse_args(arguments)  # exits where it does not understand
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)

@@ -1,8 +1,4 @@
-"""The command `loomfmu`: Build FMUs of loom mechanisms, co-simulate scenes and sweeps, judge their claims.
-
-Exit status: 0 all claims hold; 1 a claim fails; 2 bad input, a failed FMU or a fault of loomfmu;
-130 interrupted.
-"""
+"""The command `loomfmu`."""
 
 import argparse
 import json
@@ -13,23 +9,22 @@ import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from . import printed, units
+from .arguments import parser
 from .errors import LoomfmuError
 from .printed import complain, say
 
 if TYPE_CHECKING:
     from .traces import Trace, Verdict
 
-ABOUT, STATUSES = (__doc__ or "").strip().split("\n\n")
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     try:
-        status = int(options.command(options))
+        status = COMMANDS[options.command](options)
         sys.stdout.flush()
         return status
     except BrokenPipeError:  # the reader of our output has gone, as `head` does
@@ -54,156 +49,6 @@ def _reason(error: BaseException) -> str:
         return "out of memory"
     what = f"{type(error).__name__}: {error}".removesuffix(": ")
     return f"{what} (a fault of loomfmu; please report it to its maintainers with what --debug prints)"
-
-
-class _Parser(argparse.ArgumentParser):
-    """Every command takes `--debug`; what it refuses is printed as everything else is."""
-
-    def __init__(self, **named: Any) -> None:
-        super().__init__(**named)
-        # suppressed: else a command would take back what stands before it
-        self.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show tracebacks")
-
-    def error(self, message: str) -> NoReturn:
-        self.print_usage(sys.stderr)
-        complain(f"{self.prog}: error: {message}")
-        sys.exit(2)
-
-
-class _Version(argparse.Action):
-    """Reads the version only when it is wanted: that takes longer than parsing the command."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from importlib.metadata import version
-
-        say(f"loomfmu {version('loomfmu')}")
-        parser.exit()
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="loomfmu", description=ABOUT.partition(": ")[2], epilog=STATUSES)
-    parser.set_defaults(debug=False)
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    _add_run(commands)
-    _add_export(commands)
-    _add_sweep(commands)
-    _add_build(commands)
-
-    listing = commands.add_parser("list", help="list FMUs, machines and example scenes, or describe one")
-    listing.add_argument(
-        "name", nargs="?", metavar="NAME", help="an FMU, FILE.py[:CLASS], a machine or a rapier head"
-    )
-    listing.set_defaults(command=_list)
-
-    init = commands.add_parser("init", help="write an example scene and a sweep of it")
-    init.add_argument(
-        "directory",
-        nargs="?",
-        type=Path,
-        default=Path(),
-        metavar="DIR",
-        help="the current directory by default",
-    )
-    init.add_argument("--all", action="store_true", help="write every example scene")
-    init.set_defaults(command=_init)
-
-    new = commands.add_parser("new", help="write a folder for a mechanism of your own, which runs at once")
-    new.add_argument("name", metavar="NAME", help="of its class, such as PickingCam")
-    new.add_argument(
-        "--output", type=Path, default=Path(), metavar="DIR", help="where to put the folder, here by default"
-    )
-    new.set_defaults(command=_new)
-
-    show = commands.add_parser("show", help="summarise a trace")
-    show.add_argument("trace", metavar="FILE.h5")
-    show.set_defaults(command=_show)
-
-    cache = commands.add_parser("cache", help="show where built and unpacked FMUs are kept, and their size")
-    cache.add_argument("--clear", action="store_true", help="delete them; they are built again when needed")
-    cache.set_defaults(command=_cache)
-
-    validate = commands.add_parser("validate", help="compare published results with computed ones")
-    validate.add_argument("--output", type=Path, default=Path("results"), metavar="DIR")
-    _add_force(validate, "files in DIR that are not such a report or its pictures")
-    validate.set_defaults(command=_validate)
-    return parser
-
-
-def _add_run(commands: Any) -> None:
-    run = commands.add_parser("run", help="co-simulate a scene, record it and judge its claims")
-    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
-    _add_set(run)
-    run.add_argument("--output", metavar="FILE.h5", help="the trace; results/SCENE.h5 by default")
-    run.add_argument("--native", action="store_true", help="use native FMUs instead of live ones")
-    run.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
-    _add_force(run, "FILE.h5 even if it is not a trace")
-    run.set_defaults(command=_run)
-
-
-def _add_build(commands: Any) -> None:
-    build = commands.add_parser("build", help="build FMUs")
-    build.add_argument(
-        "names", nargs="*", metavar="NAME", help="an FMU, or FILE.py[:CLASS] of your own; all FMUs by default"
-    )
-    build.add_argument(
-        "--output", type=Path, metavar="DIR",
-        help="build/fmus by default; build/native or build/native_fmi3 for native FMUs",
-    )  # fmt: skip
-    build.add_argument("--native", action="store_true", help="build native FMUs: in C, without Python")
-    _add_platform(build)
-    build.add_argument(
-        "--fmi", type=int, choices=(2, 3), default=2, help="FMI version of native FMUs; 2 by default"
-    )
-    _add_force(build, "FMUs from other vendors in DIR")
-    build.set_defaults(command=_build)
-
-
-def _add_platform(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--platform", metavar="NAME[,NAME]",
-        help="platforms of native FMUs: linux64,win64,darwin64; all by default",
-    )  # fmt: skip
-
-
-def _add_set(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
-        help="override a value of the scene, such as shaft.speed=685rpm",
-    )  # fmt: skip
-
-
-def _add_force(command: argparse.ArgumentParser, what: str) -> None:
-    command.add_argument("--force", action="store_true", help=f"replace {what}")
-
-
-def _add_export(commands: Any) -> None:
-    export = commands.add_parser("export", help="write a scene as a system package for other tools")
-    export.add_argument("scene", metavar="SCENE.toml")
-    export.add_argument("--ssp", type=Path, required=True, metavar="FILE.ssp")
-    _add_set(export)
-    export.add_argument(
-        "--flavour", choices=("live", "native"), help="kind of FMUs; native by default if they can be built"
-    )
-    _add_platform(export)
-    _add_force(export, "FILE.ssp even if it is not a system package of loomfmu")
-    export.set_defaults(command=_export)
-
-
-def _add_sweep(commands: Any) -> None:
-    sweep = commands.add_parser("sweep", help="run a scene with many combinations of values, as one table")
-    sweep.add_argument("sweep", metavar="SWEEP.toml")
-    sweep.add_argument("--output", metavar="DIR", help="where results go; results/SWEEP by default")
-    sweep.add_argument(
-        "--processes", type=int, metavar="N", help="worker processes on this machine; all cores by default"
-    )
-    sweep.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
-    )
-    sweep.add_argument(
-        "--restart", action="store_true", help="delete the results of any sweep in DIR and run all rows"
-    )
-    sweep.set_defaults(command=_sweep)
 
 
 def _overrides(options: argparse.Namespace) -> dict[str, Any]:
@@ -335,7 +180,7 @@ def _validate(options: argparse.Namespace) -> int:
     for path in report.write(options.output, options.force):
         say(path)
     if not plots.available():
-        complain('no plots: they need matplotlib, pip install "loomfmu[plot]"')
+        complain('no plots: matplotlib is not installed; pip install "loomfmu[plot]"')
     return 0
 
 
@@ -417,6 +262,20 @@ def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
         said = f"{verdict.word}  {verdict.claim}", f"({verdict.signal})", f"{worst}, bound {bound}{place}"
         entries.append((*said, f"({verdict.note})") if verdict.note else said)
     printed.show(headings, rows, entries)
+
+
+COMMANDS = {
+    "run": _run,
+    "export": _export,
+    "sweep": _sweep,
+    "build": _build,
+    "list": _list,
+    "init": _init,
+    "new": _new,
+    "show": _show,
+    "cache": _cache,
+    "validate": _validate,
+}
 
 
 if __name__ == "__main__":

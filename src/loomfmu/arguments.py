@@ -1,0 +1,167 @@
+"""The arguments of the command `loomfmu`, and its help."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any, NoReturn
+
+from .printed import complain, say
+
+ABOUT = (
+    "Simulate the mechanisms of a weaving loom as FMUs over the main shaft's angle, and check claims about"
+    ' them, such as "the rapier belt does not buckle".'
+)
+STATUSES = "Exit status: 0 all claims hold; 1 a claim fails; 2 bad input or a failed FMU; 130 interrupted."
+
+
+class _Parser(argparse.ArgumentParser):
+    """Every command takes `--debug`; errors are printed like all other messages."""
+
+    def __init__(self, **named: Any) -> None:
+        super().__init__(**named)
+        # suppressed: else the default of a command would replace a `--debug` before it
+        self.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show tracebacks")
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        complain(f"{self.prog}: error: {message}")
+        sys.exit(2)
+
+
+class _Version(argparse.Action):
+    """Reads the version only if it is wanted: that takes longer than parsing the command."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import version
+
+        say(f"loomfmu {version('loomfmu')}")
+        parser.exit()
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser; `command` is the name of the command."""
+    parser = _Parser(prog="loomfmu", description=ABOUT, epilog=STATUSES)
+    parser.set_defaults(debug=False)
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for add in (_run, _show, _sweep, _list, _init, _new, _build, _export, _cache, _validate):
+        add(commands)
+    return parser
+
+
+def _run(commands: Any) -> None:
+    run = commands.add_parser("run", help="simulate a scene, record a trace and check the claims")
+    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_set(run)
+    run.add_argument("--output", metavar="FILE.h5", help="trace file; results/SCENE.h5 by default")
+    run.add_argument("--native", action="store_true", help="use native FMUs instead of live ones")
+    run.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
+    _add_force(run, "FILE.h5 even if it is not a trace")
+
+
+def _show(commands: Any) -> None:
+    show = commands.add_parser("show", help="summarise a trace")
+    show.add_argument("trace", metavar="FILE.h5")
+
+
+def _sweep(commands: Any) -> None:
+    sweep = commands.add_parser("sweep", help="run a scene with many combinations of values")
+    sweep.add_argument("sweep", metavar="SWEEP.toml")
+    sweep.add_argument("--output", metavar="DIR", help="folder for the results; results/SWEEP by default")
+    sweep.add_argument(
+        "--processes", type=int, metavar="N", help="worker processes on this machine; one per core by default"
+    )
+    sweep.add_argument(
+        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
+    )
+    sweep.add_argument(
+        "--restart", action="store_true", help="discard earlier results in DIR and run all rows"
+    )
+
+
+def _list(commands: Any) -> None:
+    listing = commands.add_parser("list", help="list FMUs, machines, heads and example scenes")
+    listing.add_argument(
+        "name", nargs="?", metavar="NAME", help="describe this FMU, FILE.py[:CLASS], machine or rapier head"
+    )
+
+
+def _init(commands: Any) -> None:
+    init = commands.add_parser("init", help="write an example scene and a sweep of it")
+    init.add_argument(
+        "directory", nargs="?", type=Path, default=Path(), metavar="DIR",
+        help="folder to write to; the current one by default",
+    )  # fmt: skip
+    init.add_argument("--all", action="store_true", help="write every example scene")
+
+
+def _new(commands: Any) -> None:
+    new = commands.add_parser("new", help="write a folder for a mechanism of your own, ready to run")
+    new.add_argument("name", metavar="NAME", help="class name, such as PickingCam")
+    new.add_argument(
+        "--output", type=Path, default=Path(), metavar="DIR",
+        help="where to put the folder; the current folder by default",
+    )  # fmt: skip
+
+
+def _build(commands: Any) -> None:
+    build = commands.add_parser("build", help="build FMUs")
+    build.add_argument(
+        "names", nargs="*", metavar="NAME",
+        help="an FMU, or FILE.py[:CLASS] for one of your own; all FMUs by default",
+    )  # fmt: skip
+    build.add_argument(
+        "--output", type=Path, metavar="DIR",
+        help="build/fmus by default; build/native or build/native_fmi3 for native FMUs",
+    )  # fmt: skip
+    build.add_argument("--native", action="store_true", help="build native FMUs: in C, without Python")
+    _add_platform(build)
+    build.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="FMI version of native FMUs; 2 by default"
+    )
+    _add_force(build, "third-party FMUs in DIR")
+
+
+def _export(commands: Any) -> None:
+    export = commands.add_parser("export", help="write a scene as a system package (SSP) for other tools")
+    export.add_argument("scene", metavar="SCENE.toml")
+    export.add_argument("--ssp", type=Path, required=True, metavar="FILE.ssp", help="the package to write")
+    _add_set(export)
+    export.add_argument(
+        "--flavour", choices=("live", "native"),
+        help="kind of FMUs; native by default if they can be built",
+    )  # fmt: skip
+    _add_platform(export)
+    _add_force(export, "FILE.ssp even if loomfmu did not write it")
+
+
+def _cache(commands: Any) -> None:
+    cache = commands.add_parser("cache", help="show location and size of the cache of built FMUs")
+    cache.add_argument("--clear", action="store_true", help="empty it; FMUs are built again when needed")
+
+
+def _validate(commands: Any) -> None:
+    validate = commands.add_parser("validate", help="compare published and computed values")
+    validate.add_argument(
+        "--output", type=Path, default=Path("results"), metavar="DIR",
+        help="folder for the report; results by default",
+    )  # fmt: skip
+    _add_force(validate, "files in DIR that are not part of such a report")
+
+
+def _add_platform(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--platform", metavar="NAME[,NAME]",
+        help="platforms of native FMUs: linux64,win64,darwin64; all by default",
+    )  # fmt: skip
+
+
+def _add_set(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
+        help="override a value of the scene, such as shaft.speed=685rpm",
+    )  # fmt: skip
+
+
+def _add_force(command: argparse.ArgumentParser, what: str) -> None:
+    command.add_argument("--force", action="store_true", help=f"replace {what}")
