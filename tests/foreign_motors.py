@@ -1,4 +1,4 @@
-"""FMUs of another maker: a small motor in C, compiled by gcc, as FMI 2.0 and as FMI 3.0."""
+"""Third-party FMUs: a small motor in C, compiled by gcc, as FMI 2.0 and as FMI 3.0."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""Scenes with a motor of another maker, as several tests run them."""
+"""Scenes with a third-party motor, as several tests run them."""
 
 from pathlib import Path
 

@@ -179,13 +179,13 @@ def test_what_is_not_ours_is_replaced_only_when_told_to(capsys: pytest.CaptureFi
         "out/MainShaft.fmu": (["build", "MainShaft", "--output", "out"], "an FMU of loomfmu"),
     }
     for target, (command, kind) in targets.items():
-        with zipfile.ZipFile(target, "w") as theirs:  # another maker's
+        with zipfile.ZipFile(target, "w") as theirs:  # a third-party one
             theirs.writestr("SystemStructure.ssd", "<ssd generationTool='other'/>")
             theirs.writestr("modelDescription.xml", "<fmiModelDescription generationTool='other'/>")
         older = Path(target).read_bytes()
         assert main(command) == 2
         replaces = "--force (overwrite=True in Python) replaces it"
-        assert capsys.readouterr().err == (f"loomfmu: {target}: it exists and is not {kind}; {replaces}\n")
+        assert capsys.readouterr().err == (f"loomfmu: {target}: exists and is not {kind}; {replaces}\n")
         assert Path(target).read_bytes() == older
         assert main([*command, "--force"]) == 0
         assert main(command) == 0  # now it is ours
@@ -195,7 +195,7 @@ def test_what_is_not_ours_is_replaced_only_when_told_to(capsys: pytest.CaptureFi
         capsys.readouterr()
     Path("scene.h5.partial").write_text("my own notes")
     assert main(["run", path, "--output", "scene.h5"]) == 2
-    assert "scene.h5.partial: it exists and is not what an interrupted run" in capsys.readouterr().err
+    assert "scene.h5.partial: exists and is not what an interrupted run" in capsys.readouterr().err
 
 
 def umask() -> int:
@@ -208,11 +208,11 @@ def test_a_report_replaces_only_a_report(capsys: pytest.CaptureFixture[str]) -> 
     Path("docs/validation").mkdir(parents=True)
     Path("docs/validation.md").write_text("# My thesis\n")
     assert main(["validate", "--output", "docs"]) == 2
-    assert "docs/validation.md: it exists and is not a report of loomfmu" in capsys.readouterr().err
+    assert "docs/validation.md: exists and is not a report of loomfmu" in capsys.readouterr().err
     Path("docs/validation.md").unlink()
     Path("docs/validation/accuracy.png").write_text("my own")
     assert main(["validate", "--output", "docs"]) == 2
-    assert "docs/validation/accuracy.png: it exists and is not a PNG" in capsys.readouterr().err
+    assert "docs/validation/accuracy.png: exists and is not a PNG" in capsys.readouterr().err
     assert os.listdir("docs") == ["validation"]
 
 
@@ -655,12 +655,12 @@ def test_values_that_do_not_go_together_are_told_in_one_line(
         (["show", "missing.h5"], "missing.h5: there is no such file"),
         (
             ["show", "scene.toml"],
-            "scene.toml: it cannot be read as a trace"
+            "scene.toml: cannot be read as a trace"
             " (Unable to synchronously open file (file signature not found))",
         ),
         (
             ["show", "other.h5"],
-            "other.h5: it is not a trace of loomfmu: it lacks the dataset /shaft_angle",
+            "other.h5: not a trace of loomfmu: the dataset /shaft_angle is missing",
         ),
     ],
 )
@@ -679,10 +679,10 @@ PIPED = {  # what names a pipe, and how the refusal begins
     "run pipe.ssp": "pipe.ssp: cannot be read",
     "sweep pipe": "pipe: cannot be read",
     "sweep over.toml": "over.toml: {here}/pipe: cannot be read",
-    "show pipe": "pipe: it cannot be read as a trace",
+    "show pipe": "pipe: cannot be read as a trace",
     "run woven.toml": "woven.toml: pipe.wif: cannot be read",
     "run motor.toml": "motor.toml: motor.fmu: pipe: not a readable FMU",
-    "show /dev/zero": "/dev/zero: it cannot be read as a trace",
+    "show /dev/zero": "/dev/zero: cannot be read as a trace",
 }
 
 
@@ -706,7 +706,7 @@ def test_a_trace_that_is_cut_short_is_told_in_one_line(capsys: pytest.CaptureFix
     capsys.readouterr()
     assert main(["show", "cut.h5"]) == 2
     assert one_line(capsys).startswith(
-        "cut.h5: it cannot be read as a trace (Unable to synchronously open file (trunc"
+        "cut.h5: cannot be read as a trace (Unable to synchronously open file (trunc"
     )
 
 

@@ -211,7 +211,7 @@ def _show(options: argparse.Namespace) -> int:
         if isinstance(error, LoomfmuError | OSError) and not isinstance(error, units.UnitError):
             raise
         # whole for HDF5, but not what we write
-        raise LoomfmuError(f"{options.trace}: it is damaged ({error})") from error
+        raise LoomfmuError(f"{options.trace}: the file is damaged ({error})") from error
 
 
 def _summarise(trace: "Trace") -> None:
@@ -259,8 +259,8 @@ def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
             (verdict.word, verdict.claim, verdict.signal, worst, bound, verdict.place or "-", verdict.note)
         )
         place = f", at {verdict.place}" if verdict.place else ""
-        said = f"{verdict.word}  {verdict.claim}", f"({verdict.signal})", f"{worst}, bound {bound}{place}"
-        entries.append((*said, f"({verdict.note})") if verdict.note else said)
+        entry = f"{verdict.word}  {verdict.claim}", f"({verdict.signal})", f"{worst}, bound {bound}{place}"
+        entries.append((*entry, f"({verdict.note})") if verdict.note else entry)
     printed.show(headings, rows, entries)
 
 

@@ -41,7 +41,7 @@ def starts_with(name: str, start: bytes) -> Kind:
     return Kind(name, ours)
 
 
-ANY = Kind("", lambda _path: True)  # what else tells whose it is
+ANY = Kind("", lambda _path: True)  # other checks tell whose file it is
 PICTURE = starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n")
 
 
@@ -112,7 +112,7 @@ def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite:
     except OSError as error:
         raise cannot_write(path, error) from None
     raise LoomfmuError(
-        f"{path}: it exists and is not {kind.name}; --force (overwrite=True in Python) replaces it"
+        f"{path}: exists and is not {kind.name}; --force (overwrite=True in Python) replaces it"
     )
 
 

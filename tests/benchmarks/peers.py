@@ -1,4 +1,4 @@
-"""The masters of other makers as configurations: each runs a system package of the same scene and FMUs.
+"""Third-party masters as configurations: each runs a system package of the same scene and FMUs.
 
 Each in the best way it has: steps in bulk, not by a call from Python for each; recording by its own means.
 """

@@ -1,4 +1,4 @@
-"""Tests here run our native FMUs in the tools of other makers; each is skipped where its tool is missing."""
+"""Tests here run our native FMUs in third-party tools; each is skipped where its tool is missing."""
 
 import sys
 from importlib.util import find_spec
@@ -15,5 +15,5 @@ def natives(fmu_cache: None) -> dict[str, fmus.Fmu]:
     if find_spec("ziglang") is None:
         pytest.skip("ziglang is not installed: no native FMU can be built")
     if not sys.platform.startswith("linux"):
-        pytest.skip("the tools of other makers are tried on Linux alone")
+        pytest.skip("third-party tools are tried on Linux alone")
     return native_fmus()

@@ -1,4 +1,4 @@
-"""The demonstration loom in the masters of other makers. Each returns the real outputs along the steps."""
+"""The demonstration loom in third-party masters. Each returns the real outputs along the steps."""
 
 import contextlib
 import ctypes

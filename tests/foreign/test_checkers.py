@@ -1,4 +1,4 @@
-"""What the checkers of other makers say of our native FMUs: nothing."""
+"""What third-party checkers say of our native FMUs: nothing."""
 
 import subprocess
 import sys

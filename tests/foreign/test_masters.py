@@ -1,4 +1,4 @@
-"""Our native FMUs under the masters of other makers, wired by a system package, against our own master."""
+"""Our native FMUs under third-party masters, wired by a system package, against our own master."""
 
 from pathlib import Path
 

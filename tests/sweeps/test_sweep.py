@@ -380,7 +380,7 @@ def test_a_sweep_writes_over_nothing_that_it_reads_or_that_is_not_its_own(tmp_pa
         path = own.rename(tmp_path / "swept.toml")
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "lock").write_text("my package manager's")
-    with pytest.raises(LoomfmuError, match="lock: it is not the lock of a sweep"):
+    with pytest.raises(LoomfmuError, match="lock: not the lock of a sweep"):
         loomfmu.sweep(path, processes=1, output=tmp_path / "out", restart=True)
     assert os.listdir(tmp_path / "out") == ["lock"]
     (tmp_path / "out" / "lock").rename(tmp_path / "out" / "map.png")

@@ -223,7 +223,7 @@ def _writer(plan: Plan, master: Master, path: Path, target: Path, flavour: str) 
 
 @contextmanager
 def _bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
-    """A progress bar for a long run, told how many steps are done."""
+    """A progress bar for a long run; call it with the number of steps done."""
     shown = 0
 
     def reached(step: int) -> None:

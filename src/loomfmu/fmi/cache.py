@@ -1,4 +1,4 @@
-"""Where built and unpacked FMUs are kept between runs: a folder that nobody else can write to."""
+"""Where built and unpacked FMUs are kept between runs: a folder that only the user can write to."""
 
 import atexit
 import logging

@@ -64,7 +64,7 @@ class _Scale:
 
 
 def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
-    """Draw what a plan asks for; nothing if no row has a value there."""
+    """Draw the map of a plan; nothing if no row has a value there."""
     assert plan.map is not None
     request = plan.map
     chosen = np.ones(table.num_rows, dtype=bool)

@@ -1,4 +1,4 @@
-"""A sweep as its file tells it, checked against its scene: nothing that is misspelt gets as far as a run."""
+"""A sweep file, read and checked against its scene: a misspelt name is found before anything runs."""
 
 import math
 from dataclasses import dataclass

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 
 from ..errors import LoomfmuError
 
-PATIENCE = 5.0  # s until a worker that was told to end is ended
+PATIENCE = 5.0  # s until a worker that does not stop is killed
 
 
 @dataclass(frozen=True)
@@ -89,11 +89,11 @@ class _Worker:
 
     def __init__(self) -> None:
         context = multiprocessing.get_context("spawn")
-        self.connection, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self.connection, far_end = context.Pipe()
+        self.process = context.Process(target=_serve, args=(far_end,), daemon=True)
         with _undisturbed():
             self.process.start()
-        theirs.close()
+        far_end.close()
         self.ready = False
         self.task: Task | None = None
 
@@ -128,7 +128,7 @@ class Processes:
             self._send(idle)
 
     def _send(self, worker: _Worker) -> None:
-        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # its end is seen when it is asked
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # `finished` sees that it has ended
             worker.connection.send(worker.task)
 
     def finished(self) -> list[tuple[Any, Any]]:
@@ -145,7 +145,7 @@ class Processes:
         try:
             outcome = worker.connection.recv()
         except (EOFError, ConnectionResetError):
-            return [self._bury(worker)]
+            return [self._remove(worker)]
         if not worker.ready:
             worker.ready = True
             self._send(worker)
@@ -153,8 +153,8 @@ class Processes:
         key, worker.task = worker.task.key, None
         return [(key, outcome)]
 
-    def _bury(self, worker: _Worker) -> tuple[Any, Any]:
-        """Forget a worker that has ended; what it died of."""
+    def _remove(self, worker: _Worker) -> tuple[Any, Any]:
+        """Remove a worker that has ended; its task and how it ended."""
         worker.process.join(PATIENCE)
         code = worker.process.exitcode or 0
         self._workers.remove(worker)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .tables import claim_columns, labels_of
 
-DIGITS = 6  # by which rows are told apart
+DIGITS = 6  # that distinguish rows
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The picture that a sweep file asks for: over which axes, of which column, at which values of the others."""
+"""The picture that a sweep file defines: over which axes, of which column, at which values of the others."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,7 +10,7 @@ from .axes import Axis, flattened
 from .varied import Value
 
 KEYS = ("x", "y", "value", "at")
-ROUNDING = 1e-9  # of a value that is said once in the grid and once in `at`, perhaps in another unit
+ROUNDING = 1e-9  # of a value that is given once in the grid and once in `at`, perhaps in another unit
 
 
 @dataclass(frozen=True)

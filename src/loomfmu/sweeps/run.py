@@ -30,7 +30,7 @@ class Sweep:
     """A finished sweep; true where all claims hold in all rows.
 
     `table` is a pyarrow.Table as in the file `path`, `ran` the number of rows that were run now and not
-    before, `map` the picture if one was asked for, `traces` the full traces of single rows.
+    before, `map` the picture if the file has a `[map]`, `traces` the full traces of single rows.
     """
 
     plan: SweepPlan
@@ -93,7 +93,7 @@ def sweep(
         processes: worker processes on this machine, all cores by default; 1 runs in this process
         output: directory of the results; `results/<sweep>` below the current directory by default
         scheduler: address of a dask scheduler, such as "tcp://host:8786", whose workers run the rows
-        restart: throw away what the directory has of this or another sweep
+        restart: discard earlier results in the directory, of this or another sweep
         progress: show a progress bar, if standard error is a terminal
 
     Raises:
@@ -183,7 +183,7 @@ def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
 
 
 def _draw(store: "Store", table: Any) -> Path | None:
-    """The picture that the sweep asks for."""
+    """The picture of the sweep, if it has a `[map]`."""
     if store.plan.map is None:
         return None
     from .maps import draw

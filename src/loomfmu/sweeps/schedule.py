@@ -1,4 +1,4 @@
-"""Which rows run next: batches of a length that keeps all workers busy and the one who asks idle."""
+"""Which rows run next: batches long enough to keep all workers busy and the scheduling process idle."""
 
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -15,7 +15,7 @@ GROWTH = 4  # of a batch over those before, until the time of a row is known wel
 class Schedule:
     """The rows that are left, cut into batches by the time that rows were seen to take.
 
-    Each batch that `next` gives out is told of again: it has been `measured`, or its process has `died`.
+    Report each batch that `next` returned: `measured` when it is done, `died` if its process has ended.
     """
 
     def __init__(self, left: Iterable[range], workers: int):
@@ -84,7 +84,7 @@ def run_batches(
 ) -> None:
     """Run all rows that are left and store each batch as it is done.
 
-    Raises what a worker raised that is no fault of a row.
+    Raises what a worker raised unless a row caused it.
     """
     schedule = Schedule(left, pool.workers)
     done: list[tuple[range, Batch]] = []

@@ -156,7 +156,7 @@ def opened(
 
 
 def _check_identity(store: Store, fingerprint: str, restart: bool) -> None:
-    """Refuse to mix two sweeps, and to touch what no sweep wrote; only a sweep's own is thrown away."""
+    """Refuse to mix two sweeps, and to touch what no sweep wrote; only a sweep's own files are deleted."""
     path = store.directory / IDENTITY
     known = _known(path)
     if known is None and (path.exists() or store.results()):
@@ -222,11 +222,11 @@ def _sign(path: Path, descriptor: int) -> None:
     """Write into a lock that is ours which process we are."""
     written = os.read(descriptor, 20).strip()
     if written and not written.isdigit():
-        raise LoomfmuError(f"{path}: it is not the lock of a sweep; --output names another place")
+        raise LoomfmuError(f"{path}: not the lock of a sweep; choose another directory with --output")
     try:
         os.ftruncate(descriptor, 0)
         os.lseek(descriptor, 0, os.SEEK_SET)
-        # a blank first: nobody else can read the byte that Windows locks
+        # a blank first: other processes cannot read the byte that Windows locks
         os.write(descriptor, f" {os.getpid()}".encode())
     except OSError as error:
         path.unlink(missing_ok=True)
@@ -234,7 +234,7 @@ def _sign(path: Path, descriptor: int) -> None:
 
 
 def _holder(path: Path) -> str:
-    """The process that has a lock, as the end of a message; empty if it cannot be told."""
+    """The process that has a lock, as the end of a message; empty if that is unknown."""
     with contextlib.suppress(OSError), path.open("rb", buffering=0) as file:
         file.seek(1)
         if (process := file.read(20)).isdigit():

@@ -24,7 +24,7 @@ class Varied:
     """A key of a sweep. `targets` are the keys of the scene that take its value, in SI; `read` checks one.
 
     `kind` is Real, Integer, Boolean or Text. `needs_scene` are those whose values only the scene can judge.
-    `doubt` tells what is odd about a value as it is written, or gives an empty text.
+    `doubt` warns of a value that was probably meant in another unit; the text is empty otherwise.
     """
 
     key: str
@@ -38,7 +38,7 @@ class Varied:
     doubt: Callable[[Any], str] = lambda _given: ""
 
     def setting(self, value: Value) -> Value:
-        """A value as it is set in the scene: it was read already, and nothing shall doubt it again."""
+        """A value as it is set in the scene: it was read and checked already."""
         return units.Si(value) if self.kind == "Real" else value
 
     def show(self, value: Value) -> str:

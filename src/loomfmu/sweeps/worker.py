@@ -62,7 +62,7 @@ class Batch:
 
 
 def job_of(plan: SweepPlan) -> Job:
-    """What workers are told of a plan."""
+    """What workers need of a plan."""
     return Job(
         plan.path, tuple(plan.fixed.items()), plan.flavour, plan.values, identity(plan.scene, plan.flavour)
     )

@@ -24,12 +24,12 @@ def check(path: Path) -> None:
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
         why = f"HDF5 has not finished reading its attributes after {limit:.0f} s"
-        raise LoomfmuError(f"{path}: it is damaged ({why})") from None
+        raise LoomfmuError(f"{path}: the file is damaged ({why})") from None
     if done.returncode == REFUSED:
         raise LoomfmuError(done.stdout.strip())
     if done.returncode:
         reason = (done.stderr.strip() or f"exit status {done.returncode}").splitlines()[-1]
-        raise LoomfmuError(f"{path}: it is damaged (HDF5 fails: {reason})")
+        raise LoomfmuError(f"{path}: the file is damaged (HDF5 fails: {reason})")
 
 
 def main(path: str) -> int:

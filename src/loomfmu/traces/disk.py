@@ -1,4 +1,4 @@
-"""Disk space for HDF5 files, and what their first bytes tell."""
+"""Disk space for HDF5 files, and what their first bytes say."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""Where the files of traces lie: one that a new run replaces is kept while somebody still holds its trace.
+"""Where the files of traces lie: one that a new run replaces is kept while its trace is in use.
 
 A second run of a scene writes to the name that the first one has. The first file then gets a hidden name
 beside it, which lasts as long as the `Trace` objects that read it. That costs no copy, no memory and no open
@@ -29,7 +29,7 @@ def place_of(path: Path) -> Place:
 
 
 def replace(new: Path, path: Path) -> None:
-    """Give a finished file the name that an older one may have. That one is kept if somebody holds its trace.
+    """Give a finished file the name that an older one may have. That one is kept while its trace is in use.
 
     Raises OSError.
     """
@@ -49,7 +49,7 @@ def replace(new: Path, path: Path) -> None:
 
 
 def _remove(path: Path, owner: int) -> None:
-    """Delete a file that nobody reads any more; a forked process leaves it to the one that put it there."""
+    """Delete a file that is no longer read; a forked process leaves it to the one that put it there."""
     if os.getpid() == owner:
         with contextlib.suppress(OSError):
             path.unlink()

@@ -45,7 +45,7 @@ class Trace(Signals):
         self._cache: dict[str, NDArray[Any]] = {}
         with self._opened() as file:
             if lacking := _lacking(file):
-                raise LoomfmuError(f"{self.path}: it is not a trace of loomfmu: it lacks {lacking}")
+                raise LoomfmuError(f"{self.path}: not a trace of loomfmu: {lacking} is missing")
             if file.attrs["status"] != "running":  # else it grows
                 self._state = _state(self.path)
 
@@ -69,7 +69,7 @@ class Trace(Signals):
             raise LoomfmuError(f"{self.path}: there is no such file") from None
         except (OSError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
-            raise LoomfmuError(f"{self.path}: it cannot be read as a trace ({reason})") from None
+            raise LoomfmuError(f"{self.path}: cannot be read as a trace ({reason})") from None
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:
@@ -80,9 +80,9 @@ class Trace(Signals):
             try:
                 yield self._file
             except Foreign as error:
-                raise LoomfmuError(f"{self.path}: it is not a trace of loomfmu: {error}") from None
+                raise LoomfmuError(f"{self.path}: not a trace of loomfmu: {error}") from None
             except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
-                raise LoomfmuError(f"{self.path}: it is damaged ({error.args[0]})") from None
+                raise LoomfmuError(f"{self.path}: the file is damaged ({error.args[0]})") from None
             finally:
                 if not kept:
                     self.close()
@@ -156,15 +156,15 @@ class Trace(Signals):
         instance, _, variable = signal.rpartition(".")
         return column(member(member(file, instance) if instance else file, variable))
 
-    def _said(self, signal: str, attribute: str) -> str | None:
-        """What the file says of a signal."""
+    def _text(self, signal: str, attribute: str) -> str | None:
+        """An attribute of a signal; None if it has none of that name."""
         with self._dataset(signal) as dataset:
-            said = dataset.attrs.get(attribute)
-            return None if said is None else str(said)
+            text = dataset.attrs.get(attribute)
+            return None if text is None else str(text)
 
     @cached_property
     def rows(self) -> int:
-        """Number of samples when first asked; of a run that was cut off, those that all signals have."""
+        """Number of samples when first read; of a run that was cut off, those that all signals have."""
         with self._opened() as file:
             return min(len(self._item(file, signal)) for signal in (*SHARED, *self))
 
@@ -186,7 +186,7 @@ class Trace(Signals):
 
     @property
     def status(self) -> str:
-        """`complete`, `interrupted`, `failed`, or `running` (also after a kill)."""
+        """`complete`, `interrupted`, `failed`, `unjudged`, or `running` (also after a kill)."""
         return str(self.attributes["status"])
 
     @property
@@ -205,23 +205,25 @@ class Trace(Signals):
         try:
             return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
         except (AttributeError, LookupError, RecursionError, TypeError, UnitError, ValueError) as error:
-            raise LoomfmuError(f"{self.path}: it is damaged (its claims are not verdicts: {error})") from None
+            raise LoomfmuError(
+                f"{self.path}: the file is damaged (its claims are not verdicts: {error})"
+            ) from None
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
-        return str(self._said(signal, "UNIT"))
+        return str(self._text(signal, "UNIT"))
 
     def display(self, signal: str) -> str:
         """Unit that people read a signal in."""
-        return self._said(signal, "DISPLAY_UNIT") or self.unit(signal)
+        return self._text(signal, "DISPLAY_UNIT") or self.unit(signal)
 
     def description(self, signal: str) -> str:
         """What a signal is."""
-        return str(self._said(signal, "COMMENT"))
+        return str(self._text(signal, "COMMENT"))
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
-        name = self._said(signal, "rate")
+        name = self._text(signal, "rate")
         rate = f"{signal.split('.')[0]}.{name}"
         return rate if name and rate in self else None
 

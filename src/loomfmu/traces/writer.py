@@ -50,8 +50,8 @@ class TraceWriter:
         self.channels = channels
         self.rows = 0
         self.partial.parent.mkdir(parents=True, exist_ok=True)
-        said = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
-        texts = sum(PER_ATTRIBUTE + len(text.encode()) for text in said)
+        values = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
+        texts = sum(PER_ATTRIBUTE + len(text.encode()) for text in values)
         header = SPARE + texts + PER_DATASET * (len(channels) + 2)
         self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:

@@ -1,4 +1,4 @@
-"""FMUs of other makers that end the simulation themselves: what there is counts, and it is told who did."""
+"""Third-party FMUs that end the simulation themselves: what there is counts, and it is told who did."""
 
 from pathlib import Path
 

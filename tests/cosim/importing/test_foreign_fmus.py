@@ -1,4 +1,4 @@
-"""FMUs of other makers, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
+"""Third-party FMUs, FMI 2.0 and 3.0, wired to ours: a motor in C with an exact solution."""
 
 import zipfile
 from collections.abc import Iterator

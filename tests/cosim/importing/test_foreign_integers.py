@@ -1,4 +1,4 @@
-"""Integers of all widths and enumerations of other makers: exact, or refused in one line."""
+"""Integers of all widths and enumerations of third-party FMUs: exact, or refused in one line."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""System packages of other makers: nested systems, inline parameters, mappings, units, no text of ours."""
+"""Third-party system packages: nested systems, inline parameters, mappings, units, no text of ours."""
 
 import zipfile
 from pathlib import Path

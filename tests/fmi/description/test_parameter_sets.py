@@ -1,4 +1,4 @@
-"""Published machines and heads as parameter sets inside the FMUs: other makers' tools read and apply them."""
+"""Published machines and heads as parameter sets inside the FMUs: third-party tools read and apply them."""
 
 import zipfile
 from pathlib import Path

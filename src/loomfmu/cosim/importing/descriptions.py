@@ -1,4 +1,4 @@
-"""The variables that a model description tells of, of FMI 2.0 and 3.0, ours and other makers'."""
+"""The variables in a model description, FMI 2.0 and 3.0, of our FMUs and third-party ones."""
 
 import math
 import re

@@ -168,7 +168,7 @@ class Fmi3Slave(Slave):
         function = self._library["fmi3DoStep"]
         event, terminate, early = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_bool()
         reached = ctypes.c_double()
-        told = [ctypes.byref(told) for told in (event, terminate, early, reached)]
+        flags = [ctypes.byref(flag) for flag in (event, terminate, early, reached)]
 
         def stepped(*arguments: Any) -> int:
             reached.value = time.value
@@ -179,5 +179,5 @@ class Fmi3Slave(Slave):
                 self.messages.append((DISCARD, "it returned early, which was not allowed"))
             return DISCARD if status in (OK, WARNING) and (terminate.value or early.value) else status
 
-        arguments = (self._component, time, step_size, ctypes.c_bool(True), *told)
+        arguments = (self._component, time, step_size, ctypes.c_bool(True), *flags)
         return Call(stepped, arguments, "fmi3DoStep", plain=False)

@@ -63,7 +63,7 @@ class Fmu:
 
     @property
     def keeps(self) -> str:
-        """What it carries from step to step; of another maker's nobody knows, so that every step counts."""
+        """What it carries from step to step; unknown for a third-party FMU, so that every step counts."""
         return self.component.keeps if self.component else MOTION
 
     @property
@@ -110,7 +110,7 @@ class Fmu:
 
     @property
     def version(self) -> str:
-        """Its maker's version of it."""
+        """Its version, as its vendor states it."""
         return self.file.version
 
     def check_platform(self, where: str) -> None:
@@ -188,7 +188,7 @@ def file_of(component: type[Component], flavour: str, platforms: tuple[str, ...]
 
 
 def load(path: Path) -> Fmu:
-    """Read an FMU of any maker. Raises LoomfmuError for a file that is none, or none that can be run."""
+    """Read any FMU. Raises LoomfmuError for a file that is not one, or not one that can be run."""
     try:
         with source(path).open("rb") as file:
             sha256 = hashlib.file_digest(file, "sha256").hexdigest()

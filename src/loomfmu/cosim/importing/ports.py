@@ -187,7 +187,7 @@ class Port:
         """The port with the unit that a scene says it has. Raises LoomfmuError where the FMU says another."""
         name = own_name(unit, definition) or unit
         if not name or self.kind != "Real":
-            raise LoomfmuError(f"{where} = {unit!r}: {self.name} is no real variable that could have a unit")
+            raise LoomfmuError(f"{where} = {unit!r}: {self.name} is not a real variable, so it has no unit")
         if definition is None and name in units.UNITS:
             definition = own_definition(name)
         stated = replace(self, unit=name, display=shown_in(name), has_unit=True, definition=definition)

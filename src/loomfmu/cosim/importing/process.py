@@ -183,7 +183,7 @@ class Process:
         self._popen.returncode = 0  # it is not ours to wait for
 
     def _close(self) -> None:
-        """Close the pipes: it ends by itself when nobody else has them."""
+        """Close the pipes: it ends by itself when no other process has them."""
         for pipe in (self._requests, self._replies):
             with contextlib.suppress(OSError):
                 os.close(pipe)

@@ -38,7 +38,7 @@ Block = Callable[[Reals, Reals, Integers], None]
 
 
 class Interrupted(Exception):
-    """The user asked for the end of the run."""
+    """The user has interrupted the run."""
 
 
 class Master:
@@ -98,7 +98,7 @@ class Master:
                 give_back(slave)
         self.slaves.clear()
         self._guards.close()
-        if kind is None and self.interrupted.value:  # it came when nobody looked any more
+        if kind is None and self.interrupted.value:  # it came after the last check
             raise KeyboardInterrupt("interrupted")
 
     def initialize(self) -> None:

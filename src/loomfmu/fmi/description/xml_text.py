@@ -8,7 +8,7 @@ from ...errors import check_text
 def text_of(root: Element) -> bytes:
     """An element as a file, the same bytes for the same element.
 
-    Raises LoomfmuError for a text with a character that XML cannot hold: nobody could read the file.
+    Raises LoomfmuError for a text with a character that XML cannot hold: no parser could read the file.
     """
     for element in root.iter():
         tag = element.tag.rpartition(":")[2]

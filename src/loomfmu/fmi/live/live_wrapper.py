@@ -40,7 +40,7 @@ def refuse(slave: Any, text: str) -> None:
 
 # ---- the end of the process
 
-_libraries: set[str] = set()  # those that are told to let go
+_libraries: set[str] = set()  # those that let go at exit
 
 
 def let_go_at_exit(resources: str, name: str) -> None:
@@ -49,7 +49,7 @@ def let_go_at_exit(resources: str, name: str) -> None:
     In a library that is not unloaded before, `exit` first runs the destructor of the pointer, which frees
     the state and keeps its address, then `onLibraryUnload`, which counts down in the freed memory. That
     corrupts the heap wherever the memory has another use by then. Once let go, both find nothing.
-    On Windows they run in the other order. A host that is no Python has its interpreter ended by the state.
+    On Windows they run in the other order. A host that is not Python has its interpreter ended by the state.
     """
     library = f"{resources.rstrip('/').rpartition('/')[0]}/binaries/linux64/{name}.so"
     if sys.platform == "linux" and sys.orig_argv and library not in _libraries:

@@ -83,7 +83,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, const fmi2Value
 
 /* ---- what a host may ask about a step */
 
-/* Whether a status can be asked for now, and of the kind that the caller has a place for. */
+/* Whether a status of this kind can be queried now, and the caller has a place for it. */
 static fmi2Status fmu_status(Instance *instance, const char *function, bool known, const void *value)
 {
     if (!fmu_allowed(instance, STEPPED, function)) {
@@ -128,7 +128,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component component, const fmi2StatusKind ki
 {
     fmi2Status status = fmu_status(component, "fmi2GetBooleanStatus", kind == fmi2Terminated, value);
     if (status == fmi2OK) {
-        *value = fmi2False; /* a component never asks for the end of a run */
+        *value = fmi2False; /* a component never ends a run */
     }
     return status;
 }

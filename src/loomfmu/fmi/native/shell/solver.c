@@ -109,7 +109,7 @@ static Status fmu_enter_continuous_time(Instance *instance, const char *function
     return status;
 }
 
-/* Whether a host asks for no continuous states, as many as there are. */
+/* Whether a host requests 0 continuous states, which is their number. */
 static Status fmu_no_states(Instance *instance, int modes, const char *function, size_t count)
 {
     if (!fmu_allowed(instance, modes, function)) {

@@ -154,7 +154,7 @@ typedef struct {
     State state;
 } Saved;
 
-/* The copy behind a handle, or NULL and a message. A handle that was never one cannot be told from one. */
+/* The copy behind a handle, or NULL and a message. A pointer that was never a handle cannot be recognised. */
 static Saved *fmu_saved(Instance *instance, void *handle)
 {
     Saved *saved = handle;
