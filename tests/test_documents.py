@@ -65,6 +65,17 @@ def test_commands_are_understood(page: Path) -> None:
         cli_arguments.parser().parse_args(arguments)  # exits where it does not understand
 
 
+def test_the_house_lists_what_is_there_and_the_layers_as_they_are_enforced() -> None:
+    text = (HOUSE / "CONTRIBUTING.md").read_text()
+    listed = set(re.findall(r"^      ([a-z_]+(?:\.py|/))", text, re.MULTILINE))
+    package = [path for path in (HOUSE / "src" / "loomfmu").iterdir() if path.name[0] not in "_."]
+    there = {f"{path.name}/" if path.is_dir() else path.name for path in package}
+    assert listed == there - {"py.typed"}
+    rules = tomllib.loads((HOUSE / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    layers = [layer.replace("loomfmu.", "").replace(" | ", ", ") for layer in rules[0]["layers"]]
+    assert " > ".join(layers) in " ".join(text.split())
+
+
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
 def test_snippets_can_be_read(page: Path) -> None:
     for text in blocks(page, "python"):

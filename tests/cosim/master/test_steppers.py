@@ -3,7 +3,6 @@
 import signal
 import sys
 import threading
-import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -218,14 +217,12 @@ def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
     main = threading.main_thread().ident
     assert main is not None
     timer = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
-    before = time.perf_counter()
     with pytest.raises(Interrupted), Master(scene, compiled=True) as master:
         master.initialize()
         timer.start()
         master.run(1024, count, lambda _step: None)
     timer.join()
     assert 0 < rows < scene.steps
-    assert time.perf_counter() - before < 30.0  # a part is made in 50 ms: this is to see that it ends at all
 
 
 def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatch) -> None:
