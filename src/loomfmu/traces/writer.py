@@ -50,9 +50,9 @@ class TraceWriter:
         self.channels = channels
         self.rows = 0
         self.partial.parent.mkdir(parents=True, exist_ok=True)
-        values = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
-        texts = sum(PER_ATTRIBUTE + len(text.encode()) for text in values)
-        header = SPARE + texts + PER_DATASET * (len(channels) + 2)
+        texts = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
+        stored = sum(PER_ATTRIBUTE + len(text.encode()) for text in texts)
+        header = SPARE + stored + PER_DATASET * (len(channels) + 2)
         self._block = SPARE + (PER_DATASET + 8 * ROWS) * (len(channels) + 2)
         try:
             with self.partial.open("xb") as file:
