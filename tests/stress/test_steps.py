@@ -7,7 +7,7 @@ import pytest
 from driving import declared, values
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from whole_loom import TURN, WholeLoom
+from whole_loom import TURN, WIRES, WholeLoom
 
 SPEED = 40.0  # rad/s
 # what is a function of the shaft alone
@@ -60,8 +60,13 @@ def test_what_has_no_memory_does_not_see_the_steps(sizes):
 @settings(max_examples=25)
 @given(st.lists(step_sizes, min_size=2, max_size=10), st.booleans())
 def test_any_steps_run(sizes, follow):
-    # `run` looks whether every output is finite, and every problem a warning
-    run(WholeLoom(SPEED, follow=follow, ripple_amplitude=0.3, ramp_duration=0.05), sizes)
+    # `run` looks whether every output is finite, and every problem a warning; only a damper between stops
+    # this hard may refuse a step, which spans too many contacts
+    try:
+        run(WholeLoom(SPEED, follow=follow, ripple_amplitude=0.3, ramp_duration=0.05), sizes)
+    except AssertionError as refused:
+        name, text = refused.args[0]
+        assert (name, text.partition("; ")[2], max(sizes) > 0.1) == ("HealdDamper", "use a smaller step", True)
 
 
 def uneven(count: int, end: float, seed: int) -> list[float]:
@@ -100,7 +105,7 @@ def test_two_thousand_steps_of_a_nanosecond_are_one_of_two_microseconds():
 
 @pytest.mark.parametrize("turns", [0.5, 1.0, 2.5, 7.3])
 def test_steps_of_whole_revolutions(turns):
-    loom = WholeLoom(SPEED, follow=True)
+    loom = WholeLoom(SPEED, follow=True, names=[name for name in WIRES if name != "HealdDamper"])
     margins = [loom.parts["BeltMonitor"].margin]
     size = turns * TURN / SPEED
     for n in range(5):

@@ -28,7 +28,7 @@ START = 120.0  # s for Python to start on a busy machine
 MOST_OUTPUT = 4096  # bytes of what an FMU prints that are kept
 MOST_SHOWN = 200  # letters of it that a message shows
 SCRIPT = (
-    "import json, sys; sys.path[:] = json.loads(sys.argv.pop(1));"
+    "import json, pathlib, sys; sys.path[:] = json.loads(pathlib.Path('path').read_bytes());"
     " from loomfmu.cosim.importing.worker import main; main()"
 )
 
@@ -71,9 +71,11 @@ class Process:
         self._replies, answers = os.pipe()
         self._prints, printed = os.pipe()
         try:
-            path = json.dumps([str(Path(place).absolute()) for place in sys.path])
+            # in a file: live FMUs lengthen the path of this process, and a command line has limits
+            places = dict.fromkeys(str(Path(place).absolute()) for place in sys.path)
+            (self._folder / "path").write_text(json.dumps(list(places)))
             self._popen = subprocess.Popen(
-                [sys.executable, "-c", SCRIPT, path, str(theirs), str(answers)],
+                [sys.executable, "-c", SCRIPT, str(theirs), str(answers)],
                 stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT, cwd=self._folder,
                 pass_fds=(theirs, answers), start_new_session=True,
             )  # fmt: skip
