@@ -232,7 +232,6 @@ def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch:
     changed(
         cam,
         a=("lowest_so_far(\n", "sampled(\n"),
-        b=("    state,\n", "    state,\n"),
         c=("@dataclass(slots=True)\n", SAMPLED + "@dataclass(slots=True)\n"),
     )
     with pytest.raises(AssertionError, match="lowest_contact_force depends on where the samples lie"):

@@ -1,7 +1,7 @@
 """How a component declares its variables: once, and everything else is derived from it.
 
-A component is a dataclass whose fields are made by `parameter`, `input_`, `output` and `state`, or by
-`loomfmu.arrays.array` of these.
+A component is a dataclass whose fields are made by `parameter`, `input_`, `output`, `state` and `auxiliary`,
+or by `loomfmu.arrays.array` of these.
 The model description, the FMU's state, the attributes of the traces, the variable tables of the
 documentation, the checks of limits and the C struct all come from `variables_of(component)`.
 """
@@ -18,6 +18,8 @@ from . import units
 from .errors import LoomfmuError
 
 LARGEST_INTEGER = 2147483647  # of FMI 2
+AT_STEP_END = "inputs_at_step_end"  # false where inputs are values at the start of the step
+MAKERS = "parameter, input_, output, state, auxiliary or indicator"
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,8 @@ class Variable:
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
     instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds;
-    `element` is its place in an array, such as `table[35]` for `table_36`.
+    `element` is its place in an array, such as `table[35]` for `table_36`; `carried` says that outputs
+    beside extremes follow from what it held before the step.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Variable:
     lowest_of: str | None = None
     highest_of: str | None = None
     element: str = ""
+    carried: bool = False
 
     @property
     def member(self) -> str:
@@ -127,8 +131,8 @@ class Problem:
 
 
 # What a component carries from step to step, where its inputs hold at the step's end: nothing, so that its
-# outputs are functions of time, parameters and inputs; extremes, so that all other outputs are; or its
-# motion, which integrates over its inputs.
+# outputs are functions of time, parameters and inputs; nothing but extremes, so that all other outputs are;
+# or its motion, which integrates over its inputs, with extremes or without.
 NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 
@@ -190,7 +194,7 @@ def parameter(
 
 
 def at_step_end() -> Any:
-    """The parameter `inputs_at_step_end`: false where inputs are values at the start of the step."""
+    """The parameter `inputs_at_step_end`, for the field of that name."""
     return parameter(
         "1", False, "Inputs are values at the end of the step (from a master that steps sources before sinks)"
     )
@@ -246,13 +250,22 @@ def state(
     start: float | int | bool = 0.0,
     minimum: float | None = None,
     maximum: float | None = None,
+    carried: bool = True,
 ) -> Any:
-    """A value that the component carries from one step to the next, or computes once.
+    """A value that the component carries from one step to the next: its motion, a counter.
 
     Its limits are those that the component itself keeps to: a saved state beyond them is refused.
     """
     variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare("local", variability, unit, start, description, None, minimum=minimum, maximum=maximum)
+    return _declare(
+        "local", variability, unit, start, description, None,
+        minimum=minimum, maximum=maximum, carried=carried,
+    )  # fmt: skip
+
+
+def auxiliary(unit: str, description: str, **rest: Any) -> Any:
+    """A `state` on whose past only extremes depend: it is computed once, or kept to find an extreme."""
+    return state(unit, description, **rest, carried=False)
 
 
 def indicator(unit: str, description: str) -> Any:
@@ -263,7 +276,7 @@ def indicator(unit: str, description: str) -> Any:
 def _variable(declared: Field[Any]) -> Variable:
     start = declared.default
     if start is MISSING or "causality" not in declared.metadata:
-        raise TypeError(f"{declared.name} is not declared by parameter, input_, output, state or indicator")
+        raise TypeError(f"{declared.name} is not declared by {MAKERS}")
     return Variable(name=declared.name, type=type(start), start=start, **declared.metadata)
 
 

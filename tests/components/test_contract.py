@@ -52,7 +52,9 @@ def test_what_is_said_of_variables_names_variables(component):
     held = {v.name: v.lowest_of or v.highest_of for v in declared(component) if v.lowest_of or v.highest_of}
     assert set(held) | set(held.values()) | set(component.windows) <= outputs
     assert component.keeps in (NOTHING, EXTREMES, MOTION)
-    assert bool(held) == (component.keeps == EXTREMES)
+    assert held or component.keeps != EXTREMES  # an integrator may hold extremes as well
+    assert not held or component.keeps != NOTHING
+    assert component.keeps == MOTION or not any(v.carried for v in declared(component))
     assert set(component.unsteady) <= {v.name for v in declared(component) if v.causality == "parameter"}
 
 

@@ -57,6 +57,24 @@ MISTAKES = {
         '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="sound")',
         "line 17: rate is an extreme so far, and keeps = NOTHING",
     ),
+    "a state beside extremes": (
+        '    rate: float = output("m/s", "Rate")',
+        '    keeps: ClassVar[str] = EXTREMES\n    low: float = output("m", "Low", lowest_of="sound")\n'
+        '    rate: float = output("m/s", "Rate")\n    blows: float = state("1", "Blows so far")',
+        "line 19: blows is a state, and keeps is not MOTION: remove keeps, or declare blows as auxiliary",
+    ),
+    "an output that integrates": (
+        'output("m/s", "Rate")\n\n    def initialize(self, time: float) -> int:\n        """Silence."""\n'
+        "        self.sound = 0.0\n        return 0\n\n"
+        '    def step(self, time: float, step_size: float) -> int:\n        """Ring."""\n'
+        "        self.sound = self.pitch * time",
+        'output("m/s", "Rate")\n    keeps: ClassVar[str] = NOTHING\n\n'
+        '    def initialize(self, time: float) -> int:\n        """Silence."""\n'
+        "        self.sound = 0.0\n        return 0\n\n"
+        '    def step(self, time: float, step_size: float) -> int:\n        """Ring."""\n'
+        "        self.sound = self.sound + self.pitch * step_size",
+        "line 15: sound depends on the steps before, and keeps is not MOTION: remove keeps",
+    ),
     "a problem without words": ("return 0\n\n", "return 2\n\n", "line 18: initialize returns problem 2"),
     "words that show nothing": ("{pitch}", "{pich}", r"line 13: problems: \{pich\} .* did you mean 'pitch'"),
     "a terminal of other members": (

@@ -24,7 +24,7 @@ from ..physics.numerics.motion import (
     sample_noise,
 )
 from ..physics.shaft import carried, too_far
-from ..variables import EXTREMES, Problem, Terminal, input_, output, parameter, state
+from ..variables import EXTREMES, Problem, Terminal, auxiliary, input_, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -133,27 +133,27 @@ class BeltMonitor(ShaftDriven):
         lowest_of="margin",
     )  # fmt: skip
 
-    acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
-    bend_rate: float = state("m/s", "Rate of the second derivative by shaft angle between the samples")
-    sampled_clearance: float = state("m", "Clearance for which length_factor was computed")
-    sampled_time: float = state("s", "Time of the last sample of the inputs")
-    sampled_travel: float = state("m", "Travel at the last sample")
-    sampled_velocity: float = state("m/s", "Velocity at the last sample")
-    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
-    sampled_force: float = state("N", "Weft tension at the last sample")
-    sampled_factor: float = state("1", "Length factor at the last sample")
-    sampled_angle: float = state("rad", "Shaft angle at the last sample")
-    sampled_slope: float = state("m", "Travel by shaft angle at the last sample, first derivative")
-    sampled_bend: float = state("m", "Travel by shaft angle at the last sample, second derivative")
-    sampled_turning: bool = state("1", "The shaft was turning at the last sample", start=False)
-    bump_by_time: float = state("m", "Bump of the rate by time over the last step")
-    bump_time: float = state("s", "Duration of the last step, if it was interpolated", minimum=0.0)
-    bump_by_angle: float = state("m", "Bump of the rate by shaft angle over the last step")
-    bump_angle: float = state("rad", "Shaft angle of the last step, if it was interpolated")
-    joined_angle: float = state("rad", "Shaft angle of the current sample")
-    joined_slope: float = state("m", "First derivative by shaft angle at the current sample")
-    joined_bend: float = state("m", "Second derivative by shaft angle at the current sample")
-    joined_turning: bool = state("1", "The shaft is turning at the current sample", start=False)
+    acceleration_rate: float = auxiliary("m/s3", "Rate of the acceleration between the last two samples")
+    bend_rate: float = auxiliary("m/s", "Rate of the second derivative by shaft angle between the samples")
+    sampled_clearance: float = auxiliary("m", "Clearance for which length_factor was computed")
+    sampled_time: float = auxiliary("s", "Time of the last sample of the inputs")
+    sampled_travel: float = auxiliary("m", "Travel at the last sample")
+    sampled_velocity: float = auxiliary("m/s", "Velocity at the last sample")
+    sampled_acceleration: float = auxiliary("m/s2", "Acceleration at the last sample")
+    sampled_force: float = auxiliary("N", "Weft tension at the last sample")
+    sampled_factor: float = auxiliary("1", "Length factor at the last sample")
+    sampled_angle: float = auxiliary("rad", "Shaft angle at the last sample")
+    sampled_slope: float = auxiliary("m", "Travel by shaft angle at the last sample, first derivative")
+    sampled_bend: float = auxiliary("m", "Travel by shaft angle at the last sample, second derivative")
+    sampled_turning: bool = auxiliary("1", "The shaft was turning at the last sample", start=False)
+    bump_by_time: float = auxiliary("m", "Bump of the rate by time over the last step")
+    bump_time: float = auxiliary("s", "Duration of the last step, if it was interpolated", minimum=0.0)
+    bump_by_angle: float = auxiliary("m", "Bump of the rate by shaft angle over the last step")
+    bump_angle: float = auxiliary("rad", "Shaft angle of the last step, if it was interpolated")
+    joined_angle: float = auxiliary("rad", "Shaft angle of the current sample")
+    joined_slope: float = auxiliary("m", "First derivative by shaft angle at the current sample")
+    joined_bend: float = auxiliary("m", "Second derivative by shaft angle at the current sample")
+    joined_turning: bool = auxiliary("1", "The shaft is turning at the current sample", start=False)
 
     def initialize(self, time: float) -> int:
         """Take the first sample and forget all extremes."""

@@ -15,7 +15,7 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, indicator, output, parameter, state
+from ..variables import NOTHING, Problem, auxiliary, indicator, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -114,8 +114,8 @@ class PatternLock(ShaftDriven):
         "W", "Power lost by all pawls on the discs, at the rotor's highest speed", nominal=100.0,
         depends=("shaft_velocity", "shaft_acceleration"),
     )  # fmt: skip
-    inertia: float = state("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
-    whole_turn: float = state("rad", "Angle that the pawl turns from one disc to the other")
+    inertia: float = auxiliary("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
+    whole_turn: float = auxiliary("rad", "Angle that the pawl turns from one disc to the other")
     in_time_event: float = indicator(
         "rad/s", "Margin of the shaft speed below speed_limit; in_time changes where it passes zero"
     )

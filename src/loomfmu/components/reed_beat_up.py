@@ -15,7 +15,7 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, output, parameter, state
+from ..variables import NOTHING, Problem, auxiliary, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -152,10 +152,10 @@ class ReedBeatUp(ShaftDriven):
     crank_torque: float = output(
         "N.m", "Torque the crank needs in its direction, from the shaft or the servo", nominal=10.0
     )
-    beat_up_crank: float = state("rad", "Crank angle at the beat-up")
-    closure: float = state("m", "Margin by which the crank-rocker closes over a whole turn")
-    reach: float = state("m", "Margin by which the rod reaches the reed's line over the swing")
-    clearance: float = state("rad", "Margin by which arm and rod stay out of line over the swing")
+    beat_up_crank: float = auxiliary("rad", "Crank angle at the beat-up")
+    closure: float = auxiliary("m", "Margin by which the crank-rocker closes over a whole turn")
+    reach: float = auxiliary("m", "Margin by which the rod reaches the reed's line over the swing")
+    clearance: float = auxiliary("rad", "Margin by which arm and rod stay out of line over the swing")
 
     def rocker(self, crank: float, crank_first: float) -> tuple[float, float, float]:
         """Angle of the rocker at a crank angle, with its derivatives by the crank's turn."""

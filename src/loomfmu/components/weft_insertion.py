@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, Terminal, output, parameter, state
+from ..variables import NOTHING, Problem, Terminal, auxiliary, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -89,9 +89,9 @@ class WeftInsertion(ShaftDriven):
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
     stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
     shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
-    travel_per_angle: float = state("m", "Travel per radian of the sector gear, signed")
-    sector_start: float = state("rad", "Angle of the sector gear at shaft angle 0")
-    closure: float = state("m", "Margin by which the four-bar closes over the rocker's swing")
+    travel_per_angle: float = auxiliary("m", "Travel per radian of the sector gear, signed")
+    sector_start: float = auxiliary("rad", "Angle of the sector gear at shaft angle 0")
+    closure: float = auxiliary("m", "Margin by which the four-bar closes over the rocker's swing")
 
     def sector(self, theta: float) -> tuple[float, float, float]:
         """Angle of the sector gear at a shaft angle, with its derivatives."""

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 from .. import units
 from ..errors import suggestion
-from ..variables import EXTREMES, MOTION, NOTHING, Component, Variable, variables_of
+from ..variables import EXTREMES, MAKERS, MOTION, NOTHING, Component, Variable, variables_of
+from . import memory
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 KEYS = ("component", "fmu", "machine", "head", "pattern")  # of an instance in a scene
@@ -34,6 +35,10 @@ def fault(component: type[Component], taken: Collection[str]) -> Fault | None:
         component()
     except ValueError as error:
         return Fault("", " ".join(str(error).split()))
+    name = "" if component.keeps == MOTION else memory.carrying(component)
+    if name:
+        text = f"{name} depends on the steps before, and keeps is not MOTION: remove keeps"
+        return Fault(name, text)
     return None
 
 
@@ -54,7 +59,7 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
     for declared in fields(component):
         if "causality" not in declared.metadata:
             name = declared.name
-            yield Fault(name, f"{name} is not declared by parameter, input_, output, state or indicator")
+            yield Fault(name, f"{name} is not declared by {MAKERS}")
     for variable in variables_of(component):
         text = _of_variable(component, variable)
         if text:
@@ -124,6 +129,13 @@ def _of_traits(component: type[Component]) -> Iterator[Fault]:
         yield Fault("keeps", f"keeps = {component.keeps!r} is not NOTHING, EXTREMES or MOTION")
     if held and component.keeps == NOTHING:
         yield Fault(held[0], f"{held[0]} is an extreme so far, and keeps = NOTHING: write keeps = EXTREMES")
+    if component.keeps != MOTION:
+        for name in (v.name for v in variables_of(component) if v.carried):
+            yield Fault(
+                name,
+                f"{name} is a state, and keeps is not MOTION: remove keeps, or declare {name} as"
+                " auxiliary if nothing but extremes depends on its past",
+            )
     for name in component.windows:
         if name not in outputs:
             yield Fault("windows", f"windows: {name!r} is not an output{suggestion(name, outputs)}")

@@ -40,7 +40,8 @@ class Eccentric(ShaftDriven):
     """
 
     problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
-    # from step to step it carries the extreme alone: all other outputs follow from time and inputs
+    # from step to step it carries the extreme alone: all other outputs follow from time and inputs;
+    # remove the line if you add a `state`
     keeps: ClassVar[str] = EXTREMES
     # 15 deg: steps of that size show how its outputs change
     longest_turn: ClassVar[float] = pi / 12.0

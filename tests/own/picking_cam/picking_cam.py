@@ -9,10 +9,10 @@ from loomfmu.mechanism import (
     TOO_FAR,
     Problem,
     ShaftDriven,
+    auxiliary,
     lowest_so_far,
     output,
     parameter,
-    state,
     too_far,
 )
 
@@ -67,8 +67,8 @@ class PickingCam(ShaftDriven):
     lowest_contact_force: float = output(
         "N", "Lowest contact force so far, on the continuous curve", nominal=100.0, lowest_of="contact_force"
     )
-    force_rate: float = state("N/s", "Rate of the contact force")
-    sampled_acceleration: float = state("rad/s2", "Acceleration of the shaft at the last sample")
+    force_rate: float = auxiliary("N/s", "Rate of the contact force")
+    sampled_acceleration: float = auxiliary("rad/s2", "Acceleration of the shaft at the last sample")
 
     def initialize(self, time: float) -> int:
         """Place the follower."""

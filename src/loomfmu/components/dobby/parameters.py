@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import pi
 
 from ...arrays import array
-from ...variables import parameter, state
+from ...variables import auxiliary, parameter
 from ..shaft_driven import ShaftDriven
 
 
@@ -90,18 +90,20 @@ class LawParameters(ShaftDriven):
         minimum=pi / 180.0, maximum=pi,
     )  # fmt: skip
     cam_bend: tuple[float, ...] = array(
-        state("m", f"Second derivative of the cam's spline at control point {number}")
+        auxiliary("m", f"Second derivative of the cam's spline at control point {number}")
         for number in range(1, 7)
     )
-    cam_top: float = state("rad", "Shaft angle from the start of the rise to the highest point of the cam")
-    cam_span: float = state("m", "Largest height of the cam's spline above its start")
-    lowest_speed: float = state("1", "Lowest rotor speed over the shaft's, for laws that could reverse")
-    segment: int = state(
+    cam_top: float = auxiliary(
+        "rad", "Shaft angle from the start of the rise to the highest point of the cam"
+    )
+    cam_span: float = auxiliary("m", "Largest height of the cam's spline above its start")
+    lowest_speed: float = auxiliary("1", "Lowest rotor speed over the shaft's, for laws that could reverse")
+    segment: int = auxiliary(
         "1", "Current segment of the spline, counted from 0; -1 for none", start=-1, minimum=-1, maximum=36
     )
-    segment_start: float = state("rad", "Start of the current segment")
-    segment_length: float = state("rad", "Length of the current segment", minimum=0.0)
-    segment_left: float = state("1", "Value at the start of the current segment")
-    segment_right: float = state("1", "Value at the end of the current segment")
-    segment_left_bend: float = state("1", "Second derivative at the start of the current segment")
-    segment_right_bend: float = state("1", "Second derivative at the end of the current segment")
+    segment_start: float = auxiliary("rad", "Start of the current segment")
+    segment_length: float = auxiliary("rad", "Length of the current segment", minimum=0.0)
+    segment_left: float = auxiliary("1", "Value at the start of the current segment")
+    segment_right: float = auxiliary("1", "Value at the end of the current segment")
+    segment_left_bend: float = auxiliary("1", "Second derivative at the start of the current segment")
+    segment_right_bend: float = auxiliary("1", "Second derivative at the end of the current segment")

@@ -1,0 +1,33 @@
+"""Whether a component carries more from step to step than extremes, as its outputs show."""
+
+from ..variables import AT_STEP_END, Component, variables_of
+
+STEPS = 24
+STEP_SIZE = 0.013  # s: no simple part of a revolution at usual speeds
+
+
+def carrying(component: type[Component]) -> str:
+    """The first output, not an extreme, that an instance which starts before the last step shows differently.
+
+    Empty if there is none, or if the component does not run that far with its defaults.
+    """
+    try:
+        used, fresh = _run(component, 0), _run(component, STEPS - 1)
+    except Exception:  # whatever its code raises: a run reports it
+        return ""
+    for variable in variables_of(component):
+        held = variable.causality != "output" or variable.lowest_of or variable.highest_of
+        # the same operations on the same numbers: no tolerance, and NaN is NaN
+        if not held and repr(getattr(used, variable.name)) != repr(getattr(fresh, variable.name)):
+            return variable.name
+    return ""
+
+
+def _run(component: type[Component], first: int) -> Component:
+    """An instance that starts before a step and has taken all that follow."""
+    at_step_end = any(variable.name == AT_STEP_END for variable in variables_of(component))
+    running = component(**({AT_STEP_END: True} if at_step_end else {}))
+    running.initialize(first * STEP_SIZE)
+    for step in range(first, STEPS):
+        running.step(step * STEP_SIZE, STEP_SIZE)
+    return running
