@@ -19,6 +19,7 @@ from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.new import new
+from loomfmu.own import checks, load
 
 TRIAL = Path(__file__).parent / "own" / "picking_cam"  # what was written by hand
 SCENE = """
@@ -226,8 +227,6 @@ def test_one_that_cannot_follow_the_shaft_is_named(tmp_path: Path) -> None:
 
 
 def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from loomfmu.own import checks, load
-
     checks.check_extremes(load.component("picking_cam.py", cam))
     changed(
         cam,
@@ -236,6 +235,26 @@ def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch:
     )
     with pytest.raises(AssertionError, match="lowest_contact_force depends on where the samples lie"):
         checks.check_extremes(load.component("picking_cam.py", cam))
+
+
+@pytest.mark.parametrize(
+    ("old", "new_"),
+    [
+        ("self.lowest_contact_force = lowest_so_far(\n", "_unused = lowest_so_far(\n"),
+        ("lowest_so_far", "highest_so_far"),
+    ],
+    ids=["never updated", "the other side"],
+)
+def test_an_extreme_that_misses_samples_does_not_pass_the_check(cam: Path, old: str, new_: str) -> None:
+    changed(cam, a=(old, new_))
+    with pytest.raises(AssertionError, match="lowest_contact_force = .* contact_force has been"):
+        checks.check_extremes(load.component("picking_cam.py", cam))
+
+
+def test_the_checks_are_for_classes_on_shaft_driven(tmp_path: Path) -> None:
+    (tmp_path / "wheel.py").write_text(ALONE)
+    with pytest.raises(AssertionError, match="Wheel has no speed and start_angle .* on ShaftDriven"):
+        checks.check_rates(load.component("wheel.py", tmp_path))
 
 
 SAMPLED = '''

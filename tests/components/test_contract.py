@@ -385,6 +385,24 @@ def test_splitting_a_step_changes_nothing(component, given, pieces):
 
 
 @every_flag
+def test_no_sample_is_beyond_an_extreme(component, given):
+    held = [(v.name, v.lowest_of, min) for v in declared(component) if v.lowest_of]
+    held += [(v.name, v.highest_of, max) for v in declared(component) if v.highest_of]
+    if "inputs_at_step_end" in given:
+        given = given | {"inputs_at_step_end": True}  # else an extreme is known a step later
+    instance = component(**given)
+    instance.initialize(0.0)
+    far = {name: getattr(instance, followed) for name, followed, _best in held}
+    for n in range(200 if held else 0):
+        assert advance(instance, n * 1e-3, 1e-3) == 0
+        for name, followed, best in held:
+            far[name] = best(far[name], getattr(instance, followed))
+            # the same sum in another order: rounding
+            beyond = abs(best(far[name], getattr(instance, name)) - getattr(instance, name))
+            assert beyond <= 1e-12 * abs(far[name]), name
+
+
+@every_flag
 def test_rates_belong_to_their_outputs(component, given):
     rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
     step_size = 1e-5

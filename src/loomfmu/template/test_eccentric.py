@@ -41,6 +41,6 @@ def test_the_scene_holds_on_either_grid() -> None:
     windows = loomfmu.evaluate(SCENE, set={"grid": "windows"})
     assert even.holds
     assert windows.holds
-    # equal steps of 1 deg know the curve between them to its fourth derivative * (1 deg)^4 / 384: 2e-10 of the
-    # speed here, and 2e-6 for a motion ten times as fast as the shaft
+    # equal steps of 1 deg know the curve between them to its fourth derivative * (1 deg)^4 / 384:
+    # 2e-10 of the speed here, and 2e-6 for a motion ten times as fast as the shaft
     assert windows.claims[0].worst == pytest.approx(even.claims[0].worst, rel=1e-5)
