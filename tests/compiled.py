@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from loomfmu.fmi.native.builder import SHELL
+from loomfmu.fmi.native.builder import ARITHMETIC, SHELL
 from loomfmu.fmi.native.translate import translate
 from loomfmu.variables import Component, variables_of
 
@@ -27,7 +27,7 @@ def library(component: type[Component], folder: Path, more: str = "") -> ctypes.
     (folder / "component.h").write_text(translated.header)
     shutil.copy(SHELL / "python_arithmetic.h", folder)
     (folder / "entries.c").write_text(ENTRIES.format(name=component.__name__) + more)
-    call = ["gcc", "-shared", "-fPIC", "-O2", "-std=c99", "-ffp-contract=off", *WARNINGS]
+    call = ["gcc", "-shared", "-fPIC", "-std=c99", *ARITHMETIC, *WARNINGS]
     run = subprocess.run(
         [*call, "-o", "entries.so", "entries.c", "-lm"],
         cwd=folder,

@@ -247,13 +247,13 @@ def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch:
 )
 def test_an_extreme_that_misses_samples_does_not_pass_the_check(cam: Path, old: str, new_: str) -> None:
     changed(cam, a=(old, new_))
-    with pytest.raises(AssertionError, match="lowest_contact_force = .* contact_force has been"):
+    with pytest.raises(AssertionError, match=r"lowest_contact_force = .* contact_force has been"):
         checks.check_extremes(load.component("picking_cam.py", cam))
 
 
 def test_the_checks_are_for_classes_on_shaft_driven(tmp_path: Path) -> None:
     (tmp_path / "wheel.py").write_text(ALONE)
-    with pytest.raises(AssertionError, match="Wheel has no speed and start_angle .* on ShaftDriven"):
+    with pytest.raises(AssertionError, match=r"Wheel has no speed and start_angle .* on ShaftDriven"):
         checks.check_rates(load.component("wheel.py", tmp_path))
 
 

@@ -257,3 +257,12 @@ def test_messages_are_safe_for_hosts_that_take_them_for_formats(gcc, tmp_path, m
     # a locale with a decimal comma changes nothing either: the host has set none, C's own is used
     run = subprocess.run([tmp_path / "host"], capture_output=True, text=True, env=os.environ, check=True)
     assert run.stdout == "share = 150 % is outside [0, 100] %\n"
+
+
+def test_integers_beyond_64_bits_wrap(gcc, tmp_path):
+    toy = compiled(toys.Wraps, tmp_path)()
+    toy.step(0.0, 1.0)
+    assert toy.grows
+    toy.count = 2**63 - 1
+    toy.step(0.0, 1.0)
+    assert not toy.grows

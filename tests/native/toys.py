@@ -214,3 +214,20 @@ class Loops(Component):
         self.last = number
         self.chained = 0 < time <= 2.0 and not end < 3
         return 0
+
+
+@dataclass(slots=True)
+class Wraps(Component):
+    """Adds to the largest integer, where the sum in C needs -fwrapv."""
+
+    count: int = output("1", "Count", start=0, variability="discrete")
+    grows: bool = output("1", "Grows", start=False, variability="discrete")
+
+    def initialize(self, time: float) -> int:
+        """Nothing."""
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Compare."""
+        self.grows = self.count + 1 > self.count
+        return 0

@@ -1,6 +1,7 @@
 """What every mechanism on the shaft has to pass: its rates and its extremes are what they are declared to be.
 
-The checks turn a mechanism by its own `speed` and `start_angle`, as a class on `ShaftDriven` has them. Each check raises AssertionError, naming the output; the tests that `loomfmu new` writes call them.
+The checks turn a mechanism by its own `speed` and `start_angle`, as a class on `ShaftDriven` has them.
+Each raises AssertionError, naming the output; the tests that `loomfmu new` writes call them.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -15,6 +16,7 @@ FINE = 2.0 * pi / 1440.0  # rad
 COARSE = pi / 12.0  # longest turn of a step where a component allows any [rad]
 STARTS = 8  # places within a step at which the first sample is taken
 BETTER = 0.1  # of the spread of samples: what the spread of an extreme may be
+Rows = list[dict[str, float]]
 ROUNDING = 1e-9  # of the largest value
 OFF = 0.01  # of the largest rate: a wrong factor or sign is off by more, a jump of the second rate by less
 

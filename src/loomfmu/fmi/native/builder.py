@@ -63,8 +63,10 @@ PLATFORMS = {
         ("-fPIC", "-Wl,-install_name,@rpath/{name}.dylib"),
     ),
 }
-# no fused multiply-add: the results are those of Python, which has none
-FLAGS = ("-shared", "-std=c99", "-O2", "-ffp-contract=off", "-g0", "-s", "-fno-sanitize=all")
+# no fused multiply-add, as in Python; integers wrap alike in every build
+ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
+OPTIONS = " ".join(ARITHMETIC)
+FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 COMMON_FILES = (
     "tables.h", "python_arithmetic.h", "instance.h", "messages.c", "instance.c", "values.c", "states.c",
     "solver.c",
@@ -79,13 +81,13 @@ SHELL_FILES = {
         "fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h",
     ),
 }  # fmt: skip
-COMMAND = "cc -shared -fPIC -std=c99 -O2 -ffp-contract=off -o {name}.so fmi{fmi}.c -lm"
+COMMAND = f"cc -shared -fPIC -std=c99 {OPTIONS} -o {{name}}.so fmi{{fmi}}.c -lm"
 
-BUILD_DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
+BUILD_DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiBuildDescription fmiVersion="3.0">
-  <BuildConfiguration modelIdentifier="{name}">
-    <SourceFileSet language="C99" compilerOptions="-O2 -ffp-contract=off">
-      <SourceFile name="fmi{fmi}.c"/>
+  <BuildConfiguration modelIdentifier="{{name}}">
+    <SourceFileSet language="C99" compilerOptions="{OPTIONS}">
+      <SourceFile name="fmi{{fmi}}.c"/>
     </SourceFileSet>
     <Library name="m"/>
   </BuildConfiguration>

@@ -6,11 +6,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Where Python's unlimited integers end here: room is left for what is added to them. */
+/* The largest integer that a float becomes: room is left for what is added to it. Sums and products beyond
+ * 64 bits wrap (-fwrapv); Python's do not, so components keep their integers within 64 bits. */
 #define PYTHON_LARGEST (INT64_C(1) << 60)
 
-/* A whole number as an integer. Python knows no largest one and raises on what is not finite; here
- * the largest, or 0 for NaN, stands for it, and the step ends with outputs that are refused. */
+/* A whole number as an integer. Python has no largest one and raises on what is not finite; here the largest
+ * stands for a larger one, and 0 for NaN. The results then differ from Python's without a message. */
 static inline int64_t python_whole(double value)
 {
     if (value >= (double)PYTHON_LARGEST) {
