@@ -31,6 +31,8 @@ class Variable:
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
     instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds;
+    `when` and `unless` name the yes-or-no parameter with which, or without which alone, it has an effect;
+    `pole` says that an output grows without bound at the edges of its component's windows;
     `element` is its place in an array, such as `table[35]` for `table_36`; `carried` says that outputs
     beside extremes follow from what it held before the step.
     """
@@ -54,6 +56,9 @@ class Variable:
     source: str | None = None
     lowest_of: str | None = None
     highest_of: str | None = None
+    when: str | None = None
+    unless: str | None = None
+    pole: bool = False
     element: str = ""
     carried: bool = False
 
@@ -183,13 +188,16 @@ def parameter(
     maximum: float | None = None,
     nominal: float | None = None,
     choices: tuple[str, ...] = (),
+    when: str | None = None,
+    unless: str | None = None,
 ) -> Any:
     """A value that is set before a run and fixed during it."""
     if choices:
         minimum, maximum = 1, len(choices)
     return _declare(
         "parameter", "fixed", unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices,
+        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, when=when,
+        unless=unless,
     )  # fmt: skip
 
 
@@ -212,12 +220,15 @@ def input_(
     unbounded: bool = False,
     rate: str | None = None,
     source: str | None = None,
+    when: str | None = None,
+    unless: str | None = None,
 ) -> Any:
     """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
     variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "input", variability, unit, start, description, display,
         minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate, source=source,
+        when=when, unless=unless,
     )  # fmt: skip
 
 
@@ -234,12 +245,13 @@ def output(
     depends: tuple[str, ...] | None = None,
     lowest_of: str | None = None,
     highest_of: str | None = None,
+    pole: bool = False,
 ) -> Any:
     """A value that the component computes."""
     return _declare(
         "output", variability, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of,
+        lowest_of=lowest_of, highest_of=highest_of, pole=pole,
     )  # fmt: skip
 
 

@@ -1,13 +1,20 @@
 """Files of one's own that cannot be an FMU: one line that says where and what, before anything is written."""
 
+from collections.abc import Callable
 from pathlib import Path
+from xml.etree.ElementTree import fromstring
 
 import pytest
 
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim.scenes import scene
+from loomfmu.cosim.scenes.graph import Wire
+from loomfmu.fmi.description.model_description import model_description
+from loomfmu.fmi.description.model_description3 import model_description3
 from loomfmu.own import declared, load
+from loomfmu.variables import Component
 
 GOOD = '''"""A bell."""
 
@@ -50,7 +57,11 @@ MISTAKES = {
     "a start outside": ("0.5, ", "1.5, ", r"line 14: pitch = 1.5 is outside \[0, 1\]"),
     "a rate that is not there": ('rate="rate"', 'rate="rat"', "line 15: sound: rate = 'rat' is not one of"),
     "a rate in another unit": ('"m/s", "Rate"', '"m", "Rate"', "line 15: sound is in m, and its rate"),
+    "a switch that is not there": (
+        'minimum=0.0, maximum=1.0)', 'when="loud")', "pitch: when = 'loud' is not one of its parameters"
+    ),
     "a taken name": ("pitch", "machine", "line 14: a variable cannot be called machine"),
+    "a key of every instance": ("pitch", "isolated", "line 14: a variable cannot be called isolated"),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',
@@ -181,3 +192,51 @@ def test_neighbours_of_one_name_in_two_folders_do_not_meet(tmp_path: Path) -> No
 @pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 def test_our_own_components_have_no_fault(component: type) -> None:
     assert declared.fault(component, ()) is None
+
+
+def test_variables_called_as_ours_are_have_no_special_effect(tmp_path: Path) -> None:
+    more = (
+        'prescribe_length_factor: bool = parameter("1", True, "Own")\n'
+        '    follow_lift: bool = parameter("1", False, "Own")\n'
+        '    guide_clearance: float = parameter("m", 1e-3, "Own")\n'
+        '    lift_fraction: float = input_("1", 0.0, "Own")\n'
+        '    loud: bool = parameter("1", False, "Loud")\n'
+        '    force: float = input_("N", 0.0, "Force", when="loud")\n'
+        '    soft: float = parameter("1", 0.5, "Soft", unless="loud")\n'
+        "    pitch"
+    )
+    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", f"{more}:", 1))
+    text = 'duration = "1 s"\nstep = "0.1 s"\n[shaft]\n[bell]\ncomponent = "bell.py"\n'
+    bell = scene.parse(text, directory=tmp_path).instances["bell"]
+    assert {"guide_clearance", "lift_fraction", "soft"} <= set(bell.effective())
+    assert "force" not in bell.effective()
+    bell.follow(Wire(("warp", "frame_load"), ("bell", "lift_fraction")))
+    assert "follow_lift" not in bell.values
+    bell.follow(Wire(("warp", "frame_load"), ("bell", "force")))
+    assert bell.values["loud"] is True
+    assert "soft" not in bell.effective()
+    assert "force" in bell.effective()
+
+
+@pytest.mark.parametrize(
+    "described", [lambda c: model_description(c, "", ""), lambda c: model_description3(c, "", "")]
+)
+def test_units_of_heat_and_electricity_reach_the_model_description(
+    tmp_path: Path, described: Callable[[type[Component]], bytes]
+) -> None:
+    more = (
+        'heat: float = parameter("J/K", 500.0, "Heat capacity")\n'
+        '    torque: float = parameter("N.m/A", 0.5, "Torque constant")\n'
+        '    warmth: float = output("K", "Temperature", rate="warming")\n'
+        '    warming: float = output("K/s", "Warming")\n    pitch:'
+    )
+    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more, 1))
+    root = fromstring(described(load.component("bell.py", tmp_path)))
+    bases = {unit.get("name"): unit[0].attrib for unit in root.iter("Unit")}
+    assert bases["K"] == {"K": "1"}
+    assert bases["K/s"] == {"s": "-1", "K": "1"}
+    assert bases["J/K"] == {"kg": "1", "m": "2", "s": "-2", "K": "-1"}
+    assert bases["N.m/A"] == {"kg": "1", "m": "2", "s": "-2", "A": "-1"}
+    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more.replace("K/s", "W/K"), 1))
+    with pytest.raises(LoomfmuError, match="warmth is in K, and its rate warming in W/K"):
+        load.component("bell.py", tmp_path)

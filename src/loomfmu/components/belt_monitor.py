@@ -73,7 +73,12 @@ class BeltMonitor(ShaftDriven):
         "1", False, "Use prescribed_length_factor instead of deriving it from guide_clearance"
     )
     prescribed_length_factor: float = parameter(
-        "1", 0.8, "Column length factor, used if prescribe_length_factor is true", minimum=0.1, maximum=2.0
+        "1",
+        0.8,
+        "Column length factor, used if prescribe_length_factor is true",
+        minimum=0.1,
+        maximum=2.0,
+        when="prescribe_length_factor",
     )
     taker: bool = parameter(
         "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in"
@@ -94,7 +99,7 @@ class BeltMonitor(ShaftDriven):
     )  # fmt: skip
     guide_clearance: float = input_(
         "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",
-        minimum=0.0, maximum=0.05, nominal=1e-3,
+        minimum=0.0, maximum=0.05, nominal=1e-3, unless="prescribe_length_factor",
     )  # fmt: skip
     free_length: float = output(
         "m", "Length of the belt between guide and head; negative while inside the guide", display="mm",
@@ -116,7 +121,7 @@ class BeltMonitor(ShaftDriven):
     lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve", lowest_of="margin")
     speed_limit: float = output(
         "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min if it cannot",
-        display="rev/min", nominal=100.0,
+        display="rev/min", nominal=100.0, pole=True,
     )  # fmt: skip
     lowest_speed_limit: float = output(
         "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0,

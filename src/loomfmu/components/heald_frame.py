@@ -74,15 +74,16 @@ class HealdFrame(Component):
     )
     lift_fraction: float = input_(
         "1", 0.5, "Lift of a frame that changes at every pick, used if follow_lift is true",
-        rate="lift_rate", minimum=-1e3, maximum=1e3,
+        rate="lift_rate", when="follow_lift", minimum=-1e3, maximum=1e3,
     )  # fmt: skip
     lift_rate: float = input_(
         "1/s", 10.471975511965976, "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration",
-        minimum=-1e9, maximum=1e9,
+        when="follow_lift", minimum=-1e9, maximum=1e9,
     )  # fmt: skip
     lift_acceleration: float = input_(
-        "1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0, minimum=-1e15, maximum=1e15
-    )
+        "1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0, when="follow_lift",
+        minimum=-1e15, maximum=1e15,
+    )  # fmt: skip
     lift: float = output(
         "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity"
     )

@@ -14,7 +14,16 @@ from ..variables import EXTREMES, MAKERS, MOTION, NOTHING, Component, Variable, 
 from . import memory
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
-KEYS = ("component", "fmu", "machine", "head", "pattern")  # of an instance in a scene
+PARAMETER_SETS = (
+    "machine",
+    "head",
+    "pattern",
+    "component",
+)  # keys of an instance for several values
+FILES = ("fmu", "units")  # of an instance given as a file
+ISOLATED = "isolated"  # whether it runs in a process of its own
+# of all that an instance has beside its variables; `units` is one of FMUs that are files only
+KEYS = (*PARAMETER_SETS, "fmu", ISOLATED)
 
 
 class Fault(NamedTuple):
@@ -98,6 +107,8 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
             ("rate", variable.rate, variable.causality),
             ("lowest_of", variable.lowest_of, "output"),
             ("highest_of", variable.highest_of, "output"),
+            ("when", variable.when, "parameter"),
+            ("unless", variable.unless, "parameter"),
             *(("depends", name, "input") for name in variable.depends or ()),
         ):
             if name is not None and (name not in known or known[name].causality != causality):
@@ -116,8 +127,7 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
 
 
 def _of_rate(variable: Variable, rate: Variable) -> Iterator[Fault]:
-    kg, m, s, rad = units.unit(variable.unit).dimension
-    if units.unit(rate.unit).dimension != (kg, m, s - 1, rad):
+    if units.unit(rate.unit).dimension != units.unit(variable.unit).rate:
         text = f"{variable.name} is in {variable.unit}, and its rate {rate.name} in {rate.unit}"
         yield Fault(variable.name, text)
 

@@ -7,11 +7,12 @@ from typing import Any
 
 from .. import units
 from ..cosim.importing.fmus import Port
-from ..cosim.scenes.instances import COARSE, FILES, ISOLATED, PARAMETER_SETS, TIMES, Instance, truth
+from ..cosim.scenes.instances import COARSE, TIMES, Instance, truth
 from ..cosim.scenes.overrides import components, overridden, unit_of
 from ..cosim.scenes.scene import Scene, check_free
 from ..errors import LoomfmuError
 from ..machines import TAKERS, named
+from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
 
 Value = float | int | bool | str
 

@@ -13,7 +13,7 @@ from ..master.constant_shaft import ConstantShaft
 from ..scenes.graph import Wire
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
-from ..scenes.standard_loom import FOLLOWED
+from ..scenes.standard_loom import FOLLOWED, follows, turning
 from .requested import claims_of
 
 
@@ -102,7 +102,8 @@ def _follows(scene: Scene, name: str, shaft: str) -> bool:
     taken = {wire.sink[1]: wire.source for wire in scene.wires if wire.sink[0] == name}
     wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}
     from_shaft = {sink: source for sink, source in taken.items() if source[0] == shaft}
-    return follower.fmu.ours and follower.values.get("follow_shaft") is True and from_shaft == wanted
+    fmu = follower.fmu
+    return fmu.ours and follows(fmu.component, follower.values) and from_shaft == wanted
 
 
 def _constant(shaft: Instance) -> ConstantShaft:
@@ -117,7 +118,7 @@ def _turning(scene: Scene, name: str, shafts: dict[str, ConstantShaft]) -> Insta
     if not shaft:
         return instance
     constant = shafts[shaft.pop()]
-    own = {"follow_shaft": False, "speed": constant.speed, "start_angle": constant.start_angle}
+    own = turning(constant.speed, constant.start_angle)
     return replace(instance, values=instance.values | own)
 
 

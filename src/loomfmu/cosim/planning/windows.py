@@ -38,7 +38,6 @@ DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may b
 RIPPLE = 1e-6  # of a signal's range: what samples about a minimum that is one differ by
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
 NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
-WITH_POLES = ("speed_limit",)  # at the edges of a window, where the load that it stands for has none
 
 
 @dataclass
@@ -262,7 +261,8 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
         seen = slice(inside[0], inside[-1] + 1)
         spacing = (high - low) / (INSIDE + 1)
         values = sign * trace[f"{instance}.{followed}"][seen]
-        if followed in WITH_POLES:
+        if any(each.pole for each in variables_of(component) if each.name == followed):
+            # what it stands for, a load, has none
             values = -(values**-2.0)
         for time in _lowest_points(trace.time[seen], values):
             places.bracket(time, REACH * spacing)

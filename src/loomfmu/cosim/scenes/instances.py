@@ -7,15 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from ... import machines
+from ...components.shaft_driven import ShaftDriven
 from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
 from ...own import load
+from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
+from ...variables import AT_STEP_END, Variable, variables_of
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from . import standard_loom
 from .graph import Wire
 
 COARSE = "coarse_steps_per_revolution"
-ISOLATED = "isolated"
 # keys of the scene itself that can be set beside its times
 WHOLE = ("grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
 KEYS = (
@@ -33,17 +35,9 @@ KEYS = (
     "claims",
 )
 TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
-PARAMETER_SETS = ("machine", "head", "pattern", "component")
-FILES = ("fmu", "units")
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
-# switch of our components -> what counts only while it is on, and what only while it is off
-SWITCHES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "follow_shaft": (tuple(standard_loom.FOLLOWED), ("speed", "start_angle")),
-    "follow_lift": (("lift_fraction", "lift_rate", "lift_acceleration"), ()),
-    "prescribe_length_factor": (("prescribed_length_factor",), ("guide_clearance",)),
-}
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
 
@@ -111,14 +105,21 @@ class Instance:
 
     def settle(self) -> None:
         """Have our own FMUs take inputs as those of a step's end: our master works in dependency order."""
-        if self.fmu.ours and "inputs_at_step_end" in self.fmu.ports:
-            self.values.setdefault("inputs_at_step_end", True)
+        if self.fmu.ours and AT_STEP_END in self.fmu.ports:
+            self.values.setdefault(AT_STEP_END, True)
 
     def follow(self, wire: Wire) -> None:
-        """Let a mechanism follow the shaft whose angle is wired to it, and a frame the lift of its dobby."""
-        switch = {"shaft_angle": "follow_shaft", "lift_fraction": "follow_lift"}.get(wire.sink[1], "")
-        if self.fmu.ours and switch in self.fmu.ports:
-            self.values.setdefault(switch, True)
+        """Let a wired input take effect, such as the angle of a shaft; rates of inputs come with these."""
+        declared = self._declared()
+        if wire.sink[1] in declared and wire.sink[1] not in {each.rate for each in declared.values()}:
+            switch = declared[wire.sink[1]].when or ""
+            if switch in self.fmu.ports:
+                self.values.setdefault(switch, True)
+
+    def _declared(self) -> dict[str, Variable]:
+        """The variables of our component; one that is not known here has those of its kind."""
+        component = self.fmu.component or ShaftDriven
+        return {each.name: each for each in variables_of(component)} if self.fmu.ours else {}
 
     def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
         """Its parameters and inputs at the start, without inputs that are fed and values without effect."""
@@ -127,11 +128,12 @@ class Instance:
             start = self.values.get(port.name, port.start)
             if _can_be_set(port) and port.name not in fed and start is not None:
                 values[port.name] = TYPES[port.kind](start)
-        for switch, (when_on, when_off) in SWITCHES.items() if self.fmu.ours else ():
-            if switch in values:
-                for idle in when_off if values[switch] else when_on:
-                    values.pop(idle, None)
-        return values
+        idle = [
+            name
+            for name, variable in self._declared().items()
+            if not values.get(variable.when or "", True) or values.get(variable.unless or "", False)
+        ]
+        return {name: value for name, value in values.items() if name not in idle}
 
 
 def truth(given: Any, where: str) -> bool:

@@ -9,12 +9,13 @@ from typing import Any
 
 from ... import files
 from ...errors import LoomfmuError, check_text, shown, suggestion
+from ...own.declared import ISOLATED
 from ..importing.ports import Port
 from ..importing.process import AVAILABLE
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
-from .instances import COARSE, ISOLATED, KEYS, Instance, instance, instance_tables, mixed, own_texts, truth
+from .instances import COARSE, KEYS, Instance, instance, instance_tables, mixed, own_texts, truth
 from .overrides import override
 from .tables import choice, number, toml
 from .tables import text as text_of

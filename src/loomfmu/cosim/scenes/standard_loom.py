@@ -32,6 +32,8 @@ SOURCES = {"shaft": "shaft", "head": "weft", "rotor": "dobby", "frame": "heald_#
 # input of a mechanism on the shaft -> output of the shaft that it follows
 FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
 
+FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
+
 FRAME_FITTINGS = {"warps": "warp", "dampers": "damper"}  # one for each frame
 LOOM_FITTINGS = {"reed": "reed", "locks": "lock"}  # one for the loom
 LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
@@ -163,6 +165,16 @@ def shaft_inputs(component: type[Component] | None, inputs: Collection[str]) -> 
     if component is None:
         return tuple(FOLLOWED) if set(FOLLOWED) <= set(inputs) else ()
     return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
+
+
+def follows(component: type[Component] | None, values: Mapping[str, Any]) -> bool:
+    """Whether a mechanism follows a shaft, and could turn by itself instead."""
+    return issubclass(component or ShaftDriven, ShaftDriven) and values.get(FOLLOWING) is True
+
+
+def turning(speed: float, start_angle: float) -> dict[str, float | bool]:
+    """The parameters of a mechanism that turns by itself as a shaft of constant speed would."""
+    return {FOLLOWING: False, "speed": speed, "start_angle": start_angle}
 
 
 def turns_alone(component: type[Component]) -> bool:

@@ -17,6 +17,7 @@ from ...fmi import builder
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
 from ...fmi.description.xml_text import text_of
 from ...fmi.native import builder as native_builder
+from ...variables import AT_STEP_END
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from ..importing.ports import Definition
@@ -127,7 +128,7 @@ def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
     return {
         name: value
         for name, value in (instance.values | driven).items()
-        if not (name == "inputs_at_step_end" and value is True)
+        if not (name == AT_STEP_END and value is True)
         and not (instance.fmu.ports[name].choices and value == instance.fmu.ports[name].start)
     }
 

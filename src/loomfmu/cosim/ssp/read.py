@@ -12,10 +12,12 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from ...errors import LoomfmuError, shown
+from ...own.declared import PARAMETER_SETS
+from ...variables import AT_STEP_END
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instances import PARAMETER_SETS, TIMES, Instance, as_shaft, check_name, with_units
+from ..scenes.instances import TIMES, Instance, as_shaft, check_name, with_units
 from ..scenes.overrides import components, overridden, override, unit_of
 from ..scenes.scene import Scene, assemble, check_free
 from ..scenes.tables import DEEPEST, toml
@@ -129,7 +131,7 @@ class _Reader:
         instance = Instance(name, fmu)
         self.notes += filter(None, [apply(instance, given) for given in values])
         if fmu.ours and not ours:  # whatever was meant for another master: ours works in dependency order
-            instance.values.pop("inputs_at_step_end", None)
+            instance.values.pop(AT_STEP_END, None)
         instance.settle()
         return instance
 

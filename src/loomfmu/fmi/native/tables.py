@@ -4,7 +4,7 @@ import json
 import re
 
 from ... import units
-from ...variables import NOTHING, Component, Variable, variables_of
+from ...variables import AT_STEP_END, NOTHING, Component, Variable, variables_of
 from ..description.model_description import FIRST_REFERENCE
 from ..live.live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .c_code import c_name
@@ -61,7 +61,7 @@ def tables(component: type[Component], token: str) -> str:
     variables = variables_of(component)
     names = [variable.name for variable in variables]
     _check_problems(component, names)
-    at_step_end = names.index("inputs_at_step_end") if "inputs_at_step_end" in names else "NONE"
+    at_step_end = names.index(AT_STEP_END) if AT_STEP_END in names else "NONE"
     return MODEL.format(
         name=component.__name__,
         token=token,
