@@ -6,7 +6,7 @@ Names are Modelica's (`rad/s`, `N.m2`, `rev/min`), as FMI model descriptions and
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
@@ -17,20 +17,30 @@ class UnitError(LoomfmuError):
     """A quantity that cannot be read, or two units that do not meet."""
 
 
+BASES = ("kg", "m", "s", "rad", "K", "A")  # as FMI calls them
+
+
 @dataclass(frozen=True)
 class Unit:
-    """A unit: its SI exponents (kg, m, s, rad) and the factor that leads to the SI base units."""
+    """A unit: its SI exponents (of BASES) and the factor that leads to the SI base units."""
 
     kg: int = 0
     m: int = 0
     s: int = 0
     rad: int = 0
     factor: float = 1.0
+    K: int = 0
+    A: int = 0
 
     @property
-    def dimension(self) -> tuple[int, int, int, int]:
-        """SI exponents of kg, m, s and rad."""
-        return self.kg, self.m, self.s, self.rad
+    def dimension(self) -> tuple[int, ...]:
+        """SI exponents, in the order of BASES."""
+        return tuple(getattr(self, base) for base in BASES)
+
+    @property
+    def rate(self) -> tuple[int, ...]:
+        """SI exponents of its change in a second."""
+        return replace(self, s=self.s - 1).dimension
 
 
 STANDARD_GRAVITY = 9.80665  # m/s2, exact by definition
@@ -70,6 +80,13 @@ UNITS = {
     "N.m.s/rad": Unit(kg=1, m=2, s=-1, rad=-1),
     "W": Unit(kg=1, m=2, s=-3),
     "kg.m2": Unit(kg=1, m=2),
+    "K": Unit(K=1),
+    "K/s": Unit(K=1, s=-1),
+    "W/K": Unit(kg=1, m=2, s=-3, K=-1),
+    "J/K": Unit(kg=1, m=2, s=-2, K=-1),
+    "A": Unit(A=1),
+    "V": Unit(kg=1, m=2, s=-3, A=-1),
+    "N.m/A": Unit(kg=1, m=2, s=-2, A=-1),
 }
 
 # what an SI unit measures here, as Modelica's library calls it; a pure number, or its rate, may be anything
@@ -89,6 +106,11 @@ QUANTITIES = {
     "N.m.s/rad": "RotationalDampingConstant",
     "W": "Power",
     "kg.m2": "MomentOfInertia",
+    "K": "ThermodynamicTemperature",
+    "W/K": "ThermalConductance",
+    "J/K": "HeatCapacity",
+    "A": "ElectricCurrent",
+    "V": "ElectricPotential",
 }
 
 ALIASES = {"": "1", "-": "1", "rpm": "rev/min", "r/min": "rev/min", "°": "deg", "picks/min": "rev/min"}
@@ -101,8 +123,8 @@ _COMMA = re.compile(r"\s*[-+]?\d*,\d")
 def canonical(name: str) -> str:
     """What we call a unit, given a name that tools write for it.
 
-    >>> canonical("rpm"), canonical("[m]"), canonical("[-]"), canonical("V")
-    ('rev/min', 'm', '1', 'V')
+    >>> canonical("rpm"), canonical("[m]"), canonical("[-]"), canonical("lx")
+    ('rev/min', 'm', '1', 'lx')
     """
     bare = name.strip()
     bare = bare[1:-1].strip() if bare.startswith("[") and bare.endswith("]") else bare
@@ -209,7 +231,7 @@ def si(name: str) -> str:
     >>> si("rev/min"), si("%"), si("kN")
     ('rad/s', '1', 'N')
     """
-    wanted = Unit(*unit(name).dimension)
+    wanted = replace(unit(name), factor=1.0)
     return next(known for known, each in UNITS.items() if each == wanted)
 
 

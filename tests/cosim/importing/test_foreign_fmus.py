@@ -133,7 +133,7 @@ def test_names_and_units_are_ours_where_they_can_be(place: Path, tmp_path: Path)
     }  # fmt: skip
     assert (trace.unit("motor.flange_w"), trace.rate("motor.flange_phi")) == ("rad/s", "motor.flange_w")
     assert (trace.unit("motor.flange_phi"), trace.display("motor.flange_phi")) == ("rad", "deg")
-    assert (trace.unit("motor.winding"), trace.display("motor.winding")) == ("K", "1")
+    assert (trace.unit("motor.winding"), trace.display("motor.winding")) == ("K", "K")
     ports = scenes.parse(MOTOR, directory=place).instances["motor"].fmu.ports
     assert ports["tau_stall"].unit == "N.m"  # Nm there, the same by its definition
 

@@ -47,13 +47,13 @@ class Definition:
 def own_definition(name: str) -> Definition:
     """The definition of one of our own units."""
     known = units.unit(name)
-    return Definition((known.kg, known.m, known.s, 0, 0, 0, 0, known.rad), known.factor)
+    return Definition(tuple(getattr(known, base, 0) for base in BASES), known.factor)
 
 
 def own_name(name: str, definition: Definition | None) -> str:
     """What we call a unit of an FMU, or nothing if we do not know it.
 
-    >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("V", None)
+    >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("lx", None)
     ('m/s2', 'rev/min', '')
     """
     usual = units.canonical(name)

@@ -99,7 +99,7 @@ def unit_definitions(root: Element, variables: tuple[Variable, ...], also: tuple
     for name in sorted(displays):
         known = units.unit(name)
         definition = SubElement(definitions, "Unit", name=name)
-        exponents = zip(("kg", "m", "s", "rad"), known.dimension, strict=True)
+        exponents = zip(units.BASES, known.dimension, strict=True)
         SubElement(definition, "BaseUnit", {base: str(power) for base, power in exponents if power})
         for display in sorted(displays[name] - {name}):
             factor = known.factor / units.unit(display).factor

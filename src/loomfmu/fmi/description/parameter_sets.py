@@ -73,7 +73,7 @@ def _text(component: type[Component], given: ParameterSet, version: str) -> byte
         )
     section = SubElement(root, "ssv:Units")
     for unit in sorted(used):
-        exponents = zip(("kg", "m", "s", "rad"), units.unit(unit).dimension, strict=True)
+        exponents = zip(units.BASES, units.unit(unit).dimension, strict=True)
         definition = SubElement(section, "ssc:Unit", name=unit)
         SubElement(definition, "ssc:BaseUnit", {base: str(power) for base, power in exponents if power})
     return text_of(root)
