@@ -12,6 +12,7 @@ from live_fmus import fmu_cache
 
 from loomfmu import arguments as cli_arguments
 from loomfmu import cli
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene
 from loomfmu.sweeps import plan
 
@@ -113,3 +114,8 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             exec(text, shown)
     assert f"{shown['loom'].safe_speed('WL680-3600', clearance='0.5 mm').speed:.2f}" == "63.47"
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
+
+
+def test_the_table_of_fmus_names_all_components() -> None:
+    table = (Path(__file__).parents[1] / "fmus" / "README.md").read_text()
+    assert re.findall(r"^\| `(\w+)` \|", table, re.M) == list(COMPONENTS)
