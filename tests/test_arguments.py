@@ -39,7 +39,7 @@ SHORT = {"revolutions": 1, "steps_per_revolution": 90, "grid": "uniform"}
         (lambda: evaluate(DEMO, flavour=None), "there is no flavour None"),
         (lambda: evaluate(DEMO, values=3), "values = 3 is not a list such as"),
         (lambda: evaluate(DEMO, values="belt.margin"), "values = 'belt.margin' is not a list such as"),
-        (lambda: sweep(DEMO, processes="a"), "processes = 'a' is not 1 or more"),
+        (lambda: sweep(DEMO, processes="a"), "processes = 'a' must be 1 or more"),
         (lambda: sweep(DEMO, scheduler=3), "scheduler = 3 is not an address such as"),
         (lambda: sweep(SIMS / "sweeps" / "safe_speed.toml", output=3), "output = 3 is not a path"),
     ],

@@ -827,3 +827,13 @@ def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.Cap
     assert main(["run", path, "--output", "x.csv"]) == 2
     assert one_line(capsys) == "x.csv: a trace is an HDF5 file; name it x.h5"
     assert not Path("x.csv").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+def test_output_that_nobody_takes_is_no_failed_claim() -> None:
+    command = f"{sys.executable} -m loomfmu.cli list"
+    closed = subprocess.run(f"{command} >&-", shell=True, capture_output=True, text=True)
+    assert (closed.returncode, closed.stderr) == (0, "")
+    full = subprocess.run(f"{command} >/dev/full", shell=True, capture_output=True, text=True)
+    assert full.returncode == 2
+    assert full.stderr == "loomfmu: standard output: No space left on device\n"

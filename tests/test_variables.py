@@ -137,3 +137,10 @@ def test_problems_are_errors_unless_they_say_otherwise():
     assert not Problem("it leaks").warning
     assert Problem("it drips", warning=True).warning
     assert Component.problems == ()
+
+
+def test_integers_and_booleans_are_discrete_outputs() -> None:
+    kinds = {start: output("1", "A value", start=start).metadata["variability"] for start in (0.0, 1, True)}
+    assert kinds[0.0] == "continuous"
+    assert output("1", "A count", start=7).metadata["variability"] == "discrete"
+    assert output("1", "A flag", start=False).metadata["variability"] == "discrete"

@@ -22,19 +22,36 @@ if TYPE_CHECKING:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
-    options = parser().parse_args(arguments)
+    options = argparse.Namespace(debug=False)
     try:
+        options = parser().parse_args(arguments)
         status = COMMANDS[options.command](options)
-        sys.stdout.flush()
+        _flush()
         return status
     except BrokenPipeError:  # the reader of our output has gone, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 141
     except (Exception, KeyboardInterrupt) as error:
         if options.debug:
             printed.complain_of(error)
         complain(f"loomfmu: {_reason(error)}")
         return 130 if isinstance(error, KeyboardInterrupt) else 2
+
+
+def _flush() -> None:
+    """Write what was printed. Raises LoomfmuError where standard output takes nothing more."""
+    try:
+        if sys.stdout is not None:  # closed by whoever started this process
+            sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise LoomfmuError(f"standard output: {error.strerror}") from None
+
+
+def _drop_output() -> None:
+    """Let Python end without another try to write what it could not."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _reason(error: BaseException) -> str:

@@ -3,6 +3,7 @@
 import difflib
 import os
 import re
+import signal
 from collections.abc import Iterable, Mapping
 from datetime import date, time
 from pathlib import Path
@@ -85,3 +86,15 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
         return f"; did you mean {near[0]!r}?"
     shown = ", ".join(known[:MOST_SHOWN]) + (", ..." if len(known) > MOST_SHOWN else "")
     return f"; known: {shown}" if known else ""
+
+
+def signal_name(number: int) -> str:
+    """What a signal is called.
+
+    >>> signal_name(11), signal_name(37)
+    ('SIGSEGV', 'signal 37')
+    """
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

@@ -1,5 +1,6 @@
 """All that is printed: one place where foreign text is made harmless, tables that fit, progress bars."""
 
+import contextlib
 import shutil
 import sys
 import textwrap
@@ -8,6 +9,8 @@ import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TextIO
+
+from .errors import LoomfmuError
 
 INDENT = "  "  # of the lines of an entry but the first
 Advance = Callable[[int], None]
@@ -35,16 +38,26 @@ def _steers(character: str) -> bool:
 def say(*lines: object, to: TextIO | None = None) -> None:
     """Print lines, on standard output if nothing else is given. The only way to the terminal."""
     stream = sys.stdout if to is None else to
+    if stream is None:  # closed by whoever started this process
+        return
     encoding = stream.encoding or "utf-8"
-    for line in lines:
-        text = safe(line).encode(encoding, "backslashreplace").decode(encoding)
-        stream.write(_coloured(text, stream) + "\n")
+    try:
+        for line in lines:
+            text = safe(line).encode(encoding, "backslashreplace").decode(encoding)
+            stream.write(_coloured(text, stream) + "\n")
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise LoomfmuError(f"standard output: {error.strerror}") from None
 
 
 def complain(*lines: object) -> None:
     """Print lines on standard error."""
-    sys.stdout.flush()
-    say(*lines, to=sys.stderr)
+    with contextlib.suppress(OSError):  # of a full disk behind it the command itself tells
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    if sys.stderr is not None:
+        say(*lines, to=sys.stderr)
 
 
 def complain_of(error: BaseException) -> None:

@@ -238,7 +238,7 @@ def output(
     *,
     start: float | int | bool = 0.0,
     display: str | None = None,
-    variability: str = "continuous",
+    variability: str | None = None,
     nominal: float | None = None,
     unbounded: bool = False,
     rate: str | None = None,
@@ -247,9 +247,10 @@ def output(
     highest_of: str | None = None,
     pole: bool = False,
 ) -> Any:
-    """A value that the component computes."""
+    """A value that the component computes; integers and booleans are discrete if nothing else is said."""
+    usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
-        "output", variability, unit, start, description, display,
+        "output", variability or usual, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
         lowest_of=lowest_of, highest_of=highest_of, pole=pole,
     )  # fmt: skip

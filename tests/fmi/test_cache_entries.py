@@ -231,3 +231,15 @@ def test_the_command_shows_the_cache_and_empties_it(
     assert cli.main(["cache", "--clear"]) == 0
     assert capsys.readouterr().out.startswith(f"{own_cache}: 0.0 MB, 0 entries\n")
     assert [path.name for path in own_cache.rglob("*") if path.is_file()] == ["notes.txt"]
+
+
+def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    kept = elsewhere / ("0123456789abcdef" * 2)
+    kept.mkdir(parents=True)
+    kind = own_cache / "packages"
+    shutil.rmtree(kind, ignore_errors=True)
+    kind.parent.mkdir(parents=True, exist_ok=True)
+    kind.symlink_to(elsewhere)
+    cache_entries.delete()
+    assert kept.is_dir()

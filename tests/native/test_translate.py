@@ -170,6 +170,7 @@ REFUSED = {
     "self.pair = x": "x is not several values",
     "self.pair = (x, x, x)": "3 values for 2 names",
     "y = self.square(*self.pair)": "self.square takes 1 arguments",
+    "y = self.step(x, x)": "self.step calls itself, and recursion does not translate",
     "y = self.square(*x)": "x is not an array of the component",
     "def g(y: float) -> float:\n            return y": "FunctionDef is not in the subset",
 }

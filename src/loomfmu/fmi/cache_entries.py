@@ -169,10 +169,10 @@ def delete(unused: float = 0.0) -> None:
 
 
 def _entries(kind: str) -> list[Path]:
-    try:
-        return [path for path in (cache_directory() / kind).iterdir() if KEY.match(path.name)]
-    except FileNotFoundError:
+    folder = cache_directory() / kind
+    if folder.is_symlink() or not folder.is_dir():
         return []
+    return [path for path in folder.iterdir() if KEY.match(path.name)]
 
 
 def _size(path: Path) -> int:

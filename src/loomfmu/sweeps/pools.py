@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, signal_name
 
 PATIENCE = 5.0  # s until a worker that does not stop is killed
 
@@ -165,7 +165,7 @@ class Processes:
                 ' if __name__ == "__main__": or set processes=1'
             )
         assert worker.task is not None
-        how = signal.Signals(-code).name if code < 0 else f"status {code}"
+        how = signal_name(-code) if code < 0 else f"status {code}"
         return worker.task.key, Died(f"the process that ran it ended with {how}")
 
     def close(self) -> None:

@@ -1015,3 +1015,9 @@ def test_a_nip_without_fibres_is_not_judged(tmp_path):
     verdict = roller_verdict(tmp_path, **{"roller.use_table": False, "roller.fibre_share": 0.0})
     assert not verdict.holds
     assert "no fibres are drafted in this run" in verdict.note
+
+
+@pytest.mark.parametrize("window", [[355, 5], ["350", "20"], [350.0, 10.0]])
+def test_a_window_in_numbers_that_were_meant_in_degrees_is_refused(window: list[Any]) -> None:
+    with pytest.raises(LoomfmuError, match=r"window: 35[05]\S* rad is beyond a revolution; did you mean"):
+        judge(loom(90), kind="above", signal="weft.travel", bound="0.01 m", window=window)

@@ -98,7 +98,7 @@ TEXTS = {
     LENGTH + '[motor]\nfmu = "no.fmu"\n': "no.fmu: there is no such FMU",
     LENGTH + '[shaft]\nfmu = "Motor.fmu"\n': "the shaft of a scene must have an output angle in rad",
     SHAFT3: 'there is no shaft whose speed sets the step: add duration = "2 s" and step = "1 ms"',
-    'duration = "1 s"\n': "duration: a scene runs either by duration and step, or by revolutions and",
+    'duration = "1 s"\n': "duration is given but not step",
     LENGTH
     + "revolutions = 2\n": "revolutions and duration and step: a scene runs either by duration and step",
     LENGTH.replace("1 ms", "1 mm"): "step: '1 mm' is in mm, which does not fit s",

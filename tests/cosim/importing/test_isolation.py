@@ -94,16 +94,30 @@ def test_which_are_isolated(tmp_path: Path) -> None:
         scenes.parse(both, "x", {"step_timeout": "5 m"}, tmp_path)
 
 
-def test_a_process_serves_the_next_run_too(tmp_path: Path) -> None:
+def processes() -> list[IsolatedSlave]:
+    return [each for slaves in pool._resting.values() for each in slaves if isinstance(each, IsolatedSlave)]
+
+
+def test_each_run_has_a_process_of_its_own(tmp_path: Path) -> None:
     motor2(tmp_path)
     scene = scenes.parse(MOTOR, directory=tmp_path)
     first = evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"]
-    (one,) = [each for slaves in pool._resting.values() for each in slaves if isolated(each)]
+    assert processes() == []
     assert evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"].tolist() == first.tolist()
-    assert [each for slaves in pool._resting.values() for each in slaves if isolated(each)] == [one]
+
+
+def test_a_process_serves_the_next_run_of_an_fmu_of_ours() -> None:
+    def margins() -> list[float]:
+        scene = scenes.parse(LOOM, "loom", {"belt.isolated": True})
+        return evaluate(scene, flavour="native", values=["belt.margin"]).trace["belt.margin"].tolist()
+
+    first = margins()
+    (one,) = processes()
+    assert margins() == first
+    assert processes() == [one]
     one._process._popen.kill()
     one._process._popen.wait()
-    assert evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"].tolist() == first.tolist()
+    assert margins() == first
 
 
 # ---- failures

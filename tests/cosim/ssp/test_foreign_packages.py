@@ -245,7 +245,7 @@ def rewritten(path: Path, files: dict[str, bytes]) -> Path:
 LINEAR = '<ssc:LinearTransformation factor="2"/>'
 MISTAKES = {
     "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
-    "duration: a scene runs either by duration and step, or by revolutions and": {"algorithm": ""},
+    "duration is given but not step": {"algorithm": ""},
     "there is no shaft whose speed sets the step: add duration": {"algorithm": "", "experiment": ""},
     "connection drive.motor.flange.phi -> drive.phi transforms its value; transformations are": {
         "transformed": LINEAR

@@ -106,13 +106,14 @@ class Angles(Quantity):
             raise LoomfmuError(
                 f'{where} = {shown(given)} must be a list of shaft angles, such as ["140 deg"]'
             )
-        angles = [self.number(each, where, self.unit) for each in given]
-        for each, angle in zip(given, angles, strict=True):
-            if abs(angle) > TURN * (1.0 + 1e-12):
-                raise LoomfmuError(
-                    f"{where}: {each!r} is {units.show(angle, 'deg')}, outside [-360, 360] deg"
-                )
-        return angles
+        return [self.angle(each, where) for each in given]
+
+    def angle(self, given: Any, where: str) -> float:
+        """One angle, within a revolution either way."""
+        angle = self.number(given, where, self.unit)
+        if abs(angle) > TURN * (1.0 + 1e-12):
+            raise LoomfmuError(f"{where}: {given!r} is {units.show(angle, 'deg')}, outside [-360, 360] deg")
+        return angle
 
 
 class Window(NamedTuple):
@@ -134,12 +135,21 @@ class Window(NamedTuple):
 class Edges(Quantity):
     """The two edges of a window of shaft angles."""
 
+    def edge(self, given: Any, where: str) -> float:
+        """An angle; a number without a unit is in radians, so that a large one was meant in degrees."""
+        angle = self.number(given, where, self.unit)
+        if abs(angle) > TURN * (1.0 + 1e-12) and re.fullmatch(r"[-+.\deE ]+", str(given)):
+            raise LoomfmuError(
+                f'{where} has {given} rad, more than a revolution; did you mean "{given} deg"?'
+            )
+        return angle
+
     def read(self, given: Any, where: str, unit_of: UnitOf) -> Window:
         if not isinstance(given, list | tuple) or len(given) != 2:
             raise LoomfmuError(
                 f'{where} = {shown(given)} must be two shaft angles, such as ["330 deg", "30 deg"]'
             )
-        window = Window(*(self.number(each, where, self.unit) for each in given))
+        window = Window(*(self.edge(each, where) for each in given))
         if window.end - window.start > TURN * (1.0 + 1e-12):
             raise LoomfmuError(f"{where} = {window} is longer than a revolution")
         width = window.width

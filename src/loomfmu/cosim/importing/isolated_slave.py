@@ -189,9 +189,12 @@ class IsolatedSlave(Slave):
     # ---- end
 
     def rest(self) -> bool:
-        """Terminate and free the FMU; whether the process can serve another run."""
+        """Terminate and free the FMU; whether the process can serve another run.
+
+        What a third-party FMU has done to its process, nobody knows: its next run gets a new one.
+        """
         try:
-            return bool(self._ask("terminate"))
+            return bool(self._ask("terminate")) and self.fmu.ours
         except LoomfmuError:
             return False
 

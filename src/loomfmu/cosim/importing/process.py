@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, signal_name
 from .messages import PART, complete, framed, write
 
 AVAILABLE = hasattr(select, "poll")  # not on Windows
@@ -154,7 +154,7 @@ class Process:
         if status is None:
             reason = f"{action} closed the connection to the master"
         elif status < 0:
-            reason = f"{action} crashed its process ({signal.Signals(-status).name})"
+            reason = f"{action} crashed its process ({signal_name(-status)})"
         else:
             reason = f"{action} ended its process (exit status {status})"
         return Died(reason + self._printed())

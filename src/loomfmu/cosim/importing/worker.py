@@ -30,6 +30,8 @@ class Worker:
         self._folder = Path.cwd()
         with Path("memory").open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), 0)
+        for file_name in ("memory", "path"):  # an FMU might open a file of that name
+            Path(file_name).unlink()
         self._time = ctypes.c_double.from_buffer(self._memory, TIME)
         self._size = ctypes.c_double.from_buffer(self._memory, SIZE)
         self._place = ctypes.c_int64.from_buffer(self._memory, PLACE)

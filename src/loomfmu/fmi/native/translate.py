@@ -71,6 +71,7 @@ def _translated(component: type[Component]) -> Translation:
 def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]) -> str:
     name = component.__name__
     functions, methods = _functions(component, tree)
+    _refuse_recursion(functions | {f"self.{method}": node for method, node in methods.items()})
     scope = Scope(
         functions=_signatures(functions, f"{name}_", False),
         methods=_signatures(methods, f"{name}__", True),
@@ -89,6 +90,27 @@ def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]
     prototypes = "\n".join(f"{writer.prototype};" for writer in writers)
     definitions = "\n".join([_start(component), *(writer.definition() for writer in writers)])
     return "\n\n".join(part for part in (structs, prototypes, definitions) if part)
+
+
+def _refuse_recursion(functions: dict[str, ast.FunctionDef]) -> None:
+    """Refuse functions that call themselves, near or far: a native FMU would crash where Python stops."""
+    called = {
+        name: [(node, ast.unparse(node.func)) for node in ast.walk(function) if isinstance(node, ast.Call)]
+        for name, function in functions.items()
+    }
+    finished: set[str] = set()
+
+    def follow(name: str, callers: tuple[str, ...]) -> None:
+        for node, callee in called[name]:
+            if callee in (*callers, name):
+                raise Untranslatable(node, f"{callee} calls itself, and recursion does not translate")
+            if callee in called and callee not in finished:
+                follow(callee, (*callers, name))
+        finished.add(name)
+
+    for name in functions:
+        if name not in finished:
+            follow(name, ())
 
 
 def _functions(

@@ -79,7 +79,7 @@ def plateau_peaks(reduction: float, plateau: float, ramp: float) -> tuple[float,
         largest S' [1], |S''| [1], |S'''| [1]
 
     >>> [round(rate, 3) for rate in plateau_peaks(0.7, 0.25 * pi, 5 * pi / 22)]
-    [1.4, 3.081, 13.558]
+    [1.4, 3.081, 13.557]
     """
     gain = rise(reduction, plateau, ramp)
     return 1.0 - reduction + gain, 2.0 * gain / ramp, 2.0 * pi * gain / (ramp * ramp)
