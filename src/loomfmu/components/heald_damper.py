@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass
 from math import fabs, sqrt
-from typing import ClassVar
 
 from ..physics.damper import propagate, stop_damping_ratio
 from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
 from ..physics.numerics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
-from ..variables import Component, Problem, Terminal, at_step_end, input_, output, parameter, state
-from .terminals import FRAME
+from .damper_variables import DamperVariables
 
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
 SHORTEST = 1e-15
@@ -22,102 +20,13 @@ MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
 
 @dataclass(slots=True)
-class HealdDamper(Component):
+class HealdDamper(DamperVariables):
     """Heald-frame damper: the carrier on four springs, free between two stops, driven by its frame.
 
     Exact between two samples of the inputs, whatever the step: the frame moves on the quintic that
     joins them, contacts with the stops are located inside the step. Unconnected, it answers a steady
     acceleration of the frame.
     """
-
-    problems: ClassVar[tuple[Problem, ...]] = (
-        Problem(
-            "the step spans more than 10,000 contacts or pieces of the carrier's motion"
-            " (spring_stiffness = {spring_stiffness}, damping_ratio = {damping_ratio}, stop_stiffness ="
-            " {stop_stiffness}, carrier_mass = {carrier_mass}); use a smaller step"
-        ),
-        Problem(
-            "start_displacement = {start_displacement} must lie between the stops at"
-            " free_travel = {free_travel}"
-        ),
-    )
-    terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
-
-    carrier_mass: float = parameter(
-        "kg", 15.0, "Mass of the heald carrier", minimum=1e-3, maximum=1e3, nominal=10.0
-    )
-    spring_stiffness: float = parameter(
-        "N/m", 5960.0, "Stiffness of one of the four springs", display="N/mm", minimum=0.0, maximum=1e12,
-        nominal=1e4,
-    )  # fmt: skip
-    damping_ratio: float = parameter(
-        "1", 0.05, "Damping ratio of the suspension, relative to critical (assumed: none published)",
-        minimum=0.0, maximum=100.0,
-    )  # fmt: skip
-    free_travel: float = parameter(
-        "m", 0.015, "Free travel of the carrier to either side", display="mm", minimum=0.0, maximum=1.0,
-        nominal=0.01,
-    )  # fmt: skip
-    stop_stiffness: float = parameter(
-        "N/m", 2e6, "Stiffness of a stop (assumed: none published)", display="N/mm", minimum=1.0,
-        maximum=1e12, nominal=1e6,
-    )  # fmt: skip
-    stop_restitution: float = parameter(
-        "1", 0.5, "Coefficient of restitution of a stop (assumed)",
-        minimum=0.15, maximum=1.0,
-    )  # fmt: skip
-    start_displacement: float = parameter(
-        "m", 0.0, "Displacement of the carrier at the start", display="mm", minimum=-1.0, maximum=1.0
-    )
-    start_rate: float = parameter(
-        "m/s", 0.0, "Rate of the displacement at the start", minimum=-1e3, maximum=1e3
-    )
-    inputs_at_step_end: bool = at_step_end()
-    lift: float = input_(
-        "m", 0.0, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the frame", rate="acceleration", minimum=-1e9, maximum=1e9
-    )
-    acceleration: float = input_(
-        "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
-    )
-    warp_force: float = input_(
-        "N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0, minimum=-1e12, maximum=1e12,
-        source="warp_#.frame_load",
-    )  # fmt: skip
-    displacement: float = output(
-        "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
-    )
-    rate: float = output("m/s", "Rate of the displacement")
-    spring_force: float = output("N", "Force of the four springs on the frame", nominal=100.0)
-    stop_force: float = output("N", "Force of the carrier on a stop", nominal=1000.0)
-    transmitted_force: float = output(
-        "N", "Force of the carrier on the frame: springs, damping, stops", nominal=1000.0
-    )
-    carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
-    stop_contacts: int = output("1", "Contacts with a stop so far", start=0, variability="discrete")
-    peak_load: float = output(
-        "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0
-    )
-    acceleration_ratio: float = output(
-        "1",
-        "Largest acceleration of the carrier so far relative to the frame's; 0 while the frame rests",
-        nominal=10.0,
-    )
-    damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
-    stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
-    contact: int = state(
-        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0,
-        minimum=-2, maximum=2,
-    )  # fmt: skip
-    sampled_lift: float = state("m", "Lift at the last sample of the inputs")
-    sampled_velocity: float = state("m/s", "Velocity at the last sample")
-    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
-    sampled_force: float = state("N", "Warp load at the last sample")
-    largest_lift: float = state("m", "Largest absolute lift so far, the measure of its rounding", minimum=0.0)
-    peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far", minimum=0.0)
-    peak_frame: float = state("m/s2", "Largest acceleration of the frame so far", minimum=0.0)
 
     def check(self) -> int:
         """Whether the carrier starts between its stops."""
