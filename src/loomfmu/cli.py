@@ -99,9 +99,9 @@ def _run(options: argparse.Namespace) -> int:
     from .cosim.run import run
 
     overrides = _overrides(options)
-    flavour = "native" if options.native else "live"
     result = run(
-        options.scene, set=overrides, output=options.output, progress=True, flavour=flavour,
+        options.scene, set=overrides, output=options.output, progress=True,
+        flavour="native" if options.native else "live",
         overwrite=options.force,
     )  # fmt: skip
     for warning in result.warnings:

@@ -12,7 +12,7 @@ from ..files import cannot_write, check_target
 from ..traces import PARTIAL, TRACE, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
 from .claims.claims import judge
-from .importing.fmus import FLAVOURS
+from .importing.fmus import FLAVOURS, Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
 from .planning.plan import Plan, channels, ended_text, explained, in_memory, record
@@ -37,7 +37,7 @@ def run(
     set: dict[str, Any] | None = None,  # the command's own word
     output: str | Path | None = None,
     progress: bool = False,
-    flavour: str = "live",
+    flavour: Flavour = "live",
     overwrite: bool = False,
 ) -> Result:
     """Co-simulate a scene, record it to HDF5 and judge its claims.
@@ -81,7 +81,7 @@ def evaluate(
     scene: str | Path | Scene,
     *,
     set: dict[str, Any] | None = None,
-    flavour: str = "live",
+    flavour: Flavour = "live",
     values: Sequence[str] = (),
 ) -> Evaluation:
     """Co-simulate what the claims of a scene need, and judge them; nothing is written.

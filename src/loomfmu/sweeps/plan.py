@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosim.importing.fmus import FLAVOURS, Port
+from ..cosim.importing.fmus import FLAVOURS, Flavour, Port
 from ..cosim.planning.requested import checked_claims, output_port
 from ..cosim.scenes import scene as scenes
 from ..cosim.scenes.scene import Scene
@@ -41,7 +41,7 @@ class SweepPlan:
     text: str
     path: Path  # of the scene
     scene: Scene
-    flavour: str
+    flavour: Flavour
     fixed: dict[str, Any]
     grid: tuple[Axis, ...]
     sample: tuple[Axis, ...]

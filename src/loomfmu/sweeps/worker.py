@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import machines
+from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
 from ..cosim.run import evaluate, run
 from ..cosim.scenes.scene import Scene
@@ -31,7 +32,7 @@ class Job:
 
     path: Path
     fixed: tuple[tuple[str, Any], ...]
-    flavour: str
+    flavour: Flavour
     values: tuple[str, ...]
     identity: str
 

@@ -5,7 +5,7 @@ import math
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from loomfmu.components import DobbyDrive
 from loomfmu.cosim.claims import curves, shaft
 from loomfmu.cosim.claims.arguments import Name, Quantity, argument
 from loomfmu.cosim.claims.claim import AT_MOST, Claim
-from loomfmu.cosim.claims.claims import KINDS
+from loomfmu.cosim.claims.claims import KINDS, Kind
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
@@ -1021,3 +1021,7 @@ def test_a_nip_without_fibres_is_not_judged(tmp_path):
 def test_a_window_in_numbers_that_were_meant_in_degrees_is_refused(window: list[Any]) -> None:
     with pytest.raises(LoomfmuError, match=r"window: 35[05]\S* rad is beyond a revolution; did you mean"):
         judge(loom(90), kind="above", signal="weft.travel", bound="0.01 m", window=window)
+
+
+def test_the_type_of_kinds_names_all_kinds() -> None:
+    assert sorted(get_args(Kind)) == sorted(Claim.kinds)

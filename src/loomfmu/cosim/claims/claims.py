@@ -11,7 +11,7 @@ bound, and by no more than it may be off there; the note says so.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields
-from typing import Any
+from typing import Any, Literal
 
 from ...errors import LoomfmuError, shown, suggestion
 from ...traces import Signals, Verdict
@@ -22,7 +22,13 @@ KINDS = Claim.kinds
 FILES = (signal_claims, latched_claims, heald_claims, loom_claims)  # each kind in them adds itself to KINDS
 
 
-def judge(trace: Signals, *, kind: str, **arguments: Any) -> Verdict:
+Kind = Literal[  # for editors and type checkers; a test holds it to the classes
+    "above", "below", "clear_shed", "dwell", "dwell_contains", "locks_in_time", "lowest_margin", "nip_holds",
+    "peak_load", "rapier_in_open_shed", "reed_clear_of_rapier", "stop_contacts",
+]  # fmt: skip
+
+
+def judge(trace: Signals, *, kind: Kind, **arguments: Any) -> Verdict:
     """Judge one claim on a trace.
 
     Args:

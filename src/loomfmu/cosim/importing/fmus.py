@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from io import BytesIO
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, Literal, get_args
 
 import fmpy
 
@@ -21,9 +21,10 @@ from ...variables import MOTION, Component
 from .descriptions import is_ours, ports_of, unsupported_outputs
 from .ports import Port, Value
 
-FLAVOURS = ("live", "native")
+Flavour = Literal["live", "native"]
+FLAVOURS: tuple[str, ...] = get_args(Flavour)
 
-__all__ = ["FLAVOURS", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
+__all__ = ["FLAVOURS", "Flavour", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
 
 
 @dataclass(frozen=True)
