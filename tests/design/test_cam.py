@@ -224,7 +224,7 @@ def test_table_of_points(tmp_path):
     write_csv(cam, tmp_path / "cam.csv")
     write_csv(cam, tmp_path / "cam.csv")  # over its own kind
     (tmp_path / "costs.csv").write_text("my own")
-    with pytest.raises(LoomfmuError, match=r"costs\.csv: it exists and is not a table of a cam"):
+    with pytest.raises(LoomfmuError, match=r"costs\.csv: exists and is not a table of a cam"):
         write_csv(cam, tmp_path / "costs.csv")
     write_csv(cam, tmp_path / "costs.csv", overwrite=True)
     assert (tmp_path / "costs.csv").read_bytes() == (tmp_path / "cam.csv").read_bytes()
