@@ -48,7 +48,8 @@ def say(*lines: object, to: TextIO | None = None) -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise LoomfmuError(f"standard output: {error.strerror}") from None
+        name = "standard output" if to is None else "standard error"
+        raise LoomfmuError(f"{name}: {error.strerror}") from None
 
 
 def complain(*lines: object) -> None:

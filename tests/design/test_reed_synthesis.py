@@ -21,8 +21,6 @@ SLOPE = 0.1154
 
 angle = st.floats(-7.0, 7.0)
 length = st.floats(0.05, 1.0)
-place = st.floats(-1.0, 1.0)
-way = st.sampled_from([-1, 1])
 swing = st.floats(0.05, 1.5)
 
 

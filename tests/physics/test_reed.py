@@ -1,6 +1,6 @@
 """Reed: the two linkages, their limits and margins."""
 
-from math import atan2, cos, fabs, hypot, pi, radians, sin
+from math import atan2, cos, fabs, hypot, pi, sin
 
 import pytest
 from hypothesis import assume, given
@@ -20,10 +20,6 @@ from loomfmu.physics.reed import (
     smallest_transmission_angle,
     transmission_angle,
 )
-
-SWING = radians(13.610)
-ROCKER = 0.550
-SLOPE = 0.1154
 
 angle = st.floats(-7.0, 7.0)
 length = st.floats(0.05, 1.0)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import asin, fabs, floor, pi, sqrt
 from typing import ClassVar
 
+from ...physics.numerics.brackets import nearer_root
 from ...physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
 from ...physics.rotor_laws.mechanisms import (
     NONCIRCULAR_GEARS,
@@ -248,11 +249,7 @@ class RotorLaws(LawParameters):
                 high = x
             else:
                 low = x
-            nearer = 0.5 * (low + high)
-            if first > 0.0:
-                newton = x - (reached - target) / first
-                if low < newton < high:
-                    nearer = newton
+            nearer = nearer_root(low, high, x, reached - target, first)
             if nearer == x or high - low <= 1e-16 * high:
                 break
             x = nearer

@@ -10,6 +10,8 @@ All four laws are symmetric, `S(2 pi - x) = 2 pi - S(x)`, so each is written for
 
 from math import asin, cos, pi, sin, sqrt
 
+from ..numerics.brackets import nearer_root
+
 UNIFORM = 1
 HARMONIC_ENDS = 2
 SLOPED_LINE = 3
@@ -167,11 +169,7 @@ def dwell_angle(law: int, reduction: float, tolerance: float) -> float:
             high = x
         else:
             low = x
-        nearer = 0.5 * (low + high)
-        if first > 0.0:
-            newton = x - (angle - target) / first
-            if low < newton < high:
-                nearer = newton
+        nearer = nearer_root(low, high, x, angle - target, first)
         if nearer == x or high - low <= 1e-16 * high:
             break
         x = nearer
