@@ -28,18 +28,18 @@ def ending(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     return directory, request.param
 
 
-@pytest.mark.parametrize("compiled", [True, False])
+@pytest.mark.parametrize("stepped", ["isolated", "compiled", "in Python"])
 @pytest.mark.parametrize(
     ("text", "instance", "velocity"), [(SECOND, "motor", "flange_w"), (THIRD, "shaft", "velocity")]
 )
 def test_the_trace_goes_as_far_as_the_fmu(
     ending: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    text: str, instance: str, velocity: str, compiled: bool,
+    text: str, instance: str, velocity: str, stepped: str,
 ) -> None:  # fmt: skip
-    if not compiled:
+    if stepped == "in Python":
         monkeypatch.setattr(steppers, "_library", lambda: None)
     place, end = ending
-    result = ran(place, text, tmp_path)
+    result = ran(place, text if stepped == "isolated" else f"isolated = false\n{text}", tmp_path)
     assert (result.ended, result.steps) == (f"{instance} at {end} s", 50)
     assert result.warnings == (
         f"{instance} ended the simulation at {end} s; the run would have gone on to 0.2 s",

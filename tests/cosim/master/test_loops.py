@@ -2,26 +2,34 @@
 
 import ctypes
 import itertools
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 from live_fmus import fmu_cache
+from odd_components import odd
 from scipy.integrate import solve_ivp
 
 import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
-from loomfmu.cosim.importing.slave import Call, Ended
+from loomfmu.cosim.importing.calls import Call
+from loomfmu.cosim.importing.slave import Ended
 from loomfmu.cosim.master.grid import Span
-from loomfmu.cosim.master.loops import Broyden, Growth, Iteration
+from loomfmu.cosim.master.loops import Broyden, CompiledIteration, Growth, Iteration, Loop
+from loomfmu.cosim.master.master import Master
 from loomfmu.cosim.master.steppers import Action, Driven, Memory
-from loomfmu.cosim.run import Evaluation
+from loomfmu.cosim.run import Evaluation, _in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
 
-__all__ = ["fmu_cache"]
+__all__ = ["fmu_cache", "odd"]
+
+needs_compiler = pytest.mark.skipif(
+    find_spec("ziglang") is None, reason="there is no compiler to build the stepper with"
+)
 
 LOOP = """
 revolutions = {revolutions}
@@ -121,6 +129,63 @@ def test_both_flavours_iterate_alike() -> None:
     live, native = (driven("iterated", LIGHT, 180, flavour=flavour).trace for flavour in fmus.FLAVOURS)
     # each step ends when both ends agree to 1e-11 of the largest torque
     np.testing.assert_allclose(live["shaft.velocity"], native["shaft.velocity"], rtol=1e-10)
+
+
+def rows_of(text: str, compiled: bool, flavour: str, kind: type, block: int = 50) -> list[np.ndarray]:
+    """All samples of a run in C or in Python, times, reals and integers."""
+    rows = []
+    scene = _in_flavour(scenes.parse(text, "loop"), flavour)
+    with Master(scene, compiled=compiled) as master:
+        master.initialize()
+        assert type(master._stepper) is kind
+        master.run(block, lambda *parts: rows.append([part.copy() for part in parts]), lambda _step: None)
+    return [np.concatenate(parts) for parts in zip(*rows, strict=True)]
+
+
+COUPLED = """
+revolutions = 1
+steps_per_revolution = 90
+coupling = "iterated"
+[odd]
+component = "Switched"
+[other]
+component = "Switched"
+[inputs]
+"odd.engaged" = [[0, true]]
+"other.engaged" = [[0, true]]
+"odd.gear" = [[0, 2], [0.4, -3]]
+"other.gear" = [[0, 0], [0.5, 1]]
+[wires]
+"other.ratio" = "odd.value"
+"odd.ratio" = "other.value"
+"""
+
+
+@needs_compiler
+@pytest.mark.usefixtures("odd")
+@pytest.mark.parametrize("flavour", fmus.FLAVOURS)
+@pytest.mark.parametrize("inertia", [HEAVY, LIGHT, LIGHTEST, None])
+def test_iterated_in_c_it_gives_the_same_bits(inertia: float | None, flavour: str) -> None:
+    loop = LOOP.format(coupling="iterated", inertia=inertia, steps=360, revolutions=1)
+    text = loop if inertia else COUPLED
+    compiled, plain = (
+        rows_of(text, kind is CompiledIteration, flavour, kind) for kind in (CompiledIteration, Iteration)
+    )
+    for ours, theirs in zip(compiled, plain, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+@needs_compiler
+def test_iterated_in_c_it_fails_as_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = LOOP.format(coupling="iterated", inertia=LIGHT, steps=360, revolutions=1)
+    reasons = []
+    for kind in (CompiledIteration, Iteration):
+        monkeypatch.setattr("loomfmu.cosim.master.loops.MOST_EXCHANGES", 2)
+        with pytest.raises(LoomfmuError) as raised:
+            rows_of(text, kind is CompiledIteration, "native", kind)
+        reasons.append(str(raised.value))
+    assert reasons[0] == reasons[1]
+    assert "did not converge at 0" in reasons[0] and "in 2 exchanges" in reasons[0]
 
 
 def test_a_loop_that_needs_no_iteration_gives_the_lagged_result_in_the_limit() -> None:
@@ -280,10 +345,10 @@ class Ending:
 def test_the_last_sample_counts_where_an_fmu_in_an_iterated_loop_ends_with_it() -> None:
     reals, integers = np.zeros(1), np.zeros(1, dtype=np.int32)
     fmu = Ending(reals)
-    actions = {"halving": [Action(fmu, Call(each, (), "")) for each in (fmu.step, fmu.get)]}
+    actions = [Action(fmu, Call(each, (), "")) for each in (fmu.step, fmu.get)]
     memory = Memory(reals, integers, (), (), ctypes.c_int32())
-    loop = [Wire(("halving", "y"), ("halving", "u"))]
-    stepper = Iteration(actions, loop, [0], memory, ctypes.c_double(), ctypes.c_double())
+    loop = Loop(actions, 0, 2, "halving.y -> halving.u", [0])
+    stepper = Iteration(loop, memory, ctypes.c_double(), ctypes.c_double())
     times = np.arange(5) * 1e-3
     span = Span(times[:-1], np.diff(times), times[1:], times[1:])
     rows = np.zeros((4, 1))

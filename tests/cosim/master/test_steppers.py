@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from direct_loom import small
+from foreign_motors import WHOLE, motor3
 from live_fmus import fmu_cache
 from odd_components import odd
 
@@ -66,6 +67,33 @@ def equal(one: Rows, other: Rows) -> None:
 def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: str) -> None:
     scene = _in_flavour(small(180, **changed), flavour)
     equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
+
+
+MOTOR3 = """
+duration = "0.2 s"
+step = "1 ms"
+isolated = false
+[shaft]
+fmu = "Motor3.fmu"
+to_Int8 = -128
+to_UInt64 = 2147483647
+[other]
+fmu = "Motor3.fmu"
+[wires]
+"other.to_UInt16" = "shaft.steps"
+"other.to_Int8" = "shaft.Int8"
+"other.stalled" = "shaft.at_speed"
+"""
+
+
+def test_values_of_all_types_of_fmi_3_are_converted_alike(tmp_path: Path) -> None:
+    motor3(tmp_path, description=WHOLE)
+    scene = scenes.parse(MOTOR3, "motors", directory=tmp_path)
+    compiled = rows_of(scene, True)
+    equal(compiled, rows_of(scene, False))
+    assert {"Float32", "Boolean", "Enumeration", "Int64"} <= {
+        port.base_type for port in scene.instances["shaft"].fmu.ports.values()
+    }
 
 
 SWITCHED = """

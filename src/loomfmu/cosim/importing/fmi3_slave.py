@@ -13,9 +13,11 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 
 from ...errors import LoomfmuError
+from . import calls
+from .calls import DISCARD, FATAL, OK, REFUSED, WARNING, Call, Compiled
 from .foreign_slave import MOST_MESSAGES
 from .ports import CARRIED, RANGES, Value
-from .slave import DISCARD, FATAL, OK, REFUSED, WARNING, Call, Slave
+from .slave import Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu
@@ -37,15 +39,15 @@ def _in_vector(base_type: str) -> Any:
     return ctypes.c_double if base_type.startswith("Float") else ctypes.c_int32
 
 
-def _one_by_one(calls: list[Call]) -> int:
-    """Make some calls, up to the first that fails; its status, or the worst one."""
-    worst = OK
-    for call in calls:
-        status = int(call.function(*call.arguments))
-        if not OK <= status <= WARNING:
-            return status
-        worst = max(worst, status)
-    return worst
+class _Flags(ctypes.Structure):
+    """What `fmi3DoStep` says beside its status: `struct flags` of stepper.c."""
+
+    _fields_ = (
+        ("event", ctypes.c_bool),
+        ("terminate", ctypes.c_bool),
+        ("early", ctypes.c_bool),
+        ("reached", ctypes.c_double),
+    )
 
 
 class Fmi3Slave(Slave):
@@ -59,7 +61,7 @@ class Fmi3Slave(Slave):
         self.pooled = fmu.ours
         if not fmu.ours:  # it may have threads that log: they need Python's lock
             self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
-        self._reached: float | None = None  # when it ended the simulation
+        self._flags = _Flags()
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
         self._names = {port.reference: port.name for port in fmu.ports.values()}
 
@@ -99,56 +101,59 @@ class Fmi3Slave(Slave):
         self._do(self._slave.exitInitializationMode)
 
     def _ended(self) -> float | None:
-        return self._reached
+        return float(self._flags.reached) if self._flags.terminate else None
 
     # ---- prepared calls
 
-    def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
-        """Values between the FMU and the memory at an address, one FMI call for each run of one type."""
-        calls: list[Call] = []
+    def value_calls(self, action: str, kind: str, references: Sequence[int], place: int) -> list[Call]:
+        """Values between the FMU and the memory at a place, one FMI call for each run of one type."""
+        made: list[Call] = []
         start = 0
         for end in range(1, len(references) + 1):
             base_type = self._types[references[start]]
             if end == len(references) or self._types[references[end]] != base_type:
                 size = ctypes.sizeof(_in_vector(base_type))
-                calls.append(self._typed(action, base_type, references[start:end], address + start * size))
+                made.append(self._typed(action, base_type, references[start:end], place + start * size))
                 start = end
-        if len(calls) == 1:
-            return calls[0]
-        return Call(_one_by_one, (calls,), " or ".join(call.name for call in calls), kind, plain=False)
+        return made
 
-    def _typed(self, action: str, base_type: str, references: Sequence[int], address: int) -> Call:
+    def _typed(self, action: str, base_type: str, references: Sequence[int], place: int) -> Call:
         """One FMI call; where the types differ in width, by way of an array of the FMU's own type."""
         count = len(references)
         own, masters = C_TYPES[base_type], _in_vector(base_type)
         name = f"fmi3{action}{FUNCTIONS.get(base_type, base_type)}"
         function = self._library[name]
         array, size = (ctypes.c_uint32 * count)(*references), ctypes.c_size_t(count)
+        kind = calls.GET_3 if action == "Get" else calls.SET_3
+        compiled = Compiled(
+            kind, calls.address(function), self._component, ctypes.addressof(array), count, place
+        )
         if own is masters:
-            arguments = (self._component, array, size, ctypes.c_void_p(address), size)
-            return Call(function, arguments, name, base_type, plain=False)
+            arguments = (self._component, array, size, ctypes.c_void_p(place), size)
+            return Call(function, arguments, name, compiled)
         between = (own * count)()
-        values = (masters * count).from_address(address)
+        values = (masters * count).from_address(place)
+        low, high = _limits(action, base_type)
+        compiled.values, compiled.masters = ctypes.addressof(between), place
+        compiled.type, compiled.low, compiled.high = calls.CONVERTED.index(base_type), low, high
 
         def converted(*arguments: Any) -> int:
-            if action == "Set" and not self._moved(values, between, references, base_type):
+            if action == "Set" and not self._fits(values, between, references, base_type, (low, high)):
                 return REFUSED
             status = int(function(*arguments))
-            if (
-                action == "Get"
-                and OK <= status <= WARNING
-                and not self._moved(between, values, references, "")
-            ):
+            fetched = action == "Get" and OK <= status <= WARNING
+            if fetched and not self._fits(between, values, references, "", (low, high)):
                 return REFUSED
             return status
 
-        return Call(converted, (self._component, array, size, between, size), name, base_type, plain=False)
+        return Call(converted, (self._component, array, size, between, size), name, compiled)
 
-    def _moved(self, source: Any, target: Any, references: Sequence[int], base_type: str) -> bool:
+    def _fits(
+        self, source: Any, target: Any, references: Sequence[int], base_type: str, limits: tuple[float, float]
+    ) -> bool:
         """Copy values to where there is room for an FMI type, or for what the master has; none if one does
         not fit."""
-        carried = CARRIED if target._type_ is ctypes.c_int32 and not base_type else EVERYTHING
-        low, high = RANGES.get(base_type, carried)
+        low, high = limits
         for reference, value in zip(references, source, strict=True):
             if value < low or value > high:
                 whose = (
@@ -165,19 +170,32 @@ class Fmi3Slave(Slave):
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi3DoStep` from the time that `time` holds; an FMU that ends the simulation says Discard."""
-        function = self._library["fmi3DoStep"]
-        event, terminate, early = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_bool()
-        reached = ctypes.c_double()
-        flags = [ctypes.byref(flag) for flag in (event, terminate, early, reached)]
+        function, flags = self._library["fmi3DoStep"], self._flags
+        pointers = [
+            ctypes.c_void_p(ctypes.addressof(flags) + getattr(_Flags, name).offset)
+            for name, _type in _Flags._fields_
+        ]
 
         def stepped(*arguments: Any) -> int:
-            reached.value = time.value
+            flags.reached = time.value
             status = int(function(*arguments))
-            if terminate.value:
-                self._reached = reached.value
-            elif early.value:
-                self.messages.append((DISCARD, "it returned early, which was not allowed"))
-            return DISCARD if status in (OK, WARNING) and (terminate.value or early.value) else status
+            return DISCARD if status in (OK, WARNING) and (flags.terminate or flags.early) else status
 
-        arguments = (self._component, time, step_size, ctypes.c_bool(True), *flags)
-        return Call(stepped, arguments, "fmi3DoStep", plain=False)
+        arguments = (self._component, time, step_size, ctypes.c_bool(True), *pointers)
+        compiled = Compiled(
+            calls.STEP_3, calls.address(function), self._component, values=ctypes.addressof(flags)
+        )
+        return Call(stepped, arguments, "fmi3DoStep", compiled)
+
+    def failed(self, status: int, action: str, time: float) -> LoomfmuError:
+        """See `Slave`; without early return allowed, an FMU must not return early either."""
+        if status == DISCARD and self._flags.early and not self._flags.terminate:
+            self.messages.append((DISCARD, "it returned early, which was not allowed"))
+        return super().failed(status, action, time)
+
+
+def _limits(action: str, base_type: str) -> tuple[float, float]:
+    """What may pass to a variable of an FMI type, or from it to the master."""
+    if action == "Set":
+        return RANGES.get(base_type, EVERYTHING)
+    return EVERYTHING if _in_vector(base_type) is ctypes.c_double else CARRIED

@@ -24,7 +24,8 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 from ...errors import LoomfmuError
-from .slave import FATAL, WARNING, Slave
+from .calls import FATAL, WARNING
+from .slave import Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu

@@ -12,10 +12,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...errors import LoomfmuError
+from .calls import ERROR, OK, WARNING, Call, Rollback
 from .messages import CALLS, DONE, PLACE, SIZE, TIME, VALUES, Answer
 from .ports import Value
 from .process import START, Died, Limits, Process
-from .slave import ERROR, OK, SIZES, WARNING, Call, Slave
+from .slave import SIZES, Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu
@@ -127,12 +128,12 @@ class IsolatedSlave(Slave):
         self._ask("finish_initialization")
         self._fresh = False
 
-    def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
-        """Values between the FMU and the memory at an address, by way of the shared memory."""
-        key = (action, kind, tuple(references), address)
+    def value_calls(self, action: str, kind: str, references: Sequence[int], place: int) -> list[Call]:
+        """Values between the FMU and the memory at a place, by way of the shared memory."""
+        key = (action, kind, tuple(references), place)
         if key not in self._calls:
-            self._calls[key] = self._prepared(action, kind, list(references), address)
-        return self._calls[key]
+            self._calls[key] = self._prepared(action, kind, list(references), place)
+        return [self._calls[key]]
 
     def _prepared(self, action: str, kind: str, references: list[int], address: int) -> Call:
         number, length = len(self._names), SIZES[kind] * len(references)
@@ -152,7 +153,7 @@ class IsolatedSlave(Slave):
 
         if action == "Get":
             self._getting.append(number)
-        return Call(hand_over if action == "Set" else fetch, (), self._names[number], kind, plain=False)
+        return Call(hand_over if action == "Set" else fetch, (), self._names[number])
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """A step with what comes before and after it: inputs handed over, outputs fetched."""
@@ -163,7 +164,7 @@ class IsolatedSlave(Slave):
             self._time.value, self._size.value = time.value, step_size.value
             return self._make([number], get=True)
 
-        return Call(stepped, (), self._names[number], plain=False)
+        return Call(stepped, (), self._names[number])
 
     # ---- rollback
 
@@ -175,6 +176,10 @@ class IsolatedSlave(Slave):
         """Go back to the state that was kept last."""
         self._ask("restore")
         self._fresh = False
+
+    def rollback(self) -> Rollback | None:
+        """None: its process is asked from Python."""
+        return None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
         """What to raise for a status that is not OK, of a call in the step from `time` on."""

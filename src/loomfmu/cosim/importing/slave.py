@@ -10,7 +10,7 @@ import logging
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from fmpy import calloc, free
@@ -27,14 +27,14 @@ from fmpy.fmi2 import (
 )
 
 from ...errors import LoomfmuError
+from . import calls
+from .calls import DISCARD, ERROR, FATAL, OK, REFUSED, WARNING, Call, Compiled, Rollback
 from .ports import Value
 
 if TYPE_CHECKING:
     from .fmus import Fmu
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
-OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
-REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
 PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
@@ -49,20 +49,6 @@ class Ended(LoomfmuError):
 
     def __reduce__(self) -> tuple[type["Ended"], tuple[str, float]]:
         return Ended, (self.name, self.time)
-
-
-class Call(NamedTuple):
-    """A prepared call.
-
-    `name` is that of the FMU's function, `kind` the type of the values it moves, empty for a step; `plain`
-    one that is the FMU's own function.
-    """
-
-    function: Callable[..., int]
-    arguments: tuple[Any, ...]
-    name: str
-    kind: str = ""
-    plain: bool = True
 
 
 class Slave:
@@ -82,7 +68,7 @@ class Slave:
 
     def _connect(self) -> None:
         """Load the FMU and instantiate it."""
-        self._saved: int | None = None
+        self._saved = ctypes.c_void_p()
         self.fmu.check_platform(self.name)
         try:
             with _no_bytecode():
@@ -171,39 +157,60 @@ class Slave:
 
     # ---- prepared calls
 
-    def value_call(self, action: str, kind: str, references: Sequence[int], address: int) -> Call:
-        """`fmi2GetReal` and its kin, moving values between the FMU and the memory at an address."""
-        name = f"fmi2{action}{kind}"
-        array = (ctypes.c_uint * len(references))(*references)
-        size, values = ctypes.c_size_t(len(references)), ctypes.c_void_p(address)
-        return Call(self._library[name], (self._component, array, size, values), name, kind)
+    def value_calls(self, action: str, kind: str, references: Sequence[int], place: int) -> list[Call]:
+        """`fmi2GetReal` and its kin, moving values between the FMU and the memory at a place."""
+        name, count = f"fmi2{action}{kind}", len(references)
+        function, array = self._library[name], (ctypes.c_uint * count)(*references)
+        arguments = (self._component, array, ctypes.c_size_t(count), ctypes.c_void_p(place))
+        compiled = Compiled(
+            calls.VALUES, calls.address(function), self._component, ctypes.addressof(array), count, place
+        )
+        return [Call(function, arguments, name, compiled)]
 
     def step_call(self, time: ctypes.c_double, step_size: ctypes.c_double) -> Call:
         """`fmi2DoStep` over the step that `time` and `step_size` hold when it is called."""
+        function = self._library["fmi2DoStep"]
+        compiled = Compiled(calls.STEP, calls.address(function), self._component)
         arguments = (self._component, time, step_size, ctypes.c_int(1))
-        return Call(self._library["fmi2DoStep"], arguments, "fmi2DoStep")
+        return Call(function, arguments, "fmi2DoStep", compiled)
 
     # ---- rollback
 
     def save(self) -> None:
         """Keep the state as it is for `restore`. Raises LoomfmuError where the FMU cannot."""
-        state = ctypes.c_void_p(self._saved)
-        if self._state_function("Get")(self._component, ctypes.byref(state)) not in (OK, WARNING):
-            raise LoomfmuError(
-                f"{self.name}: it cannot save its state, which an iterated loop requires: {self._reason()}"
-            )
-        self._saved = state.value
+        if self._state_function("Get")(self._component, ctypes.byref(self._saved)) not in (OK, WARNING):
+            raise self.not_saved()
 
     def restore(self) -> None:
         """Go back to the state that was kept last."""
-        if self._state_function("Set")(self._component, ctypes.c_void_p(self._saved)) not in (OK, WARNING):
-            raise LoomfmuError(f"{self.name}: it cannot restore a state that it saved: {self._reason()}")
+        if self._state_function("Set")(self._component, self._saved) not in (OK, WARNING):
+            raise self.not_restored()
+
+    def not_saved(self) -> LoomfmuError:
+        """What to raise where it cannot save its state."""
+        return LoomfmuError(
+            f"{self.name}: it cannot save its state, which an iterated loop requires: {self._reason()}"
+        )
+
+    def not_restored(self) -> LoomfmuError:
+        """What to raise where it cannot go back."""
+        return LoomfmuError(f"{self.name}: it cannot restore a state that it saved: {self._reason()}")
+
+    def rollback(self) -> Rollback | None:
+        """What saves and restores it in the compiled stepper; None where only Python can.
+
+        Raises LoomfmuError if the FMU has no such functions.
+        """
+        get, put = self._state_function("Get"), self._state_function("Set")
+        return Rollback(
+            calls.address(get), calls.address(put), self._component, ctypes.addressof(self._saved)
+        )
 
     def forget(self) -> None:
         """Free the state that was kept."""
-        if self._saved is not None and not self.fatal:
-            self._state_function("Free")(self._component, ctypes.byref(ctypes.c_void_p(self._saved)))
-        self._saved = None
+        if self._saved and not self.fatal:
+            self._state_function("Free")(self._component, ctypes.byref(self._saved))
+        self._saved.value = None
 
     def _state_function(self, action: str) -> Callable[..., int]:
         name = f"{self.standard}{action}FMU{self._state_word}"

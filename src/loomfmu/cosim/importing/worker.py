@@ -15,9 +15,10 @@ from types import SimpleNamespace
 from typing import Any
 
 from ...errors import LoomfmuError
+from .calls import OK, WARNING, Call
 from .messages import CALLS, DONE, PART, PLACE, SIZE, TIME, Answer, complete, framed, write
 from .pool import opened
-from .slave import OK, WARNING, Call, Slave
+from .slave import Slave
 
 Prepared = list[tuple[int, Callable[..., int], tuple[Any, ...]]]
 
@@ -38,7 +39,7 @@ class Worker:
         self._start = ctypes.addressof(self._time)
         self._logged: list[tuple[int, str]] = []  # as the master knows it
         self._slave: Slave
-        self._calls: list[Call] = []
+        self._calls: list[tuple[Call, ...]] = []
         self._batches: dict[bytes, Prepared] = {}
 
     def serve(self) -> None:
@@ -69,9 +70,10 @@ class Worker:
     def _make(self, numbers: bytes) -> tuple[int, int] | None:
         """Make prepared calls up to the first that fails; its place among them and its status."""
         if numbers not in self._batches:
-            calls = [self._calls[number] for number in array("I", numbers)]
             self._batches[numbers] = [
-                (place, call.function, call.arguments) for place, call in enumerate(calls)
+                (place, call.function, call.arguments)
+                for place, number in enumerate(array("I", numbers))
+                for call in self._calls[number]
             ]
         for place, function, arguments in self._batches[numbers]:
             self._place.value = place
@@ -101,15 +103,15 @@ class Worker:
 
     def prepare(self, action: str, kind: str, references: list[int], offset: int) -> str:
         """Prepare a call that moves values to or from a place in the shared memory; the function's name."""
-        return self._prepared(self._slave.value_call(action, kind, references, self._start + offset))
+        return self._prepared(*self._slave.value_calls(action, kind, references, self._start + offset))
 
     def prepare_step(self) -> str:
         """Prepare the call that takes a step; the function's name."""
         return self._prepared(self._slave.step_call(self._time, self._size))
 
-    def _prepared(self, call: Call) -> str:
-        self._calls.append(call)
-        return call.name
+    def _prepared(self, *calls: Call) -> str:
+        self._calls.append(calls)
+        return " or ".join(call.name for call in calls)
 
     def terminate(self) -> bool:
         """Terminate and free the instance; whether another one may follow."""

@@ -7,15 +7,18 @@ small the step. Iterated, every step is repeated from a saved state until both e
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
-from ..importing.slave import Ended
+from ..importing.calls import Rollback
+from ..importing.slave import Ended, Slave
 from ..scenes.graph import Wire
 from .grid import Span
-from .steppers import Action, Advanced, Driven, Memory, take
+from .steppers import Action, Advanced, CompiledStepper, Driven, Memory, Stepper, compiled_library, take
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -23,23 +26,32 @@ Integers = NDArray[np.int32]
 MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or three where the loop is linear
 TOLERANCE = 1e-11  # of the largest value on a wire so far: what rounding leaves of a loop with a gain of 1e4
 FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
+NOT_SETTLED, NOT_SAVED, NOT_RESTORED = -1, -2, -3  # how stepper.c says why a step could not be iterated
 HISTORY = 256  # samples over which an oscillation is followed
 FLIPS = 10  # in a row, each larger than the one before: an extremum of a smooth signal gives one
 GROWTH = 30.0  # from which on it is an oscillation, and not noise
 NOTICED = 1e-6  # share of the largest value from which on it is reported
 
 
+def _product(one: Floats, other: Floats) -> float:
+    """Scalar product, summed in order as stepper.c does: numpy's own order depends on the machine."""
+    total = 0.0
+    for each, its in zip(one, other, strict=True):
+        total += each * its
+    return total
+
+
 class Broyden:
     """Solves `outputs(inputs) = inputs` for the real values on the wires of a loop, by Broyden's method.
 
     What it has learnt of the loop's slopes is kept from one step to the next. Values that are not real are
-    handed on as they are.
+    handed on as they are. The compiled stepper does the same arithmetic, to the last bit.
     """
 
     def __init__(self, reals: Floats, integers: Integers, slots: Sequence[int]):
         self._reals, self._integers, self._slots = reals, integers, list(slots)
-        self._largest = np.zeros(len(slots))
-        self._inverse = -np.eye(len(slots))  # of the slopes of outputs(inputs) - inputs; at first: of -1
+        self.largest = np.zeros(len(slots))
+        self.inverse = -np.eye(len(slots))  # of the slopes of outputs(inputs) - inputs; at first: of -1
 
     def settle(self, exchange: Callable[[], None]) -> bool:
         """Exchange until the loop agrees with itself; whether it does.
@@ -56,43 +68,141 @@ class Broyden:
             if not np.all(np.isfinite(found)):
                 return False
             before, residual = residual, found - guess
-            largest = np.maximum(self._largest, np.abs(found))
+            largest = np.maximum(self.largest, np.abs(found))
             agrees = np.all(np.abs(residual) <= TOLERANCE * largest)
             if agrees and np.array_equal(others, self._integers):
-                self._largest = largest
+                self.largest[:] = largest
                 return True
             if len(change):
                 self._learn(change, residual - before)
-            change = -self._inverse @ residual
+            change = np.array([-_product(row, residual) for row in self.inverse])
             guess = guess + change
         return False
 
     def _learn(self, change: Floats, effect: Floats) -> None:
         """Let the slopes be those seen along the last change."""
-        answer = self._inverse @ effect
-        scale = float(change @ answer)
-        if abs(scale) > FLAT * float(change @ change):
-            self._inverse += np.outer(change - answer, change @ self._inverse) / scale
+        answer = np.array([_product(row, effect) for row in self.inverse])
+        scale = _product(change, answer)
+        if abs(scale) > FLAT * _product(change, change):
+            seen = np.array([_product(change, column) for column in self.inverse.T])
+            self.inverse += np.outer(change - answer, seen) / scale
+
+
+@dataclass
+class Loop:
+    """Calls that are repeated in each step until they agree with themselves: `actions[first:end]`."""
+
+    actions: Sequence[Action]
+    first: int
+    end: int
+    wires: str
+    slots: Sequence[int]
+
+    @property
+    def slaves(self) -> list[Slave]:
+        """Whose states are saved and restored."""
+        return list(dict.fromkeys(action.slave for action in self.actions[self.first : self.end]))
+
+    def unsettled(self, time: float) -> LoomfmuError:
+        """What to raise where they do not agree in the step from `time` [s] on."""
+        return LoomfmuError(
+            f"loop: {self.wires}: did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
+        )
+
+
+def iteration(
+    actions: Mapping[str, Sequence[Action]], lagged: Sequence[Wire], slots: Sequence[int], memory: Memory,
+    time: ctypes.c_double, size: ctypes.c_double, compiled: bool | None = None,
+) -> Stepper:  # fmt: skip
+    """A stepper that repeats the part of each step that lies on a loop; in C where `stepper` would be.
+
+    `actions` are those of the instances in their order, `slots` where the values on the `lagged` wires are.
+    Raises LoomfmuError as `stepper` does.
+    """
+    order = list(actions)
+    first = min(order.index(wire.sink[0]) for wire in lagged)
+    last = max(order.index(wire.source[0]) for wire in lagged)
+    before, looped = (
+        [action for name in names for action in actions[name]]
+        for names in (order[:first], order[first : last + 1])
+    )
+    flat = [action for name in order for action in actions[name]]
+    wires = ", ".join(str(wire) for wire in lagged)
+    loop = Loop(flat, len(before), len(before) + len(looped), wires, slots)
+    # an FMU of ours never ends a run by itself, which would have to be seen through all exchanges of a step
+    simple = all(action.slave.fmu.ours for action in flat)
+    library = compiled_library(flat, compiled) if simple or compiled else None
+    if library:
+        return CompiledIteration(library, loop, memory, time, size)
+    return Iteration(loop, memory, time, size)
+
+
+class CompiledIteration(CompiledStepper):
+    """Repeats that part of each step in C."""
+
+    def __init__(
+        self, library: Path, loop: Loop, memory: Memory, time: ctypes.c_double, size: ctypes.c_double
+    ):
+        self._loop = loop
+        self._slaves = loop.slaves
+        self._solver = Broyden(memory.reals, memory.integers, loop.slots)
+        self._slots = np.array(loop.slots, dtype=np.int64)
+        self._room = np.zeros(6 * len(loop.slots))
+        self._integers = np.empty_like(memory.integers)
+        rollbacks = [found for slave in self._slaves if (found := slave.rollback())]
+        self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
+        self._struct = _Loop(
+            loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
+            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, TOLERANCE, FLAT,
+            self._solver.largest.ctypes.data, self._solver.inverse.ctypes.data, self._room.ctypes.data,
+            self._integers.ctypes.data,
+        )  # fmt: skip
+        super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
+
+    def _stopped(
+        self, place: int, status: int, span: Span, step: int, reals: Floats, integers: Integers
+    ) -> Advanced:
+        if status >= 0:
+            return super()._stopped(place, status, span, step, reals, integers)
+        failures = {
+            NOT_SETTLED: lambda: self._loop.unsettled(float(span.starts[step])),
+            NOT_SAVED: self._slaves[place].not_saved,
+            NOT_RESTORED: self._slaves[place].not_restored,
+        }
+        return step, failures[status]()
+
+
+class _Loop(ctypes.Structure):
+    _fields_ = (
+        ("first", ctypes.c_size_t),
+        ("end", ctypes.c_size_t),
+        ("rollbacks", ctypes.c_void_p),
+        ("rollback_count", ctypes.c_size_t),
+        ("slots", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("most_exchanges", ctypes.c_int64),
+        ("tolerance", ctypes.c_double),
+        ("flat", ctypes.c_double),
+        ("largest", ctypes.c_void_p),
+        ("inverse", ctypes.c_void_p),
+        ("room", ctypes.c_void_p),
+        ("integers", ctypes.c_void_p),
+    )
 
 
 class Iteration:
-    """A stepper that repeats each step from a saved state until the loops agree."""
+    """Repeats that part of each step from a saved state, in Python."""
 
-    def __init__(
-        self, actions: Mapping[str, Sequence[Action]], lagged: Sequence[Wire], slots: Sequence[int],
-        memory: Memory, time: ctypes.c_double, size: ctypes.c_double,
-    ):  # fmt: skip
-        order = list(actions)
-        first = min(order.index(wire.sink[0]) for wire in lagged)
-        last = max(order.index(wire.source[0]) for wire in lagged)
-        self._before = [action for name in order[:first] for action in actions[name]]
-        self._looped = [action for name in order[first : last + 1] for action in actions[name]]
-        self._after = [action for name in order[last + 1 :] for action in actions[name]]
-        self._slaves = list(dict.fromkeys(action.slave for action in self._looped))
-        self._wires = ", ".join(str(wire) for wire in lagged)
+    def __init__(self, loop: Loop, memory: Memory, time: ctypes.c_double, size: ctypes.c_double):
+        self._before, self._looped, self._after = (
+            loop.actions[part]
+            for part in (slice(loop.first), slice(loop.first, loop.end), slice(loop.end, None))
+        )
+        self._loop = loop
+        self._slaves = loop.slaves
         self._memory = memory
         self._time, self._size = time, size
-        self._solver = Broyden(memory.reals, memory.integers, slots)
+        self._solver = Broyden(memory.reals, memory.integers, loop.slots)
 
     def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
         """See `Stepper`."""
@@ -130,9 +240,7 @@ class Iteration:
             ended_in_loop = take(self._looped, time, end)
 
         if not self._solver.settle(exchange):
-            raise LoomfmuError(
-                f"loop: {self._wires}: did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
-            )
+            raise self._loop.unsettled(time)
         after = take(self._after, time, end)
         return ended or ended_in_loop or after
 

@@ -24,7 +24,7 @@ from ..scenes.scene import ITERATED, Scene
 from .constant_shaft import ConstantShaft
 from .grid import Grid, Span, uniform
 from .guards import directory_kept, exit_named, interrupt_fills
-from .loops import Growth, Iteration
+from .loops import Growth, iteration
 from .signals import Signals
 from .start import Start
 from .steppers import Action, Memory, Stepper, stepper
@@ -147,7 +147,7 @@ class Master:
         )  # fmt: skip
         if self.lagged and self.scene.coupling == ITERATED:
             slots = signals.real_slots(self.lagged)
-            return Iteration(actions, self.lagged, slots, memory, self._time, self._size)
+            return iteration(actions, self.lagged, slots, memory, self._time, self._size, self._compiled)
         in_order = [action for each in actions.values() for action in each]
         return stepper(in_order, memory, self._time, self._size, self._compiled)
 

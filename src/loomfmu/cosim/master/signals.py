@@ -113,8 +113,9 @@ class Signals:
             else:
                 runs.append((kind, slot, [reference]))
         return [
-            Action(slave, slave.value_call("Set", kind, references, self._address(kind, slot)))
+            Action(slave, call)
             for kind, slot, references in runs
+            for call in slave.value_calls("Set", kind, references, self._address(kind, slot))
         ]
 
     def outputs(self, name: str, slave: Slave) -> list[Action]:
@@ -129,6 +130,6 @@ class Signals:
             ]
             if mine:
                 address = self._address(kind, mine[0][0])
-                call = slave.value_call("Get", kind, [reference for _, reference in mine], address)
-                actions.append(Action(slave, call))
+                calls = slave.value_calls("Get", kind, [reference for _, reference in mine], address)
+                actions += [Action(slave, call) for call in calls]
         return actions

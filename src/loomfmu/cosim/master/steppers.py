@@ -2,7 +2,7 @@
 
 Both make the same calls in the same order on the same memory, so their results are equal to the last bit. The
 compiled one is used where its library is there or can be built; the other one is the reference, and takes
-FMUs whose values must be converted on their way.
+FMUs in processes of their own.
 """
 
 import ctypes
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, cast
+from typing import NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from ...errors import LoomfmuError
 from ...fmi.cache_entries import STEPPER, made_file
 from ...fmi.native import builder as native_builder
-from ..importing.slave import OK, WARNING, Call, Ended, Slave
+from ..importing.calls import OK, REFUSED, WARNING, Call, Compiled
+from ..importing.slave import Ended, Slave
 from .grid import Span
 
 Floats = NDArray[np.float64]
@@ -103,7 +104,7 @@ class Memory:
 
 
 def stopped(
-    actions: Sequence[Action], status: int, span: Span, step: int, memory: Memory, reals: Floats,
+    actions: Sequence[Action], status: int | None, span: Span, step: int, memory: Memory, reals: Floats,
     integers: Integers,
 ) -> Advanced:  # fmt: skip
     """What comes of a step one of whose calls had a status that is not OK; that call and those after it."""
@@ -150,17 +151,6 @@ class PythonStepper:
         return len(span), None
 
 
-class _Call(ctypes.Structure):
-    _fields_ = (
-        ("kind", ctypes.c_int64),
-        ("function", ctypes.c_void_p),
-        ("instance", ctypes.c_void_p),
-        ("references", ctypes.c_void_p),
-        ("count", ctypes.c_size_t),
-        ("values", ctypes.c_void_p),
-    )
-
-
 class _Plan(ctypes.Structure):
     _fields_ = (
         ("calls", ctypes.c_void_p),
@@ -174,6 +164,7 @@ class _Plan(ctypes.Structure):
         ("driven_integers", ctypes.c_void_p),
         ("driven_integer_count", ctypes.c_size_t),
         ("interrupted", ctypes.c_void_p),
+        ("loop", ctypes.c_void_p),
     )
 
 
@@ -182,11 +173,11 @@ class _Outcome(ctypes.Structure):
 
 
 class CompiledStepper:
-    """Makes the same calls in C."""
+    """Makes the same calls in C; `loop` is where `struct loop` of stepper.c is, if a part is repeated."""
 
     def __init__(
         self, library: Path, actions: Sequence[Action], memory: Memory, time: ctypes.c_double,
-        size: ctypes.c_double,
+        size: ctypes.c_double, loop: int | None = None,
     ):  # fmt: skip
         # Python's lock is kept, unless a third-party FMU may have threads that log
         ours = all(action.slave.fmu.ours for action in actions)
@@ -198,13 +189,15 @@ class CompiledStepper:
         self._driven = [
             np.array(slots, dtype=np.int64) for slots in (memory.driven_reals, memory.driven_integers)
         ]
-        self._calls = (_Call * len(actions))(*(_prepared(action.call) for action in actions))
+        self._calls = (Compiled * len(actions))(
+            *[action.call.compiled for action in actions if action.call.compiled]
+        )
         self._plan = _Plan(
             ctypes.addressof(self._calls), len(actions),
             memory.reals.ctypes.data, len(memory.reals),
             memory.integers.ctypes.data, len(memory.integers),
             *(part for slots in self._driven for part in (slots.ctypes.data, len(slots))),
-            ctypes.addressof(memory.interrupted),
+            ctypes.addressof(memory.interrupted), loop,
         )  # fmt: skip
         self._outcome = _Outcome()
 
@@ -224,20 +217,27 @@ class CompiledStepper:
         if not self._outcome.status:
             return taken, None
         self._time.value, self._size.value = span.starts[taken], span.sizes[taken]
-        left = self._actions[self._outcome.call :]
-        return stopped(left, self._outcome.status, span, taken, self._memory, reals, integers)
+        return self._stopped(self._outcome.call, self._outcome.status, span, taken, reals, integers)
+
+    def _stopped(
+        self, place: int, status: int, span: Span, step: int, reals: Floats, integers: Integers
+    ) -> Advanced:
+        """What comes of a step in which a call failed, or something else did (a negative status)."""
+        # a value that was not handed over is tried again by Python, which says which one it is
+        known = None if status == REFUSED else status
+        return stopped(self._actions[place:], known, span, step, self._memory, reals, integers)
 
 
-KINDS = {"Real": 0, "Integer": 1, "Boolean": 1, "": 2}  # as stepper.c numbers them
+def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path | None:
+    """The library of the compiled stepper where it is available and can make the calls.
 
-
-def _prepared(call: Call) -> _Call:
-    instance, *moved = call.arguments
-    function = ctypes.cast(cast(Any, call.function), ctypes.c_void_p)
-    if not call.kind:
-        return _Call(KINDS[""], function, instance, None, 0, None)
-    references, count, values = moved
-    return _Call(KINDS[call.kind], function, instance, ctypes.addressof(references), count, values)
+    None otherwise, or if `compiled` is False. Raises LoomfmuError if it is True and that is not so.
+    """
+    able = all(action.call.compiled for action in actions)
+    library = _library() if able and compiled is not False else None
+    if compiled and library is None:
+        raise LoomfmuError("the compiled stepper is not available: pip install 'loomfmu[native]'")
+    return library
 
 
 def stepper(
@@ -248,10 +248,7 @@ def stepper(
 
     Raises LoomfmuError where the compiled one is required and not available.
     """
-    plain = all(action.call.plain for action in actions)
-    library = _library() if compiled or (compiled is None and plain) else None
-    if compiled and (library is None or not plain):
-        raise LoomfmuError("the compiled stepper is not available: pip install 'loomfmu[native]'")
+    library = compiled_library(actions, compiled)
     if library:
         return CompiledStepper(library, actions, memory, time, size)
     return PythonStepper(actions, memory, time, size)

@@ -1,5 +1,8 @@
-/* Steps the FMUs of a scene along a plan that was prepared in Python: the same calls in the same order. */
+/* Steps the FMUs of a scene along a plan that was prepared in Python: the same calls in the same order, and
+ * the same arithmetic for a loop that is iterated. calls.py and steppers.py have the same structs. */
 
+#include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -10,12 +13,23 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-enum { REALS, INTEGERS, STEP }; /* what a call moves; a step moves time */
-enum { OK = 0, WARNING = 1 };   /* the statuses with which a run goes on */
+enum { VALUES, STEP, SET_3, GET_3, STEP_3 };   /* what a call does: FMI 2.0, then FMI 3.0 */
+enum { OK = 0, WARNING = 1, DISCARD = 2 };     /* with the first two a run goes on */
+enum { REFUSED = 1000 };                       /* a value that does not fit is not handed over */
+enum { NOT_SETTLED = -1, NOT_SAVED = -2, NOT_RESTORED = -3 }; /* what else may end an iterated step */
 
-typedef int (*real_function)(void *, const unsigned *, size_t, double *);
-typedef int (*integer_function)(void *, const unsigned *, size_t, int32_t *);
+/* the FMI 3.0 types that differ from the master's double and int32_t */
+enum { FLOAT32, BOOLEAN, INT8, INT16, INT64, UINT8, UINT16, UINT32, UINT64, ENUMERATION };
+
+typedef int (*values_function)(void *, const unsigned *, size_t, void *);
+typedef int (*values_function_3)(void *, const unsigned *, size_t, void *, size_t);
 typedef int (*step_function)(void *, double, double, int);
+typedef int (*step_function_3)(void *, double, double, bool, bool *, bool *, bool *, double *);
+
+struct flags {
+    bool event, terminate, early;
+    double reached;
+};
 
 struct call {
     int64_t kind;
@@ -23,7 +37,31 @@ struct call {
     void *instance;
     const unsigned *references;
     size_t count;
-    void *values;
+    void *values;     /* what the FMU reads or writes; the flags of an FMI 3.0 step */
+    void *masters;    /* the master's memory, where its types are others */
+    int64_t type;     /* the FMU's, where it is another one */
+    double low, high; /* what fits the other side */
+};
+
+struct rollback {
+    int (*save)(void *, void **);
+    int (*restore)(void *, void *);
+    void *instance;
+    void **state;
+};
+
+struct loop { /* calls that are repeated until they agree with themselves */
+    size_t first, end;
+    const struct rollback *rollbacks;
+    size_t rollback_count;
+    const int64_t *slots; /* where the values on its wires stand among the reals */
+    size_t count;
+    int64_t most_exchanges;
+    double tolerance, flat;
+    double *largest; /* magnitude of each value so far */
+    double *inverse; /* count by count: of the slopes of what comes out less what went in */
+    double *room;    /* six vectors */
+    int32_t *integers;
 };
 
 struct plan {
@@ -38,25 +76,205 @@ struct plan {
     const int64_t *driven_integers; /* and among the integers */
     size_t driven_integer_count;
     const int32_t *interrupted; /* set by whoever wants the end of the run */
+    const struct loop *loop;    /* NULL where nothing is iterated */
 };
 
 struct outcome {
-    int64_t call; /* the call that failed, if one did */
+    int64_t call; /* the call that failed, or the rollback, if one did */
     int64_t status;
 };
 
+static double read_own(const struct call *call, size_t place)
+{
+    switch (call->type) {
+    case FLOAT32: return ((const float *)call->values)[place];
+    case BOOLEAN: return ((const bool *)call->values)[place];
+    case INT8: return ((const int8_t *)call->values)[place];
+    case INT16: return ((const int16_t *)call->values)[place];
+    case UINT8: return ((const uint8_t *)call->values)[place];
+    case UINT16: return ((const uint16_t *)call->values)[place];
+    case UINT32: return ((const uint32_t *)call->values)[place];
+    case UINT64: return (double)((const uint64_t *)call->values)[place];
+    default: return (double)((const int64_t *)call->values)[place];
+    }
+}
+
+static void write_own(const struct call *call, size_t place, double value)
+{
+    switch (call->type) {
+    case FLOAT32: ((float *)call->values)[place] = (float)value; break;
+    case BOOLEAN: ((bool *)call->values)[place] = value != 0.0; break;
+    case INT8: ((int8_t *)call->values)[place] = (int8_t)value; break;
+    case INT16: ((int16_t *)call->values)[place] = (int16_t)value; break;
+    case UINT8: ((uint8_t *)call->values)[place] = (uint8_t)value; break;
+    case UINT16: ((uint16_t *)call->values)[place] = (uint16_t)value; break;
+    case UINT32: ((uint32_t *)call->values)[place] = (uint32_t)value; break;
+    case UINT64: ((uint64_t *)call->values)[place] = (uint64_t)value; break;
+    default: ((int64_t *)call->values)[place] = (int64_t)value;
+    }
+}
+
+/* Copy values between the FMU's type and the master's; false, and nothing copied, if one does not fit. */
+static bool moved(const struct call *call)
+{
+    bool to_fmu = call->kind == SET_3, real = call->type == FLOAT32;
+    for (int copying = 0; copying < 2; copying++) {
+        for (size_t place = 0; place < call->count; place++) {
+            double masters = real ? ((double *)call->masters)[place] : ((int32_t *)call->masters)[place];
+            double value = to_fmu ? masters : read_own(call, place);
+            if (!copying && (value < call->low || value > call->high))
+                return false;
+            if (copying && to_fmu)
+                write_own(call, place, value);
+            else if (copying && real)
+                ((double *)call->masters)[place] = value;
+            else if (copying)
+                ((int32_t *)call->masters)[place] = (int32_t)value;
+        }
+    }
+    return true;
+}
+
+static int step_3(const struct call *call, double start, double size)
+{
+    struct flags *flags = call->values;
+    flags->reached = start;
+    int status = ((step_function_3)call->function)(
+        call->instance, start, size, true, &flags->event, &flags->terminate, &flags->early, &flags->reached);
+    bool sound = status == OK || status == WARNING;
+    return sound && (flags->terminate || flags->early) ? DISCARD : status;
+}
+
 static int perform(const struct call *call, double start, double size)
 {
-    switch (call->kind) {
-    case REALS:
-        return ((real_function)call->function)(
-            call->instance, call->references, call->count, (double *)call->values);
-    case INTEGERS:
-        return ((integer_function)call->function)(
-            call->instance, call->references, call->count, (int32_t *)call->values);
-    default:
+    if (call->kind == STEP)
         return ((step_function)call->function)(call->instance, start, size, 1);
+    if (call->kind == STEP_3)
+        return step_3(call, start, size);
+    if (call->kind == VALUES)
+        return ((values_function)call->function)(call->instance, call->references, call->count, call->values);
+    if (call->masters && call->kind == SET_3 && !moved(call))
+        return REFUSED;
+    int status = ((values_function_3)call->function)(
+        call->instance, call->references, call->count, call->values, call->count);
+    bool sound = status == OK || status == WARNING;
+    return call->masters && call->kind == GET_3 && sound && !moved(call) ? REFUSED : status;
+}
+
+/* Make the calls from first to end; whether all of them went well. */
+static bool perform_all(const struct plan *plan, size_t first, size_t end, double start, double size,
+                        struct outcome *outcome)
+{
+    for (size_t place = first; place < end; place++) {
+        int status = perform(&plan->calls[place], start, size);
+        if (status < OK || status > WARNING) {
+            outcome->call = (int64_t)place;
+            outcome->status = status;
+            return false;
+        }
     }
+    return true;
+}
+
+static double product(const double *one, const double *other, size_t count)
+{
+    double sum = 0.0;
+    for (size_t place = 0; place < count; place++)
+        sum += one[place] * other[place];
+    return sum;
+}
+
+/* Let the slopes be those seen along the last change: Broyden's method. */
+static void learn(const struct loop *loop, const double *change, const double *effect, double *answer,
+                  double *row)
+{
+    size_t count = loop->count;
+    for (size_t place = 0; place < count; place++)
+        answer[place] = product(&loop->inverse[place * count], effect, count);
+    double scale = product(change, answer, count);
+    if (!(fabs(scale) > loop->flat * product(change, change, count)))
+        return;
+    for (size_t column = 0; column < count; column++) {
+        row[column] = 0.0;
+        for (size_t place = 0; place < count; place++)
+            row[column] += change[place] * loop->inverse[place * count + column];
+    }
+    for (size_t place = 0; place < count; place++)
+        for (size_t column = 0; column < count; column++)
+            loop->inverse[place * count + column] +=
+                (change[place] - answer[place]) * row[column] / scale;
+}
+
+static bool roll(const struct loop *loop, bool back, struct outcome *outcome)
+{
+    for (size_t place = 0; place < loop->rollback_count; place++) {
+        const struct rollback *each = &loop->rollbacks[place];
+        int status = back ? each->restore(each->instance, *each->state) : each->save(each->instance, each->state);
+        if (status != OK && status != WARNING) {
+            outcome->call = (int64_t)place;
+            outcome->status = back ? NOT_RESTORED : NOT_SAVED;
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Repeat the calls of the loop until what comes out of them is what went in. */
+static bool settle(const struct plan *plan, double start, double size, struct outcome *outcome)
+{
+    const struct loop *loop = plan->loop;
+    size_t count = loop->count;
+    double *guess = loop->room, *change = guess + count, *residual = change + count;
+    double *effect = residual + count, *answer = effect + count, *row = answer + count;
+
+    if (!roll(loop, false, outcome))
+        return false;
+    for (size_t place = 0; place < count; place++)
+        guess[place] = plan->reals[loop->slots[place]];
+    for (int64_t exchange = 0; exchange < loop->most_exchanges; exchange++) {
+        for (size_t place = 0; place < count; place++)
+            plan->reals[loop->slots[place]] = guess[place];
+        memcpy(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
+        if (exchange && !roll(loop, true, outcome))
+            return false;
+        if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
+            return false;
+        bool agrees = !memcmp(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
+        for (size_t place = 0; place < count; place++) {
+            double found = plan->reals[loop->slots[place]];
+            if (!isfinite(found)) {
+                outcome->status = NOT_SETTLED;
+                return false;
+            }
+            double before = residual[place];
+            residual[place] = found - guess[place];
+            effect[place] = residual[place] - before;
+            if (!(fabs(residual[place]) <= loop->tolerance * fmax(loop->largest[place], fabs(found))))
+                agrees = false;
+        }
+        if (agrees) {
+            for (size_t place = 0; place < count; place++)
+                loop->largest[place] = fmax(loop->largest[place], fabs(plan->reals[loop->slots[place]]));
+            return true;
+        }
+        if (exchange)
+            learn(loop, change, effect, answer, row);
+        for (size_t place = 0; place < count; place++)
+            change[place] = -product(&loop->inverse[place * count], residual, count);
+        for (size_t place = 0; place < count; place++)
+            guess[place] += change[place];
+    }
+    outcome->status = NOT_SETTLED;
+    return false;
+}
+
+static bool take_step(const struct plan *plan, double start, double size, struct outcome *outcome)
+{
+    const struct loop *loop = plan->loop;
+    if (!loop)
+        return perform_all(plan, 0, plan->call_count, start, size, outcome);
+    return perform_all(plan, 0, loop->first, start, size, outcome) && settle(plan, start, size, outcome) &&
+           perform_all(plan, loop->end, plan->call_count, start, size, outcome);
 }
 
 /* Take steps; return how many were taken. A row of all values is written after each. */
@@ -71,14 +289,8 @@ EXPORT int64_t advance(const struct plan *plan, int64_t steps, const double *sta
             plan->reals[plan->driven_reals[place]] = *driven_reals++;
         for (size_t place = 0; place < plan->driven_integer_count; place++)
             plan->integers[plan->driven_integers[place]] = *driven_integers++;
-        for (size_t place = 0; place < plan->call_count; place++) {
-            int status = perform(&plan->calls[place], starts[step], sizes[step]);
-            if (status < OK || status > WARNING) {
-                outcome->call = (int64_t)place;
-                outcome->status = status;
-                return step;
-            }
-        }
+        if (!take_step(plan, starts[step], sizes[step], outcome))
+            return step;
         memcpy(real_rows, plan->reals, plan->real_count * sizeof(double));
         memcpy(integer_rows, plan->integers, plan->integer_count * sizeof(int32_t));
         real_rows += plan->real_count;

@@ -1,0 +1,64 @@
+"""Prepared calls of an FMU's functions: as Python makes them, and as the compiled stepper does."""
+
+import ctypes
+from collections.abc import Callable
+from typing import Any, NamedTuple, cast
+
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
+REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
+
+# what a compiled call does, as stepper.c numbers it
+VALUES, STEP, SET_3, GET_3, STEP_3 = range(5)
+# the FMI 3.0 types that differ from the master's own, as stepper.c numbers them
+CONVERTED = (
+    "Float32", "Boolean", "Int8", "Int16", "Int64", "UInt8", "UInt16", "UInt32", "UInt64", "Enumeration",
+)  # fmt: skip
+
+
+class Compiled(ctypes.Structure):
+    """A call as the compiled stepper makes it: `struct call` of stepper.c.
+
+    Its addresses belong to what the `arguments` of the same `Call` keep alive.
+    """
+
+    _fields_ = (
+        ("kind", ctypes.c_int64),
+        ("function", ctypes.c_void_p),
+        ("instance", ctypes.c_void_p),
+        ("references", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("values", ctypes.c_void_p),
+        ("masters", ctypes.c_void_p),
+        ("type", ctypes.c_int64),
+        ("low", ctypes.c_double),
+        ("high", ctypes.c_double),
+    )
+
+
+class Rollback(ctypes.Structure):
+    """How a state is saved and restored: `struct rollback` of stepper.c."""
+
+    _fields_ = (
+        ("save", ctypes.c_void_p),
+        ("restore", ctypes.c_void_p),
+        ("instance", ctypes.c_void_p),
+        ("state", ctypes.c_void_p),
+    )
+
+
+class Call(NamedTuple):
+    """A prepared call.
+
+    `name` is that of the FMU's function; `compiled` the same call for the compiled stepper, None where only
+    Python can make it.
+    """
+
+    function: Callable[..., int]
+    arguments: tuple[Any, ...]
+    name: str
+    compiled: Compiled | None = None
+
+
+def address(function: Any) -> int | None:
+    """Where the machine code of a library's function is."""
+    return ctypes.cast(cast(Any, function), ctypes.c_void_p).value
