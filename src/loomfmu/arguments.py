@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
     parser.set_defaults(debug=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (_run, _show, _sweep, _list, _init, _new, _build, _export, _cache, _validate):
+    for add in (_run, _show, _report, _sweep, _list, _init, _new, _build, _export, _cache, _validate):
         add(commands)
     return parser
 
@@ -55,6 +55,7 @@ def _run(commands: Any) -> None:
     _add_set(run)
     run.add_argument("--output", metavar="FILE.h5", help="trace file; results/SCENE.h5 by default")
     run.add_argument("--native", action="store_true", help="use native FMUs instead of live ones")
+    run.add_argument("--report", action="store_true", help="also write a page to look at, beside the trace")
     run.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
     _add_force(run, "FILE.h5 even if it is not a trace")
 
@@ -62,6 +63,13 @@ def _run(commands: Any) -> None:
 def _show(commands: Any) -> None:
     show = commands.add_parser("show", help="summarise a trace")
     show.add_argument("trace", metavar="FILE.h5")
+
+
+def _report(commands: Any) -> None:
+    report = commands.add_parser("report", help="write a trace as a page to look at (HTML)")
+    report.add_argument("traces", nargs="+", metavar="FILE.h5", help="the trace; others are laid over it")
+    report.add_argument("--output", metavar="FILE.html", help="beside the first trace by default")
+    _add_force(report, "FILE.html even if it is not a report")
 
 
 def _sweep(commands: Any) -> None:

@@ -99,6 +99,10 @@ def _run(options: argparse.Namespace) -> int:
     from .cosim.run import run
 
     overrides = _overrides(options)
+    if options.report:
+        from . import report
+
+        report.check()  # before the run, not after it
     result = run(
         options.scene, set=overrides, output=options.output, progress=True,
         flavour="native" if options.native else "live",
@@ -125,6 +129,8 @@ def _run(options: argparse.Namespace) -> int:
     path = str(result.path)
     summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
     say(f"trace: {path}    summary: {shlex.join(summary)}")
+    if options.report:
+        say(f"report: {report.write([result.trace], overwrite=options.force)}")
     return 0 if result.holds else 1
 
 
@@ -231,6 +237,16 @@ def _show(options: argparse.Namespace) -> int:
         raise LoomfmuError(f"{options.trace}: the file is damaged ({error})") from error
 
 
+def _report(options: argparse.Namespace) -> int:
+    from .report import write
+    from .traces.damage import check
+
+    for path in options.traces:
+        check(Path(path))
+    say(write(options.traces, options.output, options.force))
+    return 0
+
+
 def _summarise(trace: "Trace") -> None:
     """Print what a trace says of the run, its signals, and the verdicts."""
     attributes = trace.attributes
@@ -290,6 +306,7 @@ COMMANDS = {
     "init": _init,
     "new": _new,
     "show": _show,
+    "report": _report,
     "cache": _cache,
     "validate": _validate,
 }

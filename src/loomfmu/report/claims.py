@@ -1,0 +1,59 @@
+"""The verdict at a glance, then each claim with how far it is from its bound, and where."""
+
+from typing import Any
+
+from ..traces import Verdict
+from .section import Section, Subject
+from .templates import template
+
+
+def section(subject: Subject) -> Section:
+    """The claims of the first trace."""
+    trace = subject.trace
+    verdicts = trace.verdicts
+    failing = sum(not verdict for verdict in verdicts)
+    return Section(
+        "claims", "Claims",
+        template("claims.html.j2").render(
+            judged=trace.judged,
+            outcome=outcome(verdicts, trace.judged),
+            word="unknown" if not (trace.judged and verdicts) else "fails" if failing else "holds",
+            rows=[_row(subject, verdict) for verdict in verdicts],
+        ),
+        "claims.js",
+    )  # fmt: skip
+
+
+def outcome(verdicts: list[Verdict], judged: bool) -> str:
+    """The verdict on the run, in a few words."""
+    if not judged:
+        return "Not judged: the run did not get to its end"
+    if not verdicts:
+        return "No claims"
+    failing = sum(not verdict for verdict in verdicts)
+    if failing:
+        return f"{failing} of {len(verdicts)} claims fail{'s' * (failing == 1)}"
+    return "The claim holds" if len(verdicts) == 1 else f"All {len(verdicts)} claims hold"
+
+
+def _row(subject: Subject, verdict: Verdict) -> dict[str, Any]:
+    return {
+        "word": verdict.word,
+        "holds": verdict.holds,
+        "claim": verdict.claim,
+        "signal": verdict.signal,
+        "worst": verdict.shown(verdict.worst),
+        "bound": verdict.shown(verdict.bound),
+        "distance": _distance(verdict),
+        "place": verdict.place,
+        "position": subject.position(verdict),
+        "note": verdict.note,
+    }
+
+
+def _distance(verdict: Verdict) -> str:
+    """How far the worst value is from the bound, negative beyond it, and its share of the bound."""
+    text = verdict.shown(verdict.distance)
+    if text == "no value" or not verdict.bound:
+        return text
+    return f"{text} ({verdict.distance / abs(verdict.bound):+.1%})"

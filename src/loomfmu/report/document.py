@@ -1,0 +1,78 @@
+"""The report as one HTML file: its sections in their order, with style and scripts inline."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LoomfmuError
+from ..files import check_target, starts_with, write_file
+from ..traces import Trace
+from .claims import section as claims
+from .provenance import section as provenance
+from .section import Section, Subject, embedded
+from .templates import template, text
+
+MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
+REPORT = starts_with("a report of loomfmu", MARK.encode())
+CURSOR_POINTS = 2000  # between which the cursor's time is interpolated
+
+SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, provenance)
+
+
+def write(
+    traces: Sequence[str | Path | Trace], output: str | Path | None = None, overwrite: bool = False
+) -> Path:
+    """Write the report of a trace, with others laid over it, and return its path.
+
+    Args:
+        traces: traces or their files; the first one is judged and shown in motion
+        output: the file; beside the first trace, with `.html` for `.h5`, by default
+        overwrite: also replace a file that is not a report
+
+    Raises:
+        LoomfmuError: a trace cannot be read or has no sample, the file cannot be written, or the extra
+            `report` is not installed
+    """
+    opened = [each if isinstance(each, Trace) else Trace(each) for each in traces]
+    if not opened:
+        raise LoomfmuError("a report needs a trace: name at least one")
+    for trace in opened:
+        if not trace.rows:
+            raise LoomfmuError(f"{trace.path}: there is nothing to show: the trace has no samples")
+    path = Path(output) if output is not None else opened[0].path.with_suffix(".html")
+    inputs = [trace.path for trace in opened]
+    check_target(path, REPORT, inputs, overwrite)
+    return write_file(path, page(Subject(opened)).encode(), REPORT, inputs, overwrite)
+
+
+def page(subject: Subject) -> str:
+    """The whole page. Raises LoomfmuError if the extra `report` is not installed."""
+    made = [section for make in SECTIONS if (section := make(subject))]
+    trace = subject.trace
+    body: str = template("page.html.j2").render(
+        title=str(trace.attributes["title"]),
+        software=str(trace.attributes["software"]),
+        sections=made,
+        style=text("style.css"),
+        cursor=text("cursor.js"),
+        axis=embedded(_axis(subject)),
+    )
+    return MARK + body
+
+
+def _axis(subject: Subject) -> dict[str, Any]:
+    """What the cursor moves along: a few positions with their times."""
+    places = _spread(len(subject.positions), CURSOR_POINTS)
+    return {
+        "turns": subject.turns,
+        "positions": subject.positions[places],
+        "times": subject.trace.time[places],
+    }
+
+
+def _spread(count: int, most: int) -> NDArray[np.int64]:
+    """Places in a row, at most so many, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))

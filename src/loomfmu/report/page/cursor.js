@@ -1,0 +1,93 @@
+"use strict";
+/* One cursor for the whole page. A position is an angle of the main shaft, not wrapped [rad], or a time [s]
+ * where no shaft turns. Sections follow it by `loomfmu.follow(position => ...)` and move it by
+ * `loomfmu.seek(position)`; their data are `loomfmu.data(name)`. */
+const loomfmu = (() => {
+  const DEGREE = Math.PI / 180, TURN = 2 * Math.PI, SECONDS_A_TURN = 6, SECONDS_A_RUN = 20;
+  const data = name => JSON.parse(document.getElementById(`data-${name}`).textContent);
+  const axis = data("axis"), positions = axis.positions, times = axis.times;
+  const first = positions[0], last = positions[positions.length - 1];
+  const slider = document.getElementById("cursor-slider"), place = document.getElementById("cursor-place");
+  const button = document.getElementById("cursor-play");
+  const listeners = [];
+  let position = first, playing = null;
+
+  /* Index of the last of ascending values that is not above a value, and the share of the way to the next. */
+  function locate(ascending, value) {
+    let low = 0, high = ascending.length - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (ascending[middle] <= value) low = middle; else high = middle;
+    }
+    const span = ascending[high] - ascending[low];
+    return [low, span > 0 ? Math.min(Math.max((value - ascending[low]) / span, 0), 1) : 0];
+  }
+
+  function interpolate(ascending, values, value) {
+    const [index, share] = locate(ascending, value);
+    const next = values[Math.min(index + 1, values.length - 1)];
+    return values[index] + share * (next - values[index]);
+  }
+
+  function label(where) {
+    const time = `${interpolate(positions, times, where).toPrecision(6)} s`;
+    if (!axis.turns) return time;
+    const turns = Math.floor(where / TURN + 1e-12);
+    return `rev. ${turns + 1}, ${((where - turns * TURN) / DEGREE).toFixed(1)}°, ${time}`;
+  }
+
+  function seek(where) {
+    position = Math.min(Math.max(where, first), last);
+    slider.value = position;
+    place.textContent = label(position);
+    slider.setAttribute("aria-valuetext", place.textContent);
+    for (const listener of listeners) listener(position);
+  }
+
+  function pause() {
+    if (playing !== null) cancelAnimationFrame(playing);
+    playing = null;
+    button.textContent = "Play";
+    button.setAttribute("aria-pressed", "false");
+  }
+
+  function play() {
+    const rate = axis.turns ? TURN / SECONDS_A_TURN : (last - first) / SECONDS_A_RUN;
+    let before = null;
+    if (position >= last) seek(first);
+    button.textContent = "Pause";
+    button.setAttribute("aria-pressed", "true");
+    const frame = now => {
+      if (before !== null) seek(position + rate * (now - before) / 1000);
+      before = now;
+      if (position >= last) pause(); else playing = requestAnimationFrame(frame);
+    };
+    playing = requestAnimationFrame(frame);
+  }
+
+  const toggle = () => playing === null ? play() : pause();
+  const step = axis.turns ? DEGREE : (last - first) / 1000;
+  const moves = {
+    ArrowLeft: event => seek(position - step * (event.shiftKey ? 10 : 1)),
+    ArrowRight: event => seek(position + step * (event.shiftKey ? 10 : 1)),
+    Home: () => seek(first),
+    End: () => seek(last),
+    " ": toggle,
+  };
+  document.addEventListener("keydown", event => {
+    const taken = event.target.closest("button, a, summary, select, textarea, input:not(#cursor-slider)");
+    if (taken || event.ctrlKey || event.altKey || event.metaKey || !moves[event.key]) return;
+    event.preventDefault();
+    if (event.key !== " ") pause();
+    moves[event.key](event);
+  });
+  slider.min = first;
+  slider.max = last;
+  slider.addEventListener("input", () => { pause(); seek(Number(slider.value)); });
+  button.addEventListener("click", toggle);
+  addEventListener("load", () => seek(position));
+
+  return { data, locate, interpolate, label, seek, play, pause, turns: axis.turns, first, last,
+           follow: listener => { listeners.push(listener); }, get position() { return position; } };
+})();
+window.loomfmu = loomfmu;

@@ -1,0 +1,54 @@
+"""What the run was: enough to judge what it is worth, and to repeat it."""
+
+import json
+from typing import Any
+
+from .section import Section, Subject
+from .templates import template
+
+PLAIN = {
+    "command": "Run by",
+    "flavour": "FMUs",
+    "revolutions": "Revolutions",
+    "steps_per_revolution": "Communication steps per revolution",
+    "duration": "Duration",
+    "step": "Communication step",
+    "grid": "Grid",
+    "ended_by": "Ended early by",
+    "status": "Status",
+    "software": "Software",
+}
+
+
+def section(subject: Subject) -> Section:
+    """Machine, values that differ from the scene, grid, warnings, versions and hashes of the first trace."""
+    attributes = subject.trace.attributes
+    facts = [
+        (label, str(attributes[key])) for key, label in PLAIN.items() if attributes.get(key) not in (None, "")
+    ]
+    facts.insert(1, ("Samples", f"{subject.trace.rows}"))
+    return Section(
+        "provenance", "The run",
+        template("provenance.html.j2").render(
+            facts=facts,
+            changed=sorted(_json(attributes.get("set", "{}")).items()),
+            notes=str(attributes.get("notes", "")).splitlines(),
+            fmus=_fmus(attributes),
+            scene=str(attributes.get("scene", "")),
+        ),
+    )  # fmt: skip
+
+
+def _json(text: str) -> dict[str, Any]:
+    found = json.loads(text)
+    return found if isinstance(found, dict) else {}
+
+
+def _fmus(attributes: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """Name, version and SHA-256 of each FMU."""
+    start, end = "fmu_", "_sha256"
+    names = [key[len(start) : -len(end)] for key in attributes if key.startswith(start) and key.endswith(end)]
+    return [
+        (name, str(attributes.get(f"fmu_{name}_version", "")), str(attributes[f"fmu_{name}{end}"]))
+        for name in sorted(names)
+    ]

@@ -1,0 +1,103 @@
+"""What a report is made of: sections, each by itself, along one axis."""
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..traces import Trace, Verdict
+from .templates import text
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: `html` below the heading `title`, and what makes it follow the cursor.
+
+    `data` is what `script`, a file of the folder `page`, finds by `loomfmu.data(name)`.
+    """
+
+    name: str
+    title: str
+    html: str
+    script: str = ""
+    data: Any = None
+
+    @property
+    def code(self) -> str:
+        """The text of the script."""
+        return text(self.script) if self.script else ""
+
+    @property
+    def json(self) -> str:
+        """The data as JSON that no text in it can end: it stands in a script element."""
+        return embedded(self.data)
+
+
+def embedded(data: Any) -> str:
+    """Data as JSON inside a script element; what is not finite becomes null.
+
+    >>> embedded({"a": "</script>", "b": math.nan})
+    '{"a":"\\\\u003c/script>","b":null}'
+    """
+    text = json.dumps(_plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _plain(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, np.ndarray):
+        return _plain(data.tolist())
+    if isinstance(data, list | tuple):
+        return [_plain(each) for each in data]
+    if isinstance(data, np.generic):
+        return _plain(data.item())
+    return None if isinstance(data, float) and not math.isfinite(data) else data
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a report is about: the traces, the first of which is the one that is judged and shown moving.
+
+    Places are positions on one axis: the shaft's angle, not wrapped [rad], or time [s] where no shaft turns.
+    """
+
+    traces: Sequence[Trace]
+    signals: Sequence[str] = field(default=())
+
+    @property
+    def trace(self) -> Trace:
+        """The first trace."""
+        return self.traces[0]
+
+    @cached_property
+    def turns(self) -> bool:
+        """Whether a shaft turns: then positions are its angles."""
+        angle = self.trace.shaft_angle
+        return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and angle[-1] > angle[0]
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        """Position of each sample of the first trace."""
+        return self.along(self.trace)
+
+    def along(self, trace: Trace) -> NDArray[np.float64]:
+        """Position of each sample of a trace."""
+        return trace.shaft_angle if self.turns else trace.time
+
+    def position(self, verdict: Verdict) -> float | None:
+        """Where the worst value of a claim was; None if it has no place."""
+        if not math.isfinite(verdict.time):
+            return None
+        if not self.turns:
+            return verdict.time
+        if verdict.revolution is None:
+            return None
+        return (verdict.revolution - 1) * TURN + verdict.angle

@@ -1,0 +1,25 @@
+"""Traces that reports are written of."""
+
+from pathlib import Path
+
+import pytest
+from browser import chromium, opened
+
+import loomfmu
+from loomfmu.traces import Trace
+
+__all__ = ["chromium", "opened"]
+
+SIMS = Path(__file__).parents[2] / "sims"
+
+
+@pytest.fixture(scope="session")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """The trace of the demo."""
+    return loomfmu.run(SIMS / "wl680_3600.toml", output=tmp_path_factory.mktemp("demo") / "demo.h5").trace
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """The trace of a loom with every mechanism."""
+    return loomfmu.run(SIMS / "full_loom.toml", output=tmp_path_factory.mktemp("whole") / "whole.h5").trace

@@ -1,0 +1,99 @@
+"""The page as a whole: it opens in silence, asks no host for anything, and follows its cursor."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import NARROW, until
+
+from loomfmu import LoomfmuError, report
+from loomfmu.cli import main
+from loomfmu.report.document import page
+from loomfmu.report.section import Subject, embedded
+from loomfmu.traces import Trace
+
+Open = Callable[..., Any]
+MAIL = 4_000_000  # bytes that a mail takes
+
+
+@pytest.fixture
+def written(demo: Trace, tmp_path: Path) -> Path:
+    return report.write([demo], tmp_path / "demo.html")
+
+
+def test_it_opens_and_tells_the_verdict(written: Path, opened: Open) -> None:
+    found = opened(written)
+    assert found.title() == "WL680-3600, G6300 belt without guide hooks, plain weave"
+    assert found.inner_text(".outcome").endswith("All 6 claims hold")
+    assert found.locator("table.claims tbody tr").count() == 6
+
+
+def test_a_click_on_a_place_moves_the_cursor_there(written: Path, opened: Open) -> None:
+    found = opened(written)
+    found.locator("#claims .place").first.click()
+    assert found.inner_text("#cursor-place").startswith("rev. 1, 100.1°")
+
+
+def test_the_cursor_follows_slider_keys_and_play(written: Path, opened: Open) -> None:
+    found = opened(written)
+    where = lambda: found.evaluate("loomfmu.position")  # noqa: E731
+    found.keyboard.press("End")
+    assert where() == found.evaluate("loomfmu.last")
+    found.keyboard.press("Home")
+    found.keyboard.press("ArrowRight")
+    assert where() == pytest.approx(0.0174533, rel=1e-5)
+    found.locator("#cursor-slider").fill("3")
+    assert where() == pytest.approx(3.0)
+    found.locator("#cursor-play").click()
+    until(found, lambda: where() > 3.2)
+    found.locator("#cursor-play").click()
+    kept = where()
+    found.wait_for_timeout(100)
+    assert where() == kept
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_stands_out_at_the_side_of_a_narrow_screen(written: Path, opened: Open, scheme: str) -> None:
+    found = opened(written, NARROW, color_scheme=scheme)
+    assert found.evaluate("document.documentElement.scrollWidth") == NARROW[0]
+
+
+def test_it_is_small_enough_to_mail(written: Path) -> None:
+    assert written.stat().st_size < MAIL
+
+
+def test_foreign_text_is_shown_and_never_run(
+    demo: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nasty = "</title></script><script>console.log('run')</script><img src=x onerror=alert(1)>"
+    attributes = demo.attributes | {"title": nasty, "scene": nasty}
+    monkeypatch.setattr(Trace, "attributes", attributes)
+    path = tmp_path / "nasty.html"
+    path.write_text(page(Subject([demo])))
+    assert opened(path).title() == nasty
+
+
+def test_data_cannot_end_the_element_they_stand_in() -> None:
+    assert "<" not in embedded({"a": ["</script>", float("nan"), float("inf")]})
+
+
+def test_the_command_writes_it_beside_the_trace(
+    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / "copy.h5"
+    os.link(demo.path, copy)
+    assert main(["report", str(copy)]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "copy.html")
+    assert main(["report", str(copy)]) == 0  # one of ours is replaced
+    (tmp_path / "copy.html").write_text("my notes")
+    assert main(["report", str(copy)]) == 2
+    assert (tmp_path / "copy.html").read_text() == "my notes"
+    assert main(["report", str(copy), "--output", str(copy), "--force"]) == 2
+    assert capsys.readouterr().err.strip().endswith("(it is an input of this command)")
+
+
+def test_without_a_trace_there_is_nothing_to_report() -> None:
+    with pytest.raises(LoomfmuError, match="name at least one"):
+        report.write([])
