@@ -44,7 +44,20 @@ def parser() -> argparse.ArgumentParser:
     parser.set_defaults(debug=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (_run, _show, _report, _sweep, _list, _init, _new, _build, _export, _cache, _validate):
+    for add in (
+        _run,
+        _show,
+        _report,
+        _diagram,
+        _sweep,
+        _list,
+        _init,
+        _new,
+        _build,
+        _export,
+        _cache,
+        _validate,
+    ):
         add(commands)
     return parser
 
@@ -70,6 +83,19 @@ def _report(commands: Any) -> None:
     report.add_argument("traces", nargs="+", metavar="FILE.h5", help="the trace; others are laid over it")
     report.add_argument("--output", metavar="FILE.html", help="beside the first trace by default")
     _add_force(report, "FILE.html even if it is not a report")
+
+
+def _diagram(commands: Any) -> None:
+    diagram = commands.add_parser("diagram", help="draw the timing diagram of a trace (SVG, PNG or PDF)")
+    diagram.add_argument("trace", metavar="FILE.h5")
+    diagram.add_argument(
+        "--revolution", type=int, metavar="N", help="counted from 1; the last whole one by default"
+    )
+    diagram.add_argument("--round", action="store_true", help="as rings around the shaft")
+    diagram.add_argument(
+        "--output", metavar="FILE.svg|png|pdf", help="FILE_diagram.svg beside the trace by default"
+    )
+    _add_force(diagram, "the picture even if it is not one")
 
 
 def _sweep(commands: Any) -> None:

@@ -247,6 +247,19 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
+def _diagram(options: argparse.Namespace) -> int:
+    from .report import diagram
+    from .traces import Trace
+    from .traces.damage import check
+
+    path = Path(options.trace)
+    check(path)
+    output = Path(options.output) if options.output else path.with_name(f"{path.stem}_diagram.svg")
+    with Trace(path) as trace:
+        say(diagram.write(trace, output, options.revolution, options.round, options.force))
+    return 0
+
+
 def _summarise(trace: "Trace") -> None:
     """Print what a trace says of the run, its signals, and the verdicts."""
     attributes = trace.attributes
@@ -307,6 +320,7 @@ COMMANDS = {
     "new": _new,
     "show": _show,
     "report": _report,
+    "diagram": _diagram,
     "cache": _cache,
     "validate": _validate,
 }

@@ -209,6 +209,13 @@ class Trace(Signals):
                 f"{self.path}: the file is damaged (its claims are not verdicts: {error})"
             ) from None
 
+    @cached_property
+    def fmus(self) -> dict[str, str]:
+        """The name of each instance's FMU."""
+        with self._opened() as file:
+            names = dict.fromkeys(signal.partition(".")[0] for signal in self)
+            return {name: str(member(file, name).attrs.get("fmu", "")) for name in names}
+
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
         return str(self._text(signal, "UNIT"))

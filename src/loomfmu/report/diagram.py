@@ -1,0 +1,203 @@
+"""The timing diagram of the main shaft, straight and round, of one revolution at a time."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import LoomfmuError
+from ..files import ANY, Kind, starts_with, write_file
+from ..traces import Trace, Verdict
+from .occasions import Bar, Occasions, Revolution, Row
+from .section import TURN, Section, Subject
+from .shapes import Drawing, Point, Shape, Text, file, on_circle, ring, svg
+from .templates import template
+
+LEFT, RIGHT, TOP, ROW, WIDTH = 110.0, 20.0, 34.0, 30.0, 900.0
+CENTRE, OUTER, INNER, SQUARE = (345.0, 345.0), 290.0, 90.0, 690.0
+MOST_DRAWN = 24  # revolutions that differ, in one report
+PICTURES = {
+    ".svg": starts_with("an SVG picture", b"<svg"),
+    ".png": starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n"),
+    ".pdf": starts_with("a PDF", b"%PDF"),
+}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Where the worst value of a claim is [rad within the revolution]."""
+
+    angle: float
+    holds: bool
+    text: str
+
+
+def section(subject: Subject) -> Section | None:
+    """The diagram with all revolutions that differ, of which the cursor chooses; None if no shaft turns."""
+    if not subject.turns:
+        return None
+    occasions = Occasions(subject)
+    if not occasions.rows:
+        return None
+    drawn: list[Revolution] = []
+    marks: list[list[Mark]] = []
+    shown: dict[int, int] = {}
+    for revolution in occasions.revolutions():
+        its = marks_in(subject.trace.verdicts, revolution.number)
+        same = (k for k, other in enumerate(drawn) if revolution.same(other) and marks[k] == its)
+        place = next(same, None)
+        if place is None and len(drawn) < MOST_DRAWN:
+            place = len(drawn)
+            drawn.append(revolution)
+            marks.append(its)
+        shown[revolution.number] = len(drawn) - 1 if place is None else place
+    height = straight_size(occasions.rows)[1]
+    html = template("diagram.html.j2").render(
+        width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
+        centre=CENTRE, outer=OUTER + 8.0, inner=INNER - 8.0,
+        straight=[svg(straight(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
+        round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
+        tables=[table(occasions.rows, each) for each in drawn],
+        numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
+        legend=_legend(occasions.rows),
+    )  # fmt: skip
+    data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
+    return Section("diagram", "Timing diagram", html, "diagram.js", data)
+
+
+def write(
+    trace: Trace, output: Path, revolution: int | None = None, circular: bool = False, overwrite: bool = False
+) -> Path:
+    """Write the diagram of one revolution of a trace, its last whole one by default, and return its path.
+
+    Raises LoomfmuError where no shaft turns, there is no such revolution, or the file cannot be written.
+    """
+    subject = Subject([trace])
+    occasions = Occasions(subject) if subject.turns else None
+    if not occasions or not occasions.rows:
+        raise LoomfmuError(
+            f"{trace.path}: there is no timing diagram: no recorded mechanism turns with a shaft"
+        )
+    numbers = occasions.numbers
+    number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
+    if number not in numbers:
+        raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.path}")
+    its = occasions.revolution(number), marks_in(trace.verdicts, number)
+    drawing = (round_ if circular else straight)(occasions.rows, *its)
+    size = (SQUARE, SQUARE) if circular else straight_size(occasions.rows)
+    title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
+    kind: Kind = PICTURES.get(output.suffix, ANY)
+    content = file(drawing, size, output.suffix, title)
+    return write_file(output, content, kind, [trace.path], overwrite)
+
+
+def marks_in(verdicts: Sequence[Verdict], number: int) -> list[Mark]:
+    """The claims whose worst value is in a revolution."""
+    return [
+        Mark(each.angle, bool(each), f"{each.word}: {each.claim}, {each.shown(each.worst)}")
+        for each in verdicts
+        if each.revolution == number and math.isfinite(each.angle)
+    ]
+
+
+def _degrees(interval: tuple[float, float]) -> str:
+    return " to ".join(f"{math.degrees(edge):.1f}°" for edge in interval)
+
+
+def table(rows: Sequence[Row], revolution: Revolution) -> list[tuple[str, str, str]]:
+    """The same in words: row, what, from where to where."""
+    return [
+        (row.label, bar.label, ", ".join(map(_degrees, revolution.intervals[row.name, bar.label])) or "never")
+        for row in rows
+        for bar in row.bars
+    ]
+
+
+def _title(row: Row, bar: Bar, interval: tuple[float, float]) -> str:
+    return f"{row.label} {bar.label}: {_degrees(interval)}"
+
+
+def _legend(rows: Sequence[Row]) -> dict[str, str]:
+    return {bar.label: bar.role for row in rows for bar in row.bars}
+
+
+# ---- straight
+
+
+def straight_size(rows: Sequence[Row]) -> tuple[float, float]:
+    """Width and height of the straight diagram [px]."""
+    return WIDTH, TOP + ROW * (len(rows) + 1) + 10.0
+
+
+def _x(angle: float) -> float:
+    return LEFT + (WIDTH - RIGHT - LEFT) * angle / TURN
+
+
+def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -> Drawing:
+    """Rows over 0 to 360 deg, one below the other, the claims at last."""
+    drawing: list[Shape | Text] = []
+    bottom = TOP + ROW * (len(rows) + 1)
+    for degrees in range(0, 361, 30):
+        x = _x(math.radians(degrees))
+        drawing.append(Shape([(x, TOP - 4.0), (x, bottom)], "line", filled=False))
+        drawing.append(Text((x, TOP - 12.0), f"{degrees}°", "faint", "middle"))
+    for place, row in enumerate(rows):
+        top = TOP + ROW * place
+        drawing.append(Text((LEFT - 8.0, top + 0.65 * ROW), row.label, "text", "end"))
+        for bar in row.bars:
+            for low, high in revolution.intervals[row.name, bar.label]:
+                x0, x1 = _x(low), _x(high)
+                box = [(x0, top + 6.0), (x1, top + 6.0), (x1, top + ROW - 4.0), (x0, top + ROW - 4.0)]
+                drawing.append(
+                    Shape(box, bar.role, title=f"{row.label} {bar.label}: {_degrees((low, high))}")
+                )
+        if row.name in revolution.curves:
+            drawing.append(Shape(list(_curve(revolution, row, top)), "curve", filled=False))
+    top = TOP + ROW * len(rows)
+    drawing.append(Text((LEFT - 8.0, top + 0.65 * ROW), "Claims", "text", "end"))
+    for mark in marks:
+        x = _x(mark.angle)
+        tip = [(x, top + 4.0), (x + 6.0, top + ROW - 6.0), (x - 6.0, top + ROW - 6.0)]
+        drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
+    return drawing
+
+
+def _curve(revolution: Revolution, row: Row, top: float) -> Iterator[Point]:
+    along, values = revolution.curves[row.name]
+    every = max(1, len(along) // 180)
+    for angle, value in zip(along[::every], values[::every], strict=True):
+        yield _x(float(angle)), top + 6.0 + (ROW - 10.0) * (1.0 - float(value))
+
+
+# ---- round
+
+
+def round_(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -> Drawing:
+    """Rows as rings, the first one outside, clockwise from 0 deg at the top; the claims around them."""
+    width = (OUTER - INNER) / len(rows)
+    drawing: list[Shape | Text] = []
+    for degrees in range(0, 360, 30):
+        angle = math.radians(degrees)
+        spoke = [on_circle(CENTRE, radius, angle) for radius in (INNER, OUTER)]
+        drawing.append(Shape(spoke, "line", filled=False))
+        x, y = on_circle(CENTRE, OUTER + 26.0, angle)
+        drawing.append(Text((x, y + 4.0), f"{degrees}°", "faint", "middle"))
+    for place, row in enumerate(rows):
+        outer = OUTER - width * place
+        circle = [on_circle(CENTRE, outer, math.radians(degrees)) for degrees in range(0, 361, 3)]
+        drawing.append(Shape(circle, "line", filled=False))
+        for bar in row.bars:
+            for low, high in revolution.intervals[row.name, bar.label]:
+                sector = ring(CENTRE, outer - 0.85 * width, outer - 0.15 * width, low, high)
+                drawing.append(
+                    Shape(sector, bar.role, title=f"{row.label} {bar.label}: {_degrees((low, high))}")
+                )
+        drawing.append(Text((CENTRE[0] + 3.0, CENTRE[1] - outer + 0.5 * width + 4.0), row.label, "text"))
+    for mark in marks:
+        tip = [
+            on_circle(CENTRE, OUTER + 2.0, mark.angle),
+            on_circle(CENTRE, OUTER + 14.0, mark.angle - 0.02),
+            on_circle(CENTRE, OUTER + 14.0, mark.angle + 0.02),
+        ]
+        drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
+    return drawing

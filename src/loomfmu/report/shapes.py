@@ -1,0 +1,133 @@
+"""Flat pictures made of few shapes: as SVG for pages, by matplotlib for files that are not SVG."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from io import BytesIO
+from typing import Any, Literal
+
+import numpy as np
+
+from ..errors import LoomfmuError
+
+Point = tuple[float, float]
+Anchor = Literal["start", "middle", "end"]
+# for files, in which no style sheet chooses: the colours of Okabe and Ito on white
+COLOURS = {
+    "weft": "#0072b2", "belt": "#e69f00", "risk": "#d55e00", "shed": "#56b4e9", "dwell": "#009e73",
+    "change": "#d4d4d4", "reed": "#a8578a", "lock": "#5c5c5c", "curve": "#1a1a1a", "line": "#d4d4d4",
+    "holds": "#006d4f", "fails": "#b34700", "text": "#1a1a1a", "faint": "#5c5c5c",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A filled polygon, or a line: its points [px], what gives it a colour, and what it is."""
+
+    points: Sequence[Point]
+    role: str
+    filled: bool = True
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Text:
+    """A line of text at a place [px]."""
+
+    place: Point
+    text: str
+    role: str = "text"
+    anchor: Anchor = "start"
+
+
+Drawing = Sequence[Shape | Text]
+
+
+def svg(drawing: Drawing) -> str:
+    """The elements of a drawing, with classes for their roles."""
+    return "\n".join(_element(each) for each in drawing)
+
+
+def _element(each: Shape | Text) -> str:
+    if isinstance(each, Text):
+        x, y = map(_short, each.place)
+        text = escape(each.text)
+        return f'<text x="{x}" y="{y}" class="{each.role}" text-anchor="{each.anchor}">{text}</text>'
+    points = " ".join(f"{_short(x)},{_short(y)}" for x, y in each.points)
+    title = f"<title>{escape(each.title)}</title>" if each.title else ""
+    name = "polygon" if each.filled else "polyline"
+    return f'<{name} class="{each.role}" points="{points}">{title}</{name}>'
+
+
+def _short(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -> bytes:
+    """A drawing as the content of a file of its own: `.svg`, `.png` or `.pdf`.
+
+    Raises LoomfmuError for another suffix, and where matplotlib is needed and not installed.
+    """
+    if suffix == ".svg":
+        return _svg_file(drawing, size, title).encode()
+    if suffix not in (".png", ".pdf"):
+        found = f"{suffix!r} is not a suffix" if suffix else "the file has no suffix"
+        raise LoomfmuError(f"{found} of a picture: use .svg, .png or .pdf")
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise LoomfmuError(
+            f'{suffix} needs the extra "plot": pip install "loomfmu[plot]", or use .svg'
+        ) from None
+    figure = Figure(figsize=(size[0] / 100.0, size[1] / 100.0), dpi=100)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0.0, size[0]), ylim=(size[1], 0.0))
+    axes.axis("off")
+    for order, each in enumerate(drawing):
+        _plot(axes, each, order)
+    content = BytesIO()
+    figure.savefig(content, format=suffix[1:], dpi=200, metadata={"Title": title})
+    return content.getvalue()
+
+
+def _plot(axes: Any, each: Shape | Text, order: int) -> None:
+    colour = COLOURS[each.role]
+    if isinstance(each, Text):
+        align = {"start": "left", "middle": "center", "end": "right"}[each.anchor]
+        axes.text(*each.place, each.text, color=colour, ha=align, va="baseline", fontsize=9, zorder=order)
+        return
+    points = np.array(each.points)
+    if each.filled:
+        axes.fill(points[:, 0], points[:, 1], color=colour, linewidth=0, zorder=order)
+    else:
+        axes.plot(points[:, 0], points[:, 1], color=colour, linewidth=1.0, zorder=order)
+
+
+def _svg_file(drawing: Drawing, size: tuple[float, float], title: str) -> str:
+    rules = "".join(f".{role}{{fill:{colour}}}" for role, colour in COLOURS.items())
+    lines = "".join(f"polyline.{role}{{fill:none;stroke:{COLOURS[role]}}}" for role in ("curve", "line"))
+    width, height = (_short(length) for length in size)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'
+        f' height="{height}" font-family="sans-serif" font-size="12" role="img">\n'
+        f"<title>{escape(title)}</title>\n<style>{rules}{lines}</style>\n"
+        f'<rect width="100%" height="100%" fill="#ffffff"/>\n{svg(drawing)}\n</svg>\n'
+    )
+
+
+def ring(centre: Point, inner: float, outer: float, start: float, end: float) -> list[Point]:
+    """A sector of a ring, as a polygon; angles [rad] run clockwise from the top.
+
+    >>> [(round(x), round(y)) for x, y in ring((0.0, 0.0), 1.0, 2.0, 0.0, math.pi / 2)][::47]
+    [(0, -2), (0, -1)]
+    """
+    steps = max(2, math.ceil((end - start) / math.radians(2.0)) + 1)
+    angles = np.linspace(start, end, steps)
+    out = [on_circle(centre, outer, angle) for angle in angles]
+    return out + [on_circle(centre, inner, angle) for angle in angles[::-1]]
+
+
+def on_circle(centre: Point, radius: float, angle: float) -> Point:
+    """A point on a circle; the angle [rad] runs clockwise from the top."""
+    return centre[0] + radius * math.sin(angle), centre[1] - radius * math.cos(angle)

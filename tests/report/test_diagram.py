@@ -1,0 +1,72 @@
+"""The timing diagram: in the report it follows the cursor, as a file it is a picture."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from loomfmu import report
+from loomfmu.cli import main
+from loomfmu.traces import Trace
+
+Open = Callable[..., Any]
+BEGINNINGS = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+
+
+@pytest.fixture
+def copied(demo: Trace, tmp_path: Path) -> Path:
+    os.link(demo.path, tmp_path / "demo.h5")
+    return tmp_path / "demo.h5"
+
+
+def test_a_click_moves_the_cursor_to_its_angle(demo: Trace, tmp_path: Path, opened: Open) -> None:
+    page = opened(report.write([demo], tmp_path / "demo.html"))
+    for picture, across in (("straight", 110 + 0.25 * 770), ("round", None)):
+        box = page.locator(f"#diagram-{picture}").bounding_box()
+        scale = box["width"] / (900 if across else 690)
+        x, y = (across * scale, 50) if across else (box["width"] * 0.9, box["height"] / 2)
+        page.keyboard.press("Home")
+        page.locator(f"#diagram-{picture}").click(position={"x": x, "y": y})
+        assert page.evaluate("loomfmu.position") == pytest.approx(1.5708, abs=0.01)
+
+
+def test_the_drawing_is_that_of_the_revolution_under_the_cursor(
+    whole: Trace, tmp_path: Path, opened: Open
+) -> None:
+    page = opened(report.write([whole], tmp_path / "whole.html"))
+    visible = "#diagram-straight g[data-drawing]:not([hidden])"
+    first = page.locator(visible).get_attribute("data-drawing")
+    page.evaluate("loomfmu.seek(5.5 * 2 * Math.PI)")
+    assert page.locator(visible).count() == 1
+    assert page.locator(visible).get_attribute("data-drawing") != first  # another pick of the twill
+
+
+@pytest.mark.parametrize("suffix", BEGINNINGS)
+@pytest.mark.parametrize("shape", [[], ["--round"]])
+def test_it_is_written_as_a_picture(copied: Path, suffix: str, shape: list[str]) -> None:
+    output = copied.with_name(f"picture{suffix}")
+    assert main(["diagram", str(copied), *shape, "--output", str(output)]) == 0
+    content = output.read_bytes()
+    assert content.startswith(BEGINNINGS[suffix])
+    if suffix == ".svg":
+        ElementTree.fromstring(content)
+    assert main(["diagram", str(copied), *shape, "--output", str(output)]) == 0  # ours is replaced
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--revolution", "9"], "revolution = 9 is outside [1, 3]"),
+        (["--output", "picture.gif"], "'.gif' is not a suffix of a picture: use .svg, .png or .pdf"),
+        (["--output", "picture"], "the file has no suffix"),
+    ],
+)
+def test_what_cannot_be_drawn_is_said_in_one_line(
+    copied: Path, arguments: list[str], reason: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["diagram", str(copied), *arguments]) == 2
+    said = capsys.readouterr().err.strip()
+    assert reason in said and "\n" not in said

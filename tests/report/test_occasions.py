@@ -1,0 +1,59 @@
+"""When things happen over the main shaft: against published and analytic angles."""
+
+import math
+
+import numpy as np
+import pytest
+
+from loomfmu.report.occasions import Occasions, positive
+from loomfmu.report.section import Subject
+from loomfmu.traces import Trace
+
+
+def degrees(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    return [(math.degrees(low), math.degrees(high)) for low, high in found]
+
+
+def test_the_window_of_risk_is_the_published_one(demo: Trace) -> None:
+    intervals = Occasions(Subject([demo])).revolution(2).intervals
+    (pressed, back) = degrees(intervals["belt", "outside and compressed"])
+    # published for this machine: 92.5 to 103.9 deg, to a tenth; the motion is symmetric about 180 deg
+    assert pressed == pytest.approx((92.5, 103.9), abs=0.05)
+    assert back == pytest.approx((360.0 - 103.9, 360.0 - 92.5), abs=0.05)
+
+
+def test_the_dwell_is_the_one_that_the_drive_computes(demo: Trace) -> None:
+    ((low, high),) = Occasions(Subject([demo])).revolution(2).intervals["heald_1", "dwells"]
+    # both edges on straight lines between samples of a quarter degree
+    assert high - low == pytest.approx(demo["dobby.dwell_angle"][-1], abs=math.radians(1e-3))
+
+
+def test_dwells_and_changes_fill_the_revolution(demo: Trace) -> None:
+    revolution = Occasions(Subject([demo])).revolution(2)
+    parts = [pair for what in ("dwells", "changes") for pair in revolution.intervals["heald_1", what]]
+    assert sum(high - low for low, high in parts) == pytest.approx(2.0 * math.pi, rel=1e-12)
+
+
+def test_frames_come_in_the_order_of_their_numbers(whole: Trace) -> None:
+    names = [row.name for row in Occasions(Subject([whole])).rows if row.name.startswith("heald_")]
+    assert names == [f"heald_{number}" for number in range(1, len(names) + 1)]
+
+
+def test_a_start_in_the_middle_covers_what_there_is(whole: Trace) -> None:
+    occasions = Occasions(Subject([whole]))
+    last = occasions.revolution(occasions.numbers[-1])
+    assert 0.0 <= last.covered[0] < last.covered[1] <= 2.0 * math.pi + 1e-9
+    for found in last.intervals.values():
+        assert all(last.covered[0] <= low < high <= last.covered[1] + 1e-9 for low, high in found)
+
+
+def test_intervals_of_a_sine_are_its_half_waves() -> None:
+    along = np.linspace(0.0, 4.0 * np.pi, 20001)
+    found = positive(along, np.sin(along - 0.5))
+    expected = [(0.5, 0.5 + np.pi), (0.5 + 2.0 * np.pi, 0.5 + 3.0 * np.pi)]
+    np.testing.assert_allclose(found, expected, atol=1e-9)  # a chord of 6e-4 rad: off by its cube
+
+
+def test_nothing_positive_has_no_interval() -> None:
+    assert positive(np.arange(5.0), -np.ones(5)) == []
+    assert positive(np.arange(5.0), np.ones(5)) == [(0.0, 4.0)]
