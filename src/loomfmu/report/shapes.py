@@ -119,8 +119,9 @@ def _svg_file(drawing: Drawing, size: tuple[float, float], title: str) -> str:
 def ring(centre: Point, inner: float, outer: float, start: float, end: float) -> list[Point]:
     """A sector of a ring, as a polygon; angles [rad] run clockwise from the top.
 
-    >>> [(round(x), round(y)) for x, y in ring((0.0, 0.0), 1.0, 2.0, 0.0, math.pi / 2)][::47]
-    [(0, -2), (0, -1)]
+    >>> points = ring((0.0, 0.0), 1.0, 2.0, 0.0, math.pi / 2)
+    >>> [(round(x), round(y)) for x, y in (points[0], points[45], points[46], points[-1])]
+    [(0, -2), (2, 0), (1, 0), (0, -1)]
     """
     steps = max(2, math.ceil((end - start) / math.radians(2.0)) + 1)
     angles = np.linspace(start, end, steps)
