@@ -132,7 +132,7 @@ def untouched(path: Path) -> tuple[int, ...]:
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize("command", [["run", "scene.toml", "--output"], ["export", "scene.toml", "--ssp"]])
 def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
-    command: list[str], force: list[str], capsys: pytest.CaptureFixture[str]
+    command: list[str], force: list[str], capfd: pytest.CaptureFixture[str]
 ) -> None:
     Path("plain.wif").write_bytes(WIF.read_bytes())
     scene(HEAD + LOOM.replace("10/01", "plain.wif"))
@@ -162,7 +162,7 @@ def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
     for target, why in said.items():
         assert main([*command, target, *force]) == 2
         shown = str(Path(target))
-        assert capsys.readouterr().err == f"loomfmu: {shown}: cannot be written ({why})\n"
+        assert capfd.readouterr().err == f"loomfmu: {shown}: cannot be written ({why})\n"
     assert {path: untouched(path) for path in Path().iterdir()} == before
     assert Path("/dev/full").is_char_device()
 

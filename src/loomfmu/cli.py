@@ -7,13 +7,15 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from signal import SIG_IGN, SIGINT, signal
 from typing import TYPE_CHECKING, Any
 
 from . import printed, units
 from .arguments import parser
-from .errors import LoomfmuError
+from .errors import LoomfmuError, described
 from .printed import complain, say
 
 if TYPE_CHECKING:
@@ -23,19 +25,31 @@ if TYPE_CHECKING:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     options = argparse.Namespace(debug=False)
+
+    def command() -> int:
+        parser().parse_args(arguments, options)
+        return COMMANDS[options.command](options)
+
+    return _status(command, options)
+
+
+def _status(command: Callable[[], int], options: argparse.Namespace) -> int:
+    """The exit status of a command; whatever goes wrong becomes one line."""
     try:
-        options = parser().parse_args(arguments)
-        status = COMMANDS[options.command](options)
+        status = command()
         _flush()
         return status
     except BrokenPipeError:  # the reader of our output has gone, as `head` does
         _drop_output()
         return 141
     except (Exception, KeyboardInterrupt) as error:
+        interrupted = isinstance(error, KeyboardInterrupt)
+        if interrupted and threading.current_thread() is threading.main_thread():
+            signal(SIGINT, SIG_IGN)  # another Ctrl-C changes nothing any more
         if options.debug:
             printed.complain_of(error)
         complain(f"loomfmu: {_reason(error)}")
-        return 130 if isinstance(error, KeyboardInterrupt) else 2
+        return 130 if interrupted else 2
 
 
 def _flush() -> None:
@@ -64,7 +78,7 @@ def _reason(error: BaseException) -> str:
         return str(error) or "interrupted"
     if isinstance(error, MemoryError):
         return "out of memory"
-    what = f"{type(error).__name__}: {error}".removesuffix(": ")
+    what = described(error)
     return f"{what} (a fault of loomfmu; please report it to its maintainers with what --debug prints)"
 
 
@@ -96,17 +110,26 @@ def _export(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from .cosim.run import run
+    from .cosim.master.guards import supervised
+    from .cosim.run import checked
 
-    overrides = _overrides(options)
     if options.report:
         from . import report
 
         report.check()  # before the run, not after it
+    options.scene = checked(options.scene, _overrides(options), "native" if options.native else "live")
+    if unprotected := options.scene.unprotected:
+        return supervised(lambda: _status(lambda: _run_here(options), options), unprotected)
+    return _run_here(options)
+
+
+def _run_here(options: argparse.Namespace) -> int:
+    """Run a scene that was read, in this process, and print what came of it."""
+    from .cosim.run import run
+
     result = run(
-        options.scene, set=overrides, output=options.output, progress=True,
-        flavour="native" if options.native else "live",
-        overwrite=options.force,
+        options.scene, output=options.output, progress=True,
+        flavour="native" if options.native else "live", overwrite=options.force,
     )  # fmt: skip
     for warning in result.warnings:
         complain(f"warning: {warning}")
@@ -209,10 +232,10 @@ def _validate(options: argparse.Namespace) -> int:
 
 def _cache(options: argparse.Namespace) -> int:
     from .fmi.cache import cache_directory
-    from .fmi.cache_entries import contents, delete
+    from .fmi.cache_entries import clear, contents
 
     if options.clear:
-        delete()
+        clear()
     found = contents()
     size, entries = sum(each.size for each in found), sum(each.entries for each in found)
     say(f"{cache_directory()}: {size / 1e6:.1f} MB, {entries} entries")
@@ -274,13 +297,13 @@ def _summarise(trace: "Trace") -> None:
     end = trace.time[-1] if trace.rows else 0.0
     say(f"{trace.rows} samples over {end:.6g} s, {_revolutions(f'{turned:.4g}')}", "")
     rows = [("signal", *(f"{word:>12}" for word in ("lowest", "highest", "last")), "unit")]
-    for signal in trace:
-        values = trace[signal]
+    for name in trace:
+        values = trace[name]
         if len(values):
-            display = trace.display(signal)
+            display = trace.display(name)
             values = values / units.unit(display).factor
             shown = (f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
-            rows.append((printed.safe(signal), *shown, trace.unit(signal) if display == "1" else display))
+            rows.append((printed.safe(name), *shown, trace.unit(name) if display == "1" else display))
     say(*printed.in_columns(rows), "")
     if trace.judged:
         _print_verdicts(trace.verdicts)

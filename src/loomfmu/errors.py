@@ -33,6 +33,19 @@ class LoomfmuError(Exception):
         super().__init__(one_line(text))
 
 
+def described(error: BaseException) -> str:
+    """The kind of an exception and what it says, which may fail itself, in one line.
+
+    >>> described(ValueError("no"))
+    'ValueError: no'
+    """
+    try:
+        text = str(error)
+    except Exception:
+        text = ""
+    return " ".join(f"{type(error).__name__}: {text}".split()).removesuffix(":")
+
+
 def shown(value: object) -> str:
     """A value in a message: in one line, and not too long.
 

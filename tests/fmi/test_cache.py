@@ -81,6 +81,42 @@ def test_a_named_cache_that_others_can_write_to_is_refused(
         cache_directory()
 
 
+def test_a_home_directory_is_filled_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("LOOMFMU_CACHE", "~/mine")
+    assert cache_directory() == tmp_path / "mine"
+
+
+@unix
+def test_a_named_cache_that_cannot_be_one_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    named = {
+        str(tmp_path / "file"): "is a file, not a folder",
+        str(tmp_path / "file" / "within"): r"cannot be used \(Not a directory\)",
+        f"{tmp_path}/\udcff": "is not valid UTF-8",
+        "~nobody_at_all/x": "Could not determine home directory",
+    }
+    for name, why in named.items():
+        monkeypatch.setenv("LOOMFMU_CACHE", name)
+        with pytest.raises(LoomfmuError, match=f"^LOOMFMU_CACHE = .*{why}"):
+            cache_directory()
+
+
+@unix
+def test_a_file_in_the_place_of_the_users_cache_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(cache, "_temporary", [])
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "loomfmu").touch()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert cache_directory().parent == tmp_path
+    assert caplog.messages == [
+        f"loomfmu: the cache {tmp_path / 'loomfmu'} is a file, not a folder; using a temporary one,"
+        " LOOMFMU_CACHE names another"
+    ]
+
+
 @unix
 def test_another_users_cache_is_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture

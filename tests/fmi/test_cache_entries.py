@@ -64,6 +64,17 @@ def test_a_damaged_entry_is_put_right(damage) -> None:
     assert listed(top) == WHOLE
 
 
+@pytest.mark.parametrize("place", [UNPACKED, f"{UNPACKED}/{KEY}", "partial"])
+def test_a_file_in_the_place_of_a_folder_of_the_cache_is_replaced(own_cache: Path, place: str) -> None:
+    entry()
+    shutil.rmtree(own_cache / place)
+    (own_cache / place).write_text("not a folder")
+    assert cli.main(["cache"]) == 0
+    assert listed(entry()) == WHOLE
+    (own_cache / UNPACKED / KEY / "a.txt").unlink()
+    assert listed(entry()) == WHOLE
+
+
 @unix
 @pytest.mark.parametrize("place", ["a.txt", "deep", "."])
 def test_links_are_not_followed(tmp_path: Path, place: str) -> None:
@@ -241,5 +252,33 @@ def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path)
     shutil.rmtree(kind, ignore_errors=True)
     kind.parent.mkdir(parents=True, exist_ok=True)
     kind.symlink_to(elsewhere)
-    cache_entries.delete()
+    cache_entries.clear()
     assert kept.is_dir()
+
+
+USES = """
+import sys
+from pathlib import Path
+from loomfmu.fmi.cache_entries import FMUS, made_file
+path = made_file(FMUS, "0" * 64, "x.fmu", lambda: b"content")
+print("ready", flush=True)
+sys.stdin.readline()
+print(path.read_bytes() == b"content", flush=True)
+"""
+
+
+@unix
+def test_a_cache_that_another_process_uses_is_not_emptied(
+    own_cache: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    user = subprocess.Popen(
+        [sys.executable, "-c", USES], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert user.stdout is not None and user.stdout.readline() == "ready\n"
+    assert cli.main(["cache", "--clear"]) == 2
+    assert capsys.readouterr().err == (
+        f"loomfmu: {own_cache}: in use by another loomfmu; end it (or its Python session) and try again\n"
+    )
+    assert user.communicate("\n")[0] == "True\n"
+    assert cli.main(["cache", "--clear"]) == 0
+    assert "0 entries" in capsys.readouterr().out

@@ -55,7 +55,7 @@ def run(
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C; what was written stays readable in a file that the message names
     """
-    scene = _checked(scene, set, flavour)
+    scene = checked(scene, set, flavour)
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     signals = recorded(scene)
     plan = Plan(scene, prune(scene, signals), _grid(scene, signals))
@@ -96,7 +96,7 @@ def evaluate(
     """
     if not isinstance(values, list | tuple) or not all(isinstance(signal, str) for signal in values):
         raise LoomfmuError(f'values = {shown(values)} is not a list such as ["belt.margin"]')
-    scene = _checked(scene, set, flavour)
+    scene = checked(scene, set, flavour)
     wanted = list(dict.fromkeys([*with_rates(scene, [*shaft_angle(scene), *values]), *judged_by(scene)]))
     grid = _grid(scene, wanted)
     found = in_memory(scene, wanted, grid)
@@ -108,8 +108,8 @@ def evaluate(
     )  # fmt: skip
 
 
-def _checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
-    """A scene that is ready to be run. Raises LoomfmuError naming the file and what is wrong."""
+def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
+    """A scene that is ready to be run, with these values and FMUs of this flavour. Raises LoomfmuError naming the file and what is wrong."""
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
     if overrides is not None and not (

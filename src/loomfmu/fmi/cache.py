@@ -23,12 +23,15 @@ def cache_directory() -> Path:
     """LOOMFMU_CACHE, or `loomfmu` in the user's cache directory, or where that cannot be used a new one.
 
     Processes started from this one share a new one, since they find it in LOOMFMU_CACHE; at the end it is
-    removed. Raises LoomfmuError where others may write to the folder that LOOMFMU_CACHE names: what lies
-    there is run.
+    removed. Raises LoomfmuError where LOOMFMU_CACHE names no folder, or one that others may write to: what
+    lies there is run.
     """
     named = os.environ.get("LOOMFMU_CACHE")
     if named:
-        place = Path(named).absolute()
+        try:
+            place = Path(named).expanduser().absolute()
+        except RuntimeError as error:  # ~ without a home
+            raise LoomfmuError(f"LOOMFMU_CACHE = {named}: {error}") from None
         if reason := _fault(place):
             raise LoomfmuError(f"LOOMFMU_CACHE = {place} {reason}; name a folder that only you can write to")
         return place
@@ -36,12 +39,16 @@ def cache_directory() -> Path:
     if usual is None:
         return _new_one()
     if reason := _fault(usual, mend=True):
-        # Python's own logging brings it to the standard error, if nothing else is set up
-        logging.getLogger("loomfmu.cache").warning(
-            "loomfmu: the cache %s %s; using a temporary one, LOOMFMU_CACHE names another", usual, reason
-        )
+        _warn(usual, reason)
         return _new_one()
     return usual
+
+
+def _warn(directory: Path, reason: str) -> None:
+    """Python's own logging brings it to the standard error, if nothing else is set up."""
+    logging.getLogger("loomfmu.cache").warning(
+        "loomfmu: the cache %s %s; using a temporary one, LOOMFMU_CACHE names another", directory, reason
+    )
 
 
 def compiler_environment() -> dict[str, str]:
@@ -67,6 +74,9 @@ def _of_user(name: str) -> Path | None:
     try:
         directory = user_cache_path(name, appauthor=False)
         directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except FileExistsError:
+        _warn(directory, "is a file, not a folder")
+        return None
     except (OSError, RuntimeError):  # also for a user without a home, as in some containers
         return None
     return directory if os.access(directory, os.W_OK | os.X_OK) else None
@@ -75,11 +85,16 @@ def _of_user(name: str) -> Path | None:
 def _fault(directory: Path, mend: bool = False) -> str:
     """Why a folder cannot be a cache, empty if it can. It is made, and with `mend` closed to others."""
     try:
+        str(directory).encode()  # FMUs get it as UTF-8
         directory.mkdir(mode=0o700, parents=True, exist_ok=True)
         status = directory.stat()
         if mend and _is_own(status) and stat.S_IMODE(status.st_mode) != 0o700:
             directory.chmod(0o700)
             status = directory.stat()
+    except UnicodeEncodeError:
+        return "is not valid UTF-8"
+    except FileExistsError:
+        return "is a file, not a folder"
     except OSError as error:
         return f"cannot be used ({error.strerror})"
     if is_private(status):

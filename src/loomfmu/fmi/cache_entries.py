@@ -2,7 +2,8 @@
 
 What an FMU was unpacked to is compared with the FMU itself, which is what a trace names by its hash. A file
 that was made lies beside its own SHA-256. What is damaged, missing or does not belong there is put right file
-by file, so that other processes can go on using the entry.
+by file, so that other processes can go on using the entry. Nobody empties a cache that a process has used until
+that process ends: FMUs read their files at any time.
 """
 
 import contextlib
@@ -16,9 +17,17 @@ import time
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from types import ModuleType
 
+from ..errors import LoomfmuError
 from ..files import cannot_write
 from .cache import cache_directory, is_private
+
+fcntl: ModuleType | None
+try:
+    import fcntl
+except ImportError:  # Windows deletes no file that is in use
+    fcntl = None
 
 FMUS, UNPACKED, PACKAGES, STEPPER = KINDS = ("fmus", "unpacked", "packages", "stepper")
 PARTIAL = "partial"  # files that are being written, each with a name of its own
@@ -27,13 +36,16 @@ CHECKSUM = "sha256"  # what the file beside a made one is called
 UNUSED = 30 * 86400.0  # s after which an entry is deleted
 DAY = 86400.0
 
+# this process's locks on cache directories: the processes that use one share it, the one that empties it is alone
+_held: dict[Path, int | None] = {}
+
 
 def folder(kind: str, key: str, names: Collection[str], content: Callable[[str], bytes]) -> Path:
     """A folder with exactly these files; names that end with / are empty folders in it.
 
     Raises LoomfmuError where it cannot be written, ValueError for a name that leads out of it.
     """
-    top = cache_directory() / kind / key
+    top = _in_use() / kind / key
     try:
         _prepare(top, names)
         files = [name for name in names if not name.endswith("/")]
@@ -48,7 +60,7 @@ def folder(kind: str, key: str, names: Collection[str], content: Callable[[str],
 
 def made_file(kind: str, key: str, name: str, make: Callable[[], bytes]) -> Path:
     """A file that is made once, and again if it is damaged. Raises LoomfmuError if it cannot be written."""
-    top = cache_directory() / kind / key
+    top = _in_use() / kind / key
     names = (name, CHECKSUM)
     try:
         _prepare(top, names)
@@ -63,6 +75,49 @@ def made_file(kind: str, key: str, name: str, make: Callable[[], bytes]) -> Path
 
 def _checksum(content: bytes) -> bytes:
     return hashlib.sha256(content).hexdigest().encode()
+
+
+# ---- the whole cache
+
+
+def _in_use() -> Path:
+    """The cache, which nobody else can empty from now on; waits until one who does has done."""
+    directory = cache_directory()
+    if directory not in _held:
+        _held[directory] = _locked(directory)
+    return directory
+
+
+def _locked(directory: Path) -> int | None:
+    """A lock on the cache; none where the file system has no locks."""
+    if fcntl is None:
+        return None
+    lock = None
+    try:
+        lock = os.open(directory, os.O_RDONLY)
+        fcntl.flock(lock, fcntl.LOCK_SH)
+    except OSError:
+        if lock is not None:
+            os.close(lock)
+        return None
+    return lock
+
+
+def clear() -> None:
+    """Delete all entries. Raises LoomfmuError where another process uses the cache."""
+    directory = _in_use()
+    lock = _held[directory]
+    if fcntl is None or lock is None:
+        delete(0.0)
+        return
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise LoomfmuError(
+            f"{directory}: in use by another loomfmu; end it (or its Python session) and try again"
+        ) from None
+    delete(0.0)
+    fcntl.flock(lock, fcntl.LOCK_SH)
 
 
 # ---- one entry
@@ -87,9 +142,11 @@ def _prepare(top: Path, names: Collection[str]) -> None:
 
 
 def _make_private(directory: Path) -> None:
-    """Make a folder that is ours alone; one that is not is deleted with all that it holds."""
-    if os.path.lexists(directory) and not is_private(directory.lstat()):
-        _delete(directory)
+    """Make a folder that is ours alone; what is there instead is deleted with all that it holds."""
+    if os.path.lexists(directory):
+        status = directory.lstat()
+        if not (stat.S_ISDIR(status.st_mode) and is_private(status)):
+            _delete(directory)
     directory.mkdir(mode=0o700, exist_ok=True)
 
 
@@ -158,8 +215,8 @@ def contents() -> list[Contents]:
     return [Contents(kind, len(sizes), sum(sizes)) for kind, sizes in found.items()]
 
 
-def delete(unused: float = 0.0) -> None:
-    """Delete the entries that were not used for some time [s], all by default."""
+def delete(unused: float) -> None:
+    """Delete the entries that were not used for some time [s]."""
     now = time.time()
     for kind in (*KINDS, PARTIAL):
         for path in _entries(kind):

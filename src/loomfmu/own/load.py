@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 
 from ..components import COMPONENTS
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, described, suggestion
 from ..files import text_of
 from ..fmi.native.translate import translate
 from ..variables import Component
@@ -117,7 +117,7 @@ def _executed(path: Path, shown: Path) -> tuple[ModuleType, Texts]:
                 f"{_shown(Path(str(error.filename)), shown)}, line {error.lineno}: {error.msg}"
             ) from None
         except BaseException as error:  # whatever the file does when it is run
-            raise LoomfmuError(f"{_place(error, shown)}: {_said(error)}") from None
+            raise LoomfmuError(f"{_place(error, shown)}: {described(error)}") from None
     return module, finder.texts
 
 
@@ -148,10 +148,6 @@ def _place(error: BaseException, shown: Path) -> str:
 
 def _shown(path: Path, shown: Path) -> Path:
     return shown.parent / path.name
-
-
-def _said(error: BaseException) -> str:
-    return " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
 
 
 # ---- the class

@@ -118,7 +118,7 @@ def sweep(
     try:
         fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
-            here = _local(plan.rows, processes)
+            here = _local(plan, processes)
             pools.callback(here.close)
             rows_pool = _cluster(scheduler, pools) if scheduler else here
             ran = _run_rows(store, job, rows_pool, progress)
@@ -149,9 +149,10 @@ def _fingerprint(plan: SweepPlan, job: Job) -> str:
     return digest.hexdigest()
 
 
-def _local(tasks: int, processes: int | None) -> Pool:
-    workers = min(processes or _cores(), tasks)
-    return Processes(workers) if workers > 1 else Here()
+def _local(plan: SweepPlan, processes: int | None) -> Pool:
+    """This process where one is enough, unless an FMU may end it."""
+    workers = min(processes or _cores(), plan.rows)
+    return Processes(workers) if workers > 1 or plan.scene.unprotected else Here()
 
 
 def _cluster(address: str, pools: ExitStack) -> Pool:

@@ -18,7 +18,7 @@ from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
 from ..cosim.run import evaluate, run
 from ..cosim.scenes.scene import Scene
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, described
 from ..traces import Verdict
 from .plan import SweepPlan, read_scene
 
@@ -127,7 +127,7 @@ def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], t
     except LoomfmuError as error:
         return failed(job, scene, str(error)), ()
     except Exception as error:  # one row of thousands must not end the others
-        return failed(job, scene, f"{type(error).__name__}: {error}"), ()
+        return failed(job, scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
         values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound), verdict.note or None]

@@ -246,11 +246,35 @@ def test_other_rows_of_a_sweep_are_unharmed(tmp_path: Path, what: str) -> None:
 IN_THIS_PROCESS = "isolated = false\n" + LENGTH + '[motor]\nfmu = "Motor.fmu"\n'
 
 
-def test_exit_in_our_process_is_a_failure(tmp_path: Path) -> None:
-    misbehaving(tmp_path, "EXIT")
+@pytest.mark.parametrize("where", ["INITIALIZATION", "STEP", "TERMINATE", "FREE"])
+@pytest.mark.parametrize(
+    ("what", "how"),
+    [
+        ("EXIT", "ended the process (exit status 0)"),
+        ("QUIT", "ended the process (exit status 0)"),
+        ("CRASH", "crashed the process (SIGSEGV)"),
+    ],
+)
+def test_the_command_outlives_an_fmu_that_ends_its_process(
+    tmp_path: Path, what: str, how: str, where: str
+) -> None:
+    misbehaving(tmp_path, what, where)
     (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
     done = subprocess.run(
         [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        f"loomfmu: motor {how} before the run was finished; isolated = true keeps the trace up to there\n"
+    )
+
+
+def test_exit_in_a_script_is_a_failure(tmp_path: Path) -> None:
+    misbehaving(tmp_path, "EXIT")
+    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
+    done = subprocess.run(
+        [sys.executable, "-c", "import loomfmu; loomfmu.run('motor.toml')"],
         cwd=tmp_path, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stdout) == (2, "")
@@ -259,6 +283,46 @@ def test_exit_in_our_process_is_a_failure(tmp_path: Path) -> None:
         " isolated = true says which one and keeps the trace\n"
     )
     assert not (tmp_path / "results" / "motor.h5").exists()
+
+
+def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
+    motor2(tmp_path)
+    for bound, status in ((100.0, 0), (1.0, 1)):
+        claim = f'[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = {bound}\n'
+        (tmp_path / "motor.toml").write_text(MOTOR + claim)
+        done = [
+            subprocess.run(
+                [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--set", f"isolated={isolated}"],
+                cwd=tmp_path, capture_output=True, text=True, check=False,
+            )
+            for isolated in ("true", "false")
+        ]  # fmt: skip
+        assert [each.returncode for each in done] == [status] * 2, done[1].stderr
+        assert done[0].stdout == done[1].stdout and done[0].stderr == done[1].stderr == ""
+
+
+def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
+    misbehaving(tmp_path, "HANG")
+    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
+    running = subprocess.Popen(
+        [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
+        cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    until(lambda: list((tmp_path / "results").glob("motor.h5.*.partial")))
+    for _ in range(2):
+        time.sleep(0.5)  # the first must have arrived
+        running.send_signal(signal.SIGINT)
+    assert running.communicate(timeout=60)[1] == "loomfmu: interrupted; an FMU did not return\n"
+    assert running.returncode == 130
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_a_row_whose_fmu_ends_the_process_leaves_the_others_unharmed(tmp_path: Path, processes: int) -> None:
+    misbehaving(tmp_path, "QUIT")
+    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
+    (tmp_path / "sweep.toml").write_text(SWEEP)
+    found = loomfmu.sweep(tmp_path / "sweep.toml", output=tmp_path / "out", processes=processes)
+    assert found.errors == 2 and found.holding == 2
 
 
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])

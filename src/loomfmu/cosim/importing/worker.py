@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, described
 from .calls import OK, WARNING, Call
 from .messages import CALLS, DONE, PART, PLACE, SIZE, TIME, Answer, complete, framed, write
 from .pool import opened
@@ -89,7 +89,7 @@ class Worker:
         except LoomfmuError as error:
             return None, error
         except Exception as error:
-            return None, LoomfmuError(f"{type(error).__name__}: {error}")
+            return None, LoomfmuError(described(error))
 
     # ---- what the master sends beside the methods of `Slave`
 

@@ -1,4 +1,4 @@
-"""What keeps FMUs in this process from doing harm to it: Ctrl-C, the working directory, `exit`."""
+"""What keeps FMUs in this process from doing harm to it: Ctrl-C, the working directory, its end."""
 
 import atexit
 import contextlib
@@ -8,10 +8,12 @@ import platform
 import signal
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+from ...errors import LoomfmuError, signal_name
 
 FAILED = 2  # the exit status of a failed FMU
 
@@ -99,3 +101,58 @@ def _watch() -> None:
         c_library.__cxa_finalize(ctypes.byref(_OWNER))
 
     atexit.register(take_back)
+
+
+# ---- a child process that an FMU may end
+
+FORKS = hasattr(os, "fork") and sys.platform != "darwin"  # whose libraries do not survive it
+
+
+def supervised(run: Callable[[], int], instances: Sequence[str]) -> int:
+    """The exit status that a run has in a child process, whatever these instances do to that process.
+
+    Raises:
+        LoomfmuError: the child ended before the run did
+        KeyboardInterrupt: a second Ctrl-C, when the first did not end it
+    """
+    if not FORKS:
+        return run()
+    reading, writing = os.pipe()
+    watched, held = os.pipe()  # closed with this process, however it ends
+    child = os.fork()
+    if not child:
+        os.close(held)
+        threading.Thread(target=_end_with_parent, args=(watched,), daemon=True).start()
+        _watching.append(True)  # the parent says it, also where `exit` is not called
+        status = run()
+        with contextlib.suppress(OSError):  # an FMU has closed it
+            os.write(writing, bytes([status]))
+        os._exit(status)
+    interrupts: list[int] = []
+
+    def pass_on(number: int, _frame: Any) -> None:
+        interrupts.append(number)
+        os.kill(child, signal.SIGINT if len(interrupts) == 1 else signal.SIGKILL)
+
+    previous = signal.signal(signal.SIGINT, pass_on)
+    try:
+        ended = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    finally:
+        signal.signal(signal.SIGINT, previous)
+    os.set_blocking(reading, False)  # what the FMU has started may still have the other end
+    with contextlib.suppress(BlockingIOError):
+        if status_byte := os.read(reading, 1):
+            return status_byte[0]
+    if len(interrupts) > 1:
+        raise KeyboardInterrupt("interrupted; an FMU did not return")
+    who = instances[0] if len(instances) == 1 else f"one of {', '.join(instances)}"
+    what = f"crashed the process ({signal_name(-ended)})"
+    what = what if ended < 0 else f"ended the process (exit status {ended})"
+    raise LoomfmuError(
+        f"{who} {what} before the run was finished; isolated = true keeps the trace up to there"
+    )
+
+
+def _end_with_parent(watched: int) -> None:
+    os.read(watched, 1)
+    os._exit(FAILED)

@@ -75,6 +75,11 @@ class Scene:
         return AVAILABLE and not instance.fmu.ours if stated is None else stated
 
     @property
+    def unprotected(self) -> list[str]:
+        """The instances that run in this process and whose FMUs were given as files: they may end it."""
+        return [name for name, each in self.instances.items() if not (each.fmu.built or self.isolates(name))]
+
+    @property
     def speed(self) -> float:
         """Mean speed of the main shaft [rad/s]."""
         shaft = self.instances["shaft"]
