@@ -109,7 +109,10 @@ def evaluate(
 
 
 def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
-    """A scene that is ready to be run, with these values and FMUs of this flavour. Raises LoomfmuError naming the file and what is wrong."""
+    """A scene that is ready to be run, with these values and FMUs of this flavour.
+
+    Raises LoomfmuError naming the file and what is wrong.
+    """
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
     if overrides is not None and not (

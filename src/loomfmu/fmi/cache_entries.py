@@ -2,7 +2,7 @@
 
 What an FMU was unpacked to is compared with the FMU itself, which is what a trace names by its hash. A file
 that was made lies beside its own SHA-256. What is damaged, missing or does not belong there is put right file
-by file, so that other processes can go on using the entry. Nobody empties a cache that a process has used until
+by file, so that other processes can go on using the entry. A cache that a process has used is not emptied before
 that process ends: FMUs read their files at any time.
 """
 
@@ -36,7 +36,7 @@ CHECKSUM = "sha256"  # what the file beside a made one is called
 UNUSED = 30 * 86400.0  # s after which an entry is deleted
 DAY = 86400.0
 
-# this process's locks on cache directories: the processes that use one share it, the one that empties it is alone
+# locks of this process on cache directories: users of a cache share it, the one that empties it is alone
 _held: dict[Path, int | None] = {}
 
 
