@@ -9,6 +9,7 @@ INSTALL_THIS := $(PIP) install --no-deps --no-build-isolation --editable .
 PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
+FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
 
 .PHONY: demo test check stress attack bench docs validation wheel pins clean
 
@@ -29,9 +30,11 @@ check: .venv/installed-for-tests
 stress: .venv/installed-for-tests
 	$(BIN)/python -m pytest tests/stress tests/attack -m "slow or not slow"
 
-# hostile scenes, packages, FMUs and weaves from a generator, the long sets included
+# kills, hostile files from a generator and random calls, the long sets included; their figures go into the report
 attack: .venv/installed-for-tests
-	$(BIN)/python -m pytest tests/attack -s -m "slow or not slow"
+	rm -f $(FIGURES)
+	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s -m "slow or not slow"
+	$(BIN)/loomfmu validate
 
 # run time against error, side by side with other masters: about half an hour
 bench: .venv/installed-for-tests

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from foreign_motors import FIXED, FMI3, description2, packed
 from live_fmus import NAMES
 
 from loomfmu import LoomfmuError, catalogue
@@ -78,3 +79,15 @@ def test_a_symbol_of_the_sources_finds_its_parameter() -> None:
     text = '[loom]\nweave = "10/01"\n[dobby]\nzeta = 0.5\n'
     with pytest.raises(LoomfmuError, match=r"dobby\.zeta is unknown; did you mean 'speed_reduction'\?"):
         scenes.parse(text)
+
+
+def test_the_file_of_an_fmu_is_described_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    packed(tmp_path / "Motor.fmu", description2(), None, "Motor")
+    packed(tmp_path / "Motor3.fmu", FMI3.format(fixed=FIXED), None, "Motor3")
+    for name in ("Motor", "Motor3"):
+        assert main(["list", str(tmp_path / f"{name}.fmu")]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[0].startswith(f"{name}: FMI {3 if name == 'Motor3' else 2}.0, ")
+        assert "  mode = both_ways" in lines and "  w_free = 60.0 rad/s" in lines
+    assert main(["list", str(tmp_path / "none.fmu")]) == 2
+    assert capsys.readouterr().err == f"loomfmu: {tmp_path / 'none.fmu'}: there is no such FMU\n"

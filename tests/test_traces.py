@@ -829,3 +829,35 @@ def test_a_damaged_block_is_named(result: loomfmu.Result, tmp_path: Path) -> Non
 def test_reading_needs_nothing_but_numpy_and_h5py() -> None:
     script = "import sys, loomfmu.traces; print(sorted({'fmpy', 'scipy', 'pythonfmu'} & set(sys.modules)))"
     assert in_a_process(script) == "[]\n"
+
+
+def test_a_relative_path_means_the_same_file_after_a_change_of_directory(
+    result: loomfmu.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "run.h5").write_bytes(result.path.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    trace = Trace("run.h5")
+    monkeypatch.chdir("/")
+    assert trace.path == tmp_path / "run.h5"
+    assert len(trace["belt.margin"]) == trace.rows
+
+
+@pytest.mark.parametrize(
+    ("claims", "why"),
+    [
+        ("7", "7 is not a list"),
+        ("[1]", "1 is not a JSON object"),
+        ("[{}]", "claim is missing"),
+        ('[{"claim": "x", "signal": "s", "holds": "no"}]', "holds = 'no'"),
+    ],
+)
+def test_claims_that_are_not_verdicts_are_named(
+    result: loomfmu.Result, tmp_path: Path, capsys: pytest.CaptureFixture[str], claims: str, why: str
+) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(result.path.read_bytes())
+    with h5py.File(path, "r+") as file:
+        file.attrs["claims"] = claims
+    assert cli.main(["show", str(path)]) == 2
+    said = f"loomfmu: {path}: the file is damaged (its claims are not verdicts: {why})\n"
+    assert capsys.readouterr().err == said

@@ -116,7 +116,10 @@ def _sweep(commands: Any) -> None:
 def _list(commands: Any) -> None:
     listing = commands.add_parser("list", help="list FMUs, machines, heads and example scenes")
     listing.add_argument(
-        "name", nargs="?", metavar="NAME", help="describe this FMU, FILE.py[:CLASS], machine or rapier head"
+        "name",
+        nargs="?",
+        metavar="NAME",
+        help="describe this FMU, FILE.fmu, FILE.py[:CLASS], machine or rapier head",
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .components import COMPONENTS
 from .errors import LoomfmuError, suggestion
@@ -14,6 +15,9 @@ from .fmi.description.documentation import limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .own import load
 from .variables import Component, Variable, variables_of
+
+if TYPE_CHECKING:
+    from .cosim.importing.fmus import Fmu
 
 STARTERS = (
     "wl680_3600.toml",
@@ -83,6 +87,10 @@ def details(name: str, width: int = 80) -> Iterator[str]:
 
     Raises LoomfmuError for an unknown name.
     """
+    if name.lower().endswith(".fmu"):
+        from .cosim.importing import fmus
+
+        return _file(fmus.load(Path(name)), width)
     if name in COMPONENTS or load.is_file(name):
         (component,) = components([name])
         return _variables(component.__name__, component, width)
@@ -107,6 +115,26 @@ def _variables(name: str, component: type[Component], width: int) -> Iterator[st
             yield f"\n{heading}"
         for _stem, same in groupby(chosen, key=lambda variable: re.sub(r"\d+$", "", variable.name)):
             yield from _described(list(same), width)
+
+
+def _file(fmu: "Fmu", width: int) -> Iterator[str]:
+    """An FMU that was given as a file: its variables by the names that scenes use, in its own units."""
+    yield f"{fmu.name}: FMI {fmu.fmi}.0, version {fmu.version or 'unknown'}"
+    for causality, heading in HEADINGS.items():
+        chosen = [port for port in fmu.ports.values() if port.causality == causality]
+        if chosen:
+            yield f"\n{heading}"
+        for port in chosen:
+            unit = f" {port.unit}" if port.unit and port.unit != "1" else ""
+            start = "" if port.start is None else str(port.start).lower()
+            if port.choices and port.start in port.numbers:
+                start = port.choices[port.numbers.index(int(port.start))]
+            line = port.name + (f" = {start}{unit}" if start else unit.replace(" ", " in "))
+            limits = {"from": port.minimum, "to": port.maximum} if not port.choices else {}
+            words = [f"{word} {limit:g}" for word, limit in limits.items() if limit is not None]
+            line += f"  [{' '.join(words)}]" if words else ""
+            for text, indent in ((line, 2), (port.description, 6)):
+                yield from textwrap.wrap(text, width, initial_indent=indent * " ", subsequent_indent=6 * " ")
 
 
 def _described(numbered: Sequence[Variable], width: int) -> Iterator[str]:

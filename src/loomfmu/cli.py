@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import printed, units
 from .arguments import parser
-from .errors import LoomfmuError, described
+from .errors import LoomfmuError, described, why
 from .printed import complain, say
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, LoomfmuError):
         return str(error)
     if isinstance(error, OSError):
-        return (f"{error.filename}: " if error.filename else "") + (error.strerror or str(error))
+        return (f"{error.filename}: " if error.filename else "") + why(error)
     if isinstance(error, KeyboardInterrupt):
         return str(error) or "interrupted"
     if isinstance(error, MemoryError):
@@ -169,7 +169,7 @@ def _sweep(options: argparse.Namespace) -> int:
     for warning in found.warnings:
         complain(f"warning: {warning}")
     show(found)
-    return 0 if found.holds else 1
+    return 0 if found.holds and not found.untraced else 1
 
 
 def _build(options: argparse.Namespace) -> int:

@@ -1,6 +1,7 @@
 """Errors that a user can make: always one line that says what is wrong, where, and what would be right."""
 
 import difflib
+import errno
 import os
 import re
 import signal
@@ -44,6 +45,18 @@ def described(error: BaseException) -> str:
     except Exception:
         text = ""
     return " ".join(f"{type(error).__name__}: {text}".split()).removesuffix(":")
+
+
+def why(error: OSError) -> str:
+    """What the system says went wrong, and what helps.
+
+    >>> why(OSError(28, "No space left on device"))
+    'No space left on device'
+    """
+    said = error.strerror or str(error)
+    if error.errno in (errno.EMFILE, errno.ENFILE):
+        said += " at the same time; raise the limit, such as with `ulimit -n 1024`"
+    return said
 
 
 def shown(value: object) -> str:

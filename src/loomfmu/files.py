@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from .errors import LoomfmuError, shown
+from .errors import LoomfmuError, shown, why
 
 NOT_A_FILE = "it is a device or a pipe, not a file"
 
@@ -79,8 +79,9 @@ def check_archive(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
     for each in members:
         if each.is_dir():
             continue
-        if named.setdefault(each.filename, each) is not each:
-            raise ValueError(f"it has two files called {shown(each.filename)}")
+        other = named.setdefault(each.filename, each)
+        if (other.CRC, other.file_size) != (each.CRC, each.file_size):
+            raise ValueError(f"it has two different files called {shown(each.filename)}")
     folders = {str(folder) for name in named for folder in PurePosixPath(name).parents}
     for name in folders & named.keys():
         raise ValueError(f"{shown(name)} is both a file and a folder in it")
@@ -147,7 +148,7 @@ def text_of(path: Path) -> str:
     try:
         return source(path).read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise LoomfmuError(f"{path}: cannot be read ({error.strerror or error})") from None
+        raise LoomfmuError(f"{path}: cannot be read ({why(error)})") from None
     except UnicodeDecodeError:
         hint = f"; use loomfmu show {path} for a trace" if path.suffix in (".h5", ".hdf5") else ""
         raise LoomfmuError(f"{path}: is not text in UTF-8{hint}") from None
@@ -155,4 +156,4 @@ def text_of(path: Path) -> str:
 
 def cannot_write(path: Path, error: OSError) -> LoomfmuError:
     """The message about a file that cannot be written; what the system says need not name it."""
-    return LoomfmuError(f"{path}: cannot be written ({error.strerror or error})")
+    return LoomfmuError(f"{path}: cannot be written ({why(error)})")

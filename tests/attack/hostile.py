@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from attack_figures import record
 
 from loomfmu import LoomfmuError
 from loomfmu.errors import LONGEST_LINE
@@ -83,7 +84,7 @@ def revalued(text: str, chance: random.Random) -> str:
 def attacked(
     what: str, make: Callable[[random.Random, int], Path], read: Callable[[Path], Any], count: int
 ) -> None:
-    """Read as many files as that. Each one is read, or refused in one line; the figures are printed."""
+    """Read as many files as that. Each one is read, or refused in one line; the figures are recorded."""
     refused = 0
     for number in range(count):
         path = make(random.Random(f"{what} {number}"), number)
@@ -96,5 +97,5 @@ def attacked(
             assert line and line.isprintable() and len(line) <= LONGEST_LINE + 100, (what, number, line)
         except (Exception, Hung) as error:
             pytest.fail(f"{what} {number}: {type(error).__name__}: {str(error)[:300]}")
-    print(f"\n{what}: {count} tried, {refused} refused in one line, {count - refused} read")
     assert refused > count // 10  # else the damage is none
+    record(f"damaged {what}, read", count, refused)

@@ -139,9 +139,11 @@ def test_the_number_of_files_and_their_names_are_limited(
     with pytest.warns(UserWarning, match="Duplicate name"):
         buffer = BytesIO()
         with zipfile.ZipFile(buffer, "w") as archive:
-            for _ in range(2):
-                archive.writestr(SSD, loom[SSD])
-    assert refused(tmp_path, buffer.getvalue()) == f"cannot be read (it has two files called '{SSD}')"
+            for content in (loom[SSD], loom[SSD] + b" "):
+                archive.writestr(SSD, content)
+    assert refused(tmp_path, buffer.getvalue()) == (
+        f"cannot be read (it has two different files called '{SSD}')"
+    )
     monkeypatch.setattr(files, "MOST_MEMBERS", 100)
     many = {f"resources/{number}": b"" for number in range(100)}
     assert refused(tmp_path, loom | many).startswith("cannot be read (it has 106 files; at most 100")

@@ -7,6 +7,7 @@ import h5py
 import hostile_traces
 import numpy as np
 import pytest
+from attack_figures import record
 from live_fmus import fmu_cache
 
 import loomfmu
@@ -71,21 +72,22 @@ def test_what_somebody_crafts_is_refused(
         assert SECRET not in trace.time
         _ = trace.verdicts
     assert str(raised.value).startswith(f"{path}: ")
+    record("traces crafted to do harm, shown", 1, 1)
 
 
-def attack(valid: bytes, path: Path, capsys: pytest.CaptureFixture[str], seeds: range) -> str:
+def attack(valid: bytes, path: Path, capsys: pytest.CaptureFixture[str], seeds: range) -> None:
     found: Counter[int] = Counter()
     for seed in seeds:
         path.write_bytes(hostile_traces.damaged(valid, seed))
         found[shown(path, capsys)] += 1
     assert set(found) <= {0, 1, 2}
-    return f"hostile traces: {len(seeds)} tried, {found[2]} refused in one line, the others shown"
+    record("damaged traces, shown", len(seeds), found[2])
 
 
 def test_damaged_traces(valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    print(attack(valid, tmp_path / "damaged.h5", capsys, range(25)))
+    attack(valid, tmp_path / "damaged.h5", capsys, range(25))
 
 
 @pytest.mark.slow
 def test_many_damaged_traces(valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    print(attack(valid, tmp_path / "damaged.h5", capsys, range(1000, 2000)))
+    attack(valid, tmp_path / "damaged.h5", capsys, range(1000, 2000))

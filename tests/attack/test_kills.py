@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from attack_figures import record
 from commands import started
 from live_fmus import fmu_cache
 from sweeps.sweep_files import NO_TRACES, written
@@ -74,8 +75,8 @@ def check_partial(directory: Path, whole: Trace) -> int:
     return found
 
 
-def kill_runs(directory: Path, count: int, seed: int) -> str:
-    """Kill runs at random moments, from their first to the one at which they end; figures."""
+def kill_runs(directory: Path, count: int, seed: int) -> None:
+    """Kill runs at random moments, from their first to the one at which they end."""
     (directory / "scene.toml").write_text("revolutions = 1\n" + SCENE)
     before = time.monotonic()
     assert started(directory, *RUN).communicate() and (directory / "results" / "scene.h5").exists()
@@ -100,14 +101,12 @@ def kill_runs(directory: Path, count: int, seed: int) -> str:
             assert trace.status == "complete" and len(trace.verdicts) == 0
             assert all(np.array_equal(trace[signal], values[signal]) for signal in values)
         whole = Trace(directory / "results" / "scene.h5")
-    return (
-        f"runs: {count} kills, {early} before the first sample, {len(samples)} partial traces equal to the"
-        f" whole one, {ended} had ended; nothing else lost"
-    )
+    print(f"{early} before the first sample, {len(samples)} partial traces, {ended} had ended")
+    record("runs killed at random moments", count)
 
 
-def kill_sweep(directory: Path, count: int, seed: int) -> str:
-    """Kill a sweep again and again until it is through; figures."""
+def kill_sweep(directory: Path, count: int, seed: int) -> None:
+    """Kill a sweep again and again until it is through."""
     text = (
         "[set]\nsteps_per_revolution = 1440\n"
         '[grid]\n"shaft.speed" = { from = 40.0, to = 80.0, count = 101 }\n'
@@ -130,15 +129,15 @@ def kill_sweep(directory: Path, count: int, seed: int) -> str:
             rounds = 0
     again = loomfmu.sweep(path, processes=1, output=directory / "results" / "swept")
     assert again.path.read_bytes() == whole.path.read_bytes()
-    return f"sweeps: {kills} kills, the table equal to that of a sweep that nobody disturbed"
+    record("sweeps killed at random moments", kills)
 
 
 def test_runs_and_a_sweep_that_are_killed(tmp_path: Path, fmu_cache: None) -> None:
-    print(kill_runs(tmp_path, 6, seed=1))
-    print(kill_sweep(tmp_path, 4, seed=1))
+    kill_runs(tmp_path, 6, seed=1)
+    kill_sweep(tmp_path, 4, seed=1)
 
 
 @pytest.mark.slow
 def test_runs_and_a_sweep_that_are_killed_often(tmp_path: Path, fmu_cache: None) -> None:
-    print(kill_runs(tmp_path, 120, seed=2))
-    print(kill_sweep(tmp_path, 50, seed=2))
+    kill_runs(tmp_path, 120, seed=2)
+    kill_sweep(tmp_path, 50, seed=2)

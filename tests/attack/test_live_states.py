@@ -6,6 +6,7 @@ Each FMU runs in a process of its own, where a crash is seen and a call without 
 import json
 
 import pytest
+from attack_figures import record
 from live_fmus import NAMES, fmu_cache, in_a_process
 
 __all__ = ["fmu_cache"]
@@ -160,6 +161,7 @@ def attack(name: str, seed: int, calls: int) -> dict[str, int]:
     done: dict[str, int] = json.loads(in_a_process(ATTACK, name, str(seed), str(calls), timeout=600.0))
     print(f"{name}, seed {seed}: {done}")
     assert done["calls"] == calls  # tried, and survived
+    record("random calls and states of live FMUs", calls, done["damaged"] + done["refused"])
     return done
 
 

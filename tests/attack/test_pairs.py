@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from attack_figures import record
 from commands import started
 from live_fmus import fmu_cache
 
@@ -41,7 +42,7 @@ def pair(directory: Path, revolutions: int) -> None:
 def test_short_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
     for _ in range(4):
         pair(tmp_path, 1)
-    print("pairs: 4 tried, 4 whole")
+    record("pairs of runs with one output", 4)
 
 
 @pytest.mark.slow
@@ -49,4 +50,4 @@ def test_many_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
     for count, revolutions in ((24, 1), (3, 2000)):
         for _ in range(count):
             pair(tmp_path, revolutions)
-        print(f"pairs of {revolutions} revolutions: {count} tried, {count} whole")
+        record("pairs of runs with one output", count)

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from attack_figures import record
 from fmpy import platform
 
 from loomfmu.components import COMPONENTS
@@ -18,6 +19,8 @@ from loomfmu.variables import variables_of
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 HERE = Path(__file__).parent
 SIZE = 1e-3
+CALLS = 30_000  # of the host that keeps no rules
+WHAT = "random calls and states of native FMUs, FMI {}.0"
 SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-g1"]
 
 
@@ -76,9 +79,9 @@ def fuzzer(gcc, tmp_path_factory) -> Callable[..., Path]:
 
 
 def fuzzed(host: Path, seed: int) -> list[int]:
-    """How far 30,000 calls got: steps made, states restored (and times set, FMI 3), bytes taken for a
+    """How far the calls got: steps made, states restored (and times set, FMI 3), bytes taken for a
     state, bytes refused."""
-    run = subprocess.run([host, str(seed), "30000"], capture_output=True, text=True, check=False)
+    run = subprocess.run([host, str(seed), str(CALLS)], capture_output=True, text=True, check=False)
     assert run.returncode == 0, f"seed {seed}: {run.stderr[-4000:]}"
     return [int(word) for word in run.stdout.split()]
 
@@ -90,6 +93,7 @@ def test_random_calls_and_random_bytes_do_no_harm(fuzzer, name, fmi):
     # by the seed 1800 to 4800 calls are steps that could be made
     assert stepped > 1500 and unpacked > 100 and unpacked + refused > 2000
     assert other > 50
+    record(WHAT.format(fmi), CALLS, refused)
 
 
 @pytest.mark.slow
@@ -100,6 +104,8 @@ def test_many_random_calls_and_bytes_do_no_harm(fuzzer, name, fmi):
     with ThreadPoolExecutor() as pool:
         counts = list(pool.map(lambda seed: fuzzed(host, seed), range(100, 150)))
     assert sum(each[2] + each[3] for each in counts) > 100_000
+    refused = sum(each[3] for each in counts)
+    record(WHAT.format(fmi), len(counts) * CALLS, refused)
 
 
 @pytest.mark.slow

@@ -99,6 +99,11 @@ MISTAKES = {
     "a syntax error": ("return 0", "return 0 0", "line 21: invalid syntax"),
     "an import that fails": ('ll."""\n\nfrom', 'll."""\nimport nowhere\nfrom', "line 2: Module"),
     "an exception": ('ll."""\n\nfrom', 'll."""\n1 / 0\nfrom', "line 2: ZeroDivisionError: division"),
+    "an exception that cannot say what it is": (
+        'll."""\n\nfrom',
+        'll."""\nclass Odd(Exception):\n    def __str__(self):\n        raise ValueError\nraise Odd\nfrom',
+        "line 5: Odd",
+    ),
     "an exit": ('ll."""\n\nfrom', 'll."""\nraise SystemExit(0)\nfrom', "line 2: SystemExit: 0"),
     "a name of ours": ("class Bell(", "class MainShaft(", "MainShaft is the name of one of"),
     "two components": (

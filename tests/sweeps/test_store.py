@@ -304,3 +304,14 @@ def test_a_batch_of_something_else_is_told_in_one_line(plan: SweepPlan, tmp_path
         pq.write_table(pa.table({"row": [1]}), store._path(range(ROWS)))
         with pytest.raises(LoomfmuError, match=r"batches: not batches of this sweep \("):
             store.finish()
+
+
+def test_a_hard_link_is_no_lock(plan: SweepPlan, tmp_path: Path) -> None:
+    victim = tmp_path / "victim"
+    victim.write_text("123")
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "lock").hardlink_to(victim)
+    said = r"lock: cannot be written \(it is a hard link to another file; delete it\)"
+    with pytest.raises(LoomfmuError, match=said), opened(tmp_path / "results", plan, "one", restart=False):
+        pytest.fail("it was opened")
+    assert victim.read_text() == "123"

@@ -22,8 +22,9 @@ from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.design import loom
 from loomfmu.sweeps import plan as plans
+from loomfmu.sweeps import run as sweeps_run
 from loomfmu.sweeps.ranking import beyond, traced_rows, worst_rows
-from loomfmu.sweeps.worker import identity
+from loomfmu.sweeps.worker import Job, identity
 
 __all__ = ["fmu_cache"]
 
@@ -550,3 +551,26 @@ def test_a_sweep_may_begin_with_a_mark_of_its_encoding(tmp_path: Path) -> None:
     plain = plans.load(path)
     path.write_bytes(path.read_text(encoding="utf-8").encode("utf-8-sig"))
     assert plans.load(path).text == plain.text
+
+
+def test_a_trace_that_cannot_be_written_is_a_line_of_the_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As on a full disk: the table and the other traces are there, and the next run writes the rest."""
+    path, traced = written(tmp_path, GRID), sweeps_run.run_trace
+
+    def full(job: Job, settings: dict[str, object], target: Path) -> None:
+        if target.name == "row_000002.h5":
+            raise LoomfmuError(f"{target}: cannot be written (No space left on device)")
+        traced(job, settings, target)
+
+    monkeypatch.setattr(sweeps_run, "run_trace", full)
+    found = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    target = tmp_path / "out" / "traces" / "row_000002.h5"
+    assert found.untraced == {2: f"{target}: cannot be written (No space left on device)"}
+    assert found.path.exists() and target not in found.traces and all(each.exists() for each in found.traces)
+    assert main(["sweep", str(path), "--processes", "1", "--output", str(tmp_path / "out")]) == 1
+    assert f"row 2 has no trace: {target}: cannot be" in capsys.readouterr().err
+    monkeypatch.setattr(sweeps_run, "run_trace", traced)
+    found = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
+    assert found.untraced == {} and target in found.traces

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import printed
-from ..errors import LoomfmuError, path_of, shown, suggestion
+from ..errors import LoomfmuError, path_of, shown, suggestion, why
 from ..files import cannot_write, check_target
 from ..traces import PARTIAL, TRACE, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
@@ -176,7 +176,7 @@ def _kept(writer: TraceWriter, path: Path) -> Iterator[None]:
         raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
     except OSError as error:
         kept = path.with_name(writer.abandon("failed").name)
-        raise LoomfmuError(f"{path}: cannot be written ({error.strerror or error}); see {kept}") from None
+        raise LoomfmuError(f"{path}: cannot be written ({why(error)}); see {kept}") from None
     except BaseException:
         writer.abandon("failed")
         raise

@@ -2,7 +2,7 @@
 
 What an FMU was unpacked to is compared with the FMU itself, which is what a trace names by its hash. A file
 that was made lies beside its own SHA-256. What is damaged, missing or does not belong there is put right file
-by file, so that other processes can go on using the entry. A cache that a process has used is not emptied before
+by file, so that other processes can go on using the entry. A cache that a process uses is not emptied before
 that process ends: FMUs read their files at any time.
 """
 

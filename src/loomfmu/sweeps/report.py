@@ -28,6 +28,10 @@ def show(sweep: Sweep) -> None:
         say(f"no map: no row has a value of {sweep.plan.map.value} there")
     if sweep.traces:
         say(f"traces: {len(sweep.traces)} in {sweep.traces[0].parent}")
+    for row, reason in list(sweep.untraced.items())[:SHOWN]:
+        say(f"row {row} has no trace: {reason}", to=sys.stderr)
+    if len(sweep.untraced) > SHOWN:
+        say(f"and {len(sweep.untraced) - SHOWN} more rows have no trace", to=sys.stderr)
 
 
 def _show_worst(sweep: Sweep) -> None:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from .. import printed
 from ..cosim.scenes.scene_files import files_of
-from ..errors import LoomfmuError, path_of, shown
+from ..errors import LoomfmuError, described, path_of, shown
 from ..traces import TRACE
 from . import plan as plans
 from .plan import SweepPlan
-from .pools import Here, Pool, Processes, Task
+from .pools import Died, Here, Pool, Processes, Task
 from .schedule import run_batches
 from .worker import Batch, Job, job_of, run_trace
 
@@ -30,7 +30,8 @@ class Sweep:
     """A finished sweep; true where all claims hold in all rows.
 
     `table` is a pyarrow.Table as in the file `path`, `ran` the number of rows that were run now and not
-    before, `map` the picture if the file has a `[map]`, `traces` the full traces of single rows.
+    before, `map` the picture if the file has a `[map]`, `traces` the full traces of single rows, `untraced`
+    why there is none of some of them.
     """
 
     plan: SweepPlan
@@ -39,6 +40,7 @@ class Sweep:
     ran: int
     map: Path | None
     traces: tuple[Path, ...]
+    untraced: dict[int, str]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -124,13 +126,13 @@ def sweep(
             ran = _run_rows(store, job, rows_pool, progress)
             table = store.finish()
             picture = _draw(store, table)
-            traces = _run_traces(store, job, table, here, progress)
+            traces, untraced = _run_traces(store, job, table, here, progress)
             store.tidy()
     except KeyboardInterrupt:
         raise KeyboardInterrupt(
             f"interrupted; finished rows are kept in {directory}; run the same command to continue"
         ) from None
-    return Sweep(plan, table, store.table_path, ran, picture, traces)
+    return Sweep(plan, table, store.table_path, ran, picture, traces, untraced)
 
 
 def _check_packages(path: Path, used: dict[str, bool]) -> None:
@@ -192,8 +194,10 @@ def _draw(store: "Store", table: Any) -> Path | None:
     return draw(store.plan, table, store.map_path)
 
 
-def _run_traces(store: "Store", job: Job, table: Any, pool: Pool, progress: bool) -> tuple[Path, ...]:
-    """Full traces of the worst rows and of some others, on this machine."""
+def _run_traces(
+    store: "Store", job: Job, table: Any, pool: Pool, progress: bool
+) -> tuple[tuple[Path, ...], dict[int, str]]:
+    """Full traces of the worst rows and of some others, on this machine; why there is none of some."""
     from .ranking import traced_rows
 
     limits = store.plan.traces
@@ -201,16 +205,17 @@ def _run_traces(store: "Store", job: Job, table: Any, pool: Pool, progress: bool
     left = [row for row, path in paths.items() if not TRACE.ours(path)]
     tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
     with printed.progress("traces", len(left), wanted=progress) as advance:
-        _do(tasks, pool, advance)
-    return tuple(paths.values())
+        failed = _do(tasks, pool, advance)
+    return tuple(path for row, path in paths.items() if row not in failed), failed
 
 
 def _traced(store: "Store", job: Job, row: int, path: Path) -> tuple[Any, ...]:
     return job, store.plan.settings(range(row, row + 1))[0], path
 
 
-def _do(tasks: list[Task], pool: Pool, advance: printed.Advance) -> None:
-    """Do tasks that give nothing back."""
+def _do(tasks: list[Task], pool: Pool, advance: printed.Advance) -> dict[Any, str]:
+    """Do tasks that give nothing back; why some failed, by their keys."""
+    failed: dict[Any, str] = {}
     under_way = 0
     while tasks or under_way:
         while tasks and pool.room() > 0:
@@ -219,5 +224,6 @@ def _do(tasks: list[Task], pool: Pool, advance: printed.Advance) -> None:
         for row, outcome in pool.finished():
             under_way -= 1
             if isinstance(outcome, Exception):
-                raise LoomfmuError(f"the trace of row {row}: {outcome}")
+                failed[row] = str(outcome) if isinstance(outcome, LoomfmuError | Died) else described(outcome)
             advance(1)
+    return dict(sorted(failed.items()))

@@ -103,4 +103,11 @@ def run_batches(
             elif not isinstance(outcome, Died):
                 raise outcome
             elif schedule.died(rows):
-                done.append((rows, Batch([failed(job, plan.scene, str(outcome))], (), 0.0)))
+                done.append((rows, Batch([failed(job, plan.scene, _reason(plan, outcome))], (), 0.0)))
+
+
+def _reason(plan: SweepPlan, died: Died) -> str:
+    """Why a row could not be run whose process has ended."""
+    inside = plan.scene.unprotected
+    who = f", with {', '.join(inside)} in it; isolated = true says which call of which FMU" if inside else ""
+    return f"{died}{who}"

@@ -220,6 +220,8 @@ def _locked(directory: Path) -> Iterator[None]:
 
 def _sign(path: Path, descriptor: int) -> None:
     """Write into a lock that is ours which process we are."""
+    if os.fstat(descriptor).st_nlink > 1:
+        raise LoomfmuError(f"{path}: cannot be written (it is a hard link to another file; delete it)")
     written = os.read(descriptor, 20).strip()
     if written and not written.isdigit():
         raise LoomfmuError(f"{path}: not the lock of a sweep; choose another directory with --output")

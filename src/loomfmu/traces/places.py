@@ -25,7 +25,7 @@ _places: weakref.WeakValueDictionary[str, Place] = weakref.WeakValueDictionary()
 
 def place_of(path: Path) -> Place:
     """The place of a trace under this name."""
-    return _places.setdefault(os.path.realpath(path), Place(path))
+    return _places.setdefault(os.path.realpath(path), Place(path.absolute()))
 
 
 def replace(new: Path, path: Path) -> None:

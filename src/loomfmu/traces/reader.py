@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, shown
 from ..files import source
 from ..units import UnitError
 from .disk import superblock
@@ -38,14 +38,15 @@ class Trace(Signals):
 
     def __init__(self, path: str | Path):
         self._place = place_of(Path(path))
-        self.name = Path(path).name
+        self.given = Path(path)  # what messages call it
+        self.name = self.given.name
         self._file: Any = None
         self._turn = RLock()  # threads may share a trace
         self._state: tuple[int, ...] = ()
         self._cache: dict[str, NDArray[Any]] = {}
         with self._opened() as file:
             if lacking := _lacking(file):
-                raise LoomfmuError(f"{self.path}: not a trace of loomfmu: {lacking} is missing")
+                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {lacking} is missing")
             if file.attrs["status"] != "running":  # else it grows
                 self._state = _state(self.path)
 
@@ -53,7 +54,7 @@ class Trace(Signals):
         return Trace, (self.path,)
 
     def __repr__(self) -> str:
-        return f"<Trace {self.path}>"
+        return f"<Trace {self.given}>"
 
     @property
     def path(self) -> Path:
@@ -63,13 +64,13 @@ class Trace(Signals):
     def _open(self) -> Any:
         try:
             if self._state and _state(self.path) != self._state:
-                raise LoomfmuError(f"{self.path}: another trace has replaced it since it was opened")
+                raise LoomfmuError(f"{self.given}: another trace has replaced it since it was opened")
             return _hdf5(self.path)
         except FileNotFoundError:
-            raise LoomfmuError(f"{self.path}: there is no such file") from None
+            raise LoomfmuError(f"{self.given}: there is no such file") from None
         except (OSError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
-            raise LoomfmuError(f"{self.path}: cannot be read as a trace ({reason})") from None
+            raise LoomfmuError(f"{self.given}: cannot be read as a trace ({reason})") from None
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:
@@ -80,9 +81,9 @@ class Trace(Signals):
             try:
                 yield self._file
             except Foreign as error:
-                raise LoomfmuError(f"{self.path}: not a trace of loomfmu: {error}") from None
+                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {error}") from None
             except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
-                raise LoomfmuError(f"{self.path}: the file is damaged ({error.args[0]})") from None
+                raise LoomfmuError(f"{self.given}: the file is damaged ({error.args[0]})") from None
             finally:
                 if not kept:
                     self.close()
@@ -114,7 +115,7 @@ class Trace(Signals):
             try:
                 values = np.asarray(dataset[: self.rows])
             except (OSError, RuntimeError) as error:
-                raise LoomfmuError(f"{self.path}: {dataset.name} cannot be read ({error})") from None
+                raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
             return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
@@ -203,10 +204,13 @@ class Trace(Signals):
     def verdicts(self) -> list[Verdict]:
         """The verdicts stored with the run, none if it was not judged; as JSON in the attribute `claims`."""
         try:
-            return [Verdict.of(stored) for stored in json.loads(self.attributes.get("claims", "[]"))]
+            stored = json.loads(self.attributes.get("claims", "[]"))
+            if not isinstance(stored, list):
+                raise ValueError(f"{shown(stored)} is not a list")
+            return [Verdict.of(each) for each in stored]
         except (AttributeError, LookupError, RecursionError, TypeError, UnitError, ValueError) as error:
             raise LoomfmuError(
-                f"{self.path}: the file is damaged (its claims are not verdicts: {error})"
+                f"{self.given}: the file is damaged (its claims are not verdicts: {error})"
             ) from None
 
     @cached_property

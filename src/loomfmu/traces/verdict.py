@@ -1,10 +1,21 @@
 """What became of a claim, as people read it and as a trace keeps it."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
+from types import NoneType
 from typing import Any, Self
 
 from .. import units
+from ..errors import shown
+
+# what JSON makes of the types of the fields
+JSON: dict[Any, tuple[type, ...]] = {
+    str: (str,),
+    bool: (bool,),
+    int: (int,),
+    int | None: (int, NoneType),
+    float: (float, int, NoneType),
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -89,8 +100,15 @@ class Verdict:
 
     @classmethod
     def of(cls, stored: dict[str, Any]) -> Self:
-        """The verdict that `as_dict` made this of."""
+        """The verdict that `as_dict` made this of. Raises ValueError for what it cannot have made."""
+        if not isinstance(stored, dict):
+            raise ValueError(f"{shown(stored)} is not a JSON object")
         known = {field.name: stored[field.name] for field in fields(cls) if field.name in stored}
+        for field in fields(cls):
+            if field.name not in known and field.default is MISSING and field.name != "display_unit":
+                raise ValueError(f"{field.name} is missing")
+            if field.name in known and not isinstance(known[field.name], JSON[field.type]):
+                raise ValueError(f"{field.name} = {shown(known[field.name])}")
         for name in ("bound", "worst", "time", "angle"):
             known[name] = math.nan if known[name] is None else float(known[name])
         if "display" in stored:

@@ -154,7 +154,7 @@ class TraceWriter:
         self._annotate({"claims": json.dumps(verdicts), **ended, "status": "complete"})
         trace = Trace(self.partial)
         replace(self.partial, self.path)
-        trace.name = self.path.name
+        trace.given, trace.name = self.path, self.path.name
         kept = partial_of(self.path)  # what an earlier run left when it failed
         with contextlib.suppress(OSError):
             if kept.stat().st_mtime_ns < self._begun:

@@ -6,6 +6,7 @@ from pathlib import Path
 from ..files import check_target, starts_with, write_file
 from . import (
     accuracy,
+    attack,
     belt,
     cam,
     cyclograms,
@@ -92,8 +93,10 @@ def text() -> str:
     parts = [INTRO, _summary(of_sources), _missed(of_sources)]
     parts += [
         chapter.markdown()
-        for chapter in (*of_sources, errata(), findings.chapter(), design.chapter(), accuracy.chapter())
-    ]
+        for chapter in (
+            *of_sources, errata(), findings.chapter(), design.chapter(), accuracy.chapter(), attack.chapter()
+        )
+    ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 
 

@@ -129,6 +129,7 @@ IN_A_STEP = {
     "ABORT": r"fmi2DoStep crashed its process \(SIGABRT\); it printed: motor:  \[31massertion failed",
     "FLOOD": r"fmi2DoStep did not return within step_timeout = 0.5 s; it printed: the motor turns.*",
     "CLOSE": r"fmi2DoStep closed the connection to the master",
+    "OVERWRITE": r"it overwrote memory that is not its own, and crashed its process \(SIGABRT\)",
     "CHILD": r"fmi2DoStep crashed its process \(SIGSEGV\)",
 }
 
@@ -169,7 +170,10 @@ def test_what_disturbs_others_disturbs_nobody(
     result = ran(tmp_path, MOTOR, Path(), duration="0.06 s")
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
     assert capfd.readouterr() == ("", "")
-    assert len(result.warnings) == (50 if what == "LOG" else 0)
+    assert len(result.warnings) == (51 if what == "LOG" else 0)
+    if what == "LOG":
+        assert result.warnings[0] == "motor: 99950 earlier messages left out"
+        assert result.warnings[-1] == "motor: line 9999"
 
 
 def test_a_run_that_takes_too_long_is_ended(tmp_path: Path) -> None:
@@ -323,6 +327,11 @@ def test_a_row_whose_fmu_ends_the_process_leaves_the_others_unharmed(tmp_path: P
     (tmp_path / "sweep.toml").write_text(SWEEP)
     found = loomfmu.sweep(tmp_path / "sweep.toml", output=tmp_path / "out", processes=processes)
     assert found.errors == 2 and found.holding == 2
+    for row in found.table.to_pylist()[:2]:
+        assert row["error"] == (
+            "the process that ran it ended with status 0, with motor in it;"
+            " isolated = true says which call of which FMU"
+        )
 
 
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])
@@ -333,6 +342,15 @@ def test_a_changed_working_directory_is_changed_back(
     misbehaving(tmp_path, "MOVE", where)
     result = ran(tmp_path, IN_THIS_PROCESS, Path())
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
+
+
+@pytest.mark.parametrize("isolated", [True, False])
+def test_a_step_in_the_background_is_named(tmp_path: Path, isolated: bool) -> None:
+    misbehaving(tmp_path, "STATUS", returned=5)
+    (tmp_path / "x.toml").write_text(MOTOR)
+    said = r"motor at 0\.05 s: fmi2DoStep returned fmi2Pending: steps in the background are not supported"
+    with pytest.raises(LoomfmuError, match=said):
+        loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})
 
 
 @pytest.mark.parametrize("isolated", [True, False])

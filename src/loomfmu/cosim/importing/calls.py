@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
+PENDING = 5  # of FMI 2.0: it goes on with a step in the background
 REFUSED = 1000  # not a status of FMI: a value was not handed over, since it would have become another one
 
 # what a compiled call does, as stepper.c numbers it

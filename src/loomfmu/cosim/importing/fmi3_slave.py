@@ -15,7 +15,6 @@ from fmpy.fmi3 import FMU3Slave
 from ...errors import LoomfmuError
 from . import calls
 from .calls import DISCARD, FATAL, OK, REFUSED, WARNING, Call, Compiled
-from .foreign_slave import MOST_MESSAGES
 from .ports import CARRIED, RANGES, Value
 from .slave import Slave
 
@@ -74,9 +73,7 @@ class Fmi3Slave(Slave):
         return slave
 
     def _log_3(self, _environment: Any, status: int, _category: bytes, message: bytes) -> None:
-        if status >= WARNING:
-            self.messages.append((status, " ".join((message or b"").decode(errors="replace").split())))
-            del self.messages[:-MOST_MESSAGES]
+        self._keep(status, message)
 
     def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Call fmpy; a refusal by status becomes one line that names the instance."""

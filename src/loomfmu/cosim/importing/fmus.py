@@ -196,7 +196,7 @@ def load(path: Path) -> Fmu:
             with zipfile.ZipFile(file) as archive:
                 # compared with the FMU at each start: what runs is what the hash names
                 check_archive(archive)
-                names = list(filter(_is_run, archive.namelist()))
+                names = list(filter(_is_run, dict.fromkeys(archive.namelist())))
                 directory = folder(UNPACKED, sha256, names, archive.read)
         found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:

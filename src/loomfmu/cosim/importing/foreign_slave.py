@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from .fmus import Fmu
 
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # of fmi2StatusKind
-MOST_MESSAGES = 50  # the last ones are kept: some FMUs log at every step
 
 _instances: "WeakValueDictionary[int, ForeignSlave]" = WeakValueDictionary()
 
@@ -78,9 +77,7 @@ class ForeignSlave(Slave):
         return slave
 
     def _log(self, _environment: Any, _instance: bytes, status: int, _category: bytes, text: bytes) -> None:
-        if status >= WARNING:
-            self.messages.append((status, " ".join((text or b"").decode(errors="replace").split())))
-            del self.messages[:-MOST_MESSAGES]
+        self._keep(status, text)
 
     def _do(self, function: Any, *arguments: Any) -> None:
         """Call fmpy; a refusal by status becomes one line that names the instance."""

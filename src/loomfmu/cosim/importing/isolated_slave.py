@@ -94,7 +94,7 @@ class IsolatedSlave(Slave):
             reply = self._process.ask(
                 CALLS + array("I", batch).tobytes(),
                 self.limits,
-                lambda: self._names[batch[self._place.value]],
+                lambda: self._under_way(batch),
             )
             answer = None if reply == DONE else self._taken_in(reply)
         except Died as died:
@@ -106,6 +106,13 @@ class IsolatedSlave(Slave):
         place, status = answer.value
         self._failed = self._names[batch[place]]
         return int(status)
+
+    def _under_way(self, batch: list[int]) -> str:
+        """The call that the FMU is in, which an FMU may overwrite."""
+        place = self._place.value
+        if 0 <= place < len(batch):
+            return self._names[batch[place]]
+        return "it overwrote memory that is not its own, and"
 
     # ---- life
 

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...errors import LoomfmuError, signal_name
+from ...errors import LoomfmuError, signal_name, why
 from .messages import PART, complete, framed, write
 
 AVAILABLE = hasattr(select, "poll")  # not on Windows
@@ -63,14 +63,14 @@ class Process:
         if not AVAILABLE:
             raise LoomfmuError("isolated = true is not available on this system; set isolated = false")
         self._folder = Path(tempfile.mkdtemp(prefix="loomfmu-"))
-        (self._folder / "memory").write_bytes(bytes(size))
-        with (self._folder / "memory").open("r+b") as file:
-            self._memory = mmap.mmap(file.fileno(), size)
-        self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
-        theirs, self._requests = os.pipe()
-        self._replies, answers = os.pipe()
-        self._prints, printed = os.pipe()
+        pipes: list[int] = []
         try:
+            (self._folder / "memory").write_bytes(bytes(size))
+            with (self._folder / "memory").open("r+b") as file:
+                self._memory = mmap.mmap(file.fileno(), size)
+            for _ in range(3):
+                pipes += os.pipe()
+            theirs, self._requests, self._replies, answers, self._prints, printed = pipes
             # in a file: live FMUs lengthen the path of this process, and a command line has limits
             places = dict.fromkeys(str(Path(place).absolute()) for place in sys.path)
             (self._folder / "path").write_text(json.dumps(list(places)))
@@ -80,14 +80,13 @@ class Process:
                 pass_fds=(theirs, answers), start_new_session=True,
             )  # fmt: skip
         except OSError as error:
-            self._close()
-            os.close(self._prints)
+            for pipe in pipes:
+                os.close(pipe)
             shutil.rmtree(self._folder, ignore_errors=True)
-            raise LoomfmuError(f"no process for an isolated FMU: {error.strerror or error}") from None
-        finally:
-            os.close(theirs)
-            os.close(answers)
-            os.close(printed)
+            raise LoomfmuError(f"a process for an isolated FMU cannot be started: {why(error)}") from None
+        for pipe in (theirs, answers, printed):
+            os.close(pipe)
+        self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
         self._poll = select.poll()
         self._poll.register(self._replies, select.POLLIN)
         self._output = b""

@@ -28,7 +28,7 @@ from fmpy.fmi2 import (
 
 from ...errors import LoomfmuError
 from . import calls
-from .calls import DISCARD, ERROR, FATAL, OK, REFUSED, WARNING, Call, Compiled, Rollback
+from .calls import DISCARD, ERROR, FATAL, OK, PENDING, REFUSED, WARNING, Call, Compiled, Rollback
 from .ports import Value
 
 if TYPE_CHECKING:
@@ -36,7 +36,8 @@ if TYPE_CHECKING:
 
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
-STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal"}
+STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal", PENDING: "Pending"}
+MOST_MESSAGES = 50  # of a third-party FMU that are kept
 PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
 
 
@@ -62,6 +63,7 @@ class Slave:
         self.fmu = fmu
         self.name = name
         self.messages: list[tuple[int, str]] = []
+        self._left_out = 0  # earlier messages
         self.fatal = False
         self.started = False
         self._connect()
@@ -115,6 +117,19 @@ class Slave:
     ) -> None:
         text = (message or b"").decode(errors="replace")
         self.messages.append((status, text.partition("\n")[2] if text.startswith(PYTHONFMU) else text))
+
+    def _keep(self, status: int, text: bytes) -> None:
+        """Keep a message of a third-party FMU; of many the last ones, since some log at every step."""
+        if status < WARNING:
+            return
+        if not self.messages:
+            self._left_out = 0
+        noted = self._left_out > 0  # in a message before the others
+        self.messages.append((status, " ".join((text or b"").decode(errors="replace").split())))
+        if len(self.messages) - noted > MOST_MESSAGES:
+            del self.messages[noted]
+            self._left_out += 1
+            self.messages[:noted] = [(WARNING, f"{self._left_out} earlier messages left out")]
 
     def _reason(self, error: Exception | None = None) -> str:
         """The last complaint that the FMU logged, in one line."""
@@ -229,7 +244,8 @@ class Slave:
             if ended is not None:
                 return Ended(self.name, ended if ended >= time else time)
         kind = f"{self.standard}{STATUS[status]}" if status in STATUS else f"status {status}"
-        return LoomfmuError(f"{self.name} at {time:.9g} s: {action} returned {kind}: {self._reason()}")
+        reason = "steps in the background are not supported" if status == PENDING else self._reason()
+        return LoomfmuError(f"{self.name} at {time:.9g} s: {action} returned {kind}: {reason}")
 
     def _ended(self) -> float | None:
         """When the FMU ended the simulation, if that is why it has not made a step: ours never do."""

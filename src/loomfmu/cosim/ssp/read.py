@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError, shown, why
 from ...own.declared import PARAMETER_SETS
 from ...variables import AT_STEP_END
 from ..importing import fmus
@@ -37,7 +37,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
         with Package(path) as package:
             return _Reader(package).scene(overrides or {})
     except OSError as error:
-        raise LoomfmuError(f"{path}: cannot be read ({error.strerror or error})") from None
+        raise LoomfmuError(f"{path}: cannot be read ({why(error)})") from None
     except ValueError as error:
         raise LoomfmuError(f"{path}: cannot be read ({error})") from None
     except LoomfmuError as error:
