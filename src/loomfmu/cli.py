@@ -153,6 +153,8 @@ def _run_here(options: argparse.Namespace) -> int:
     summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
     say(f"trace: {path}    summary: {shlex.join(summary)}")
     if options.report:
+        from . import report
+
         say(f"report: {report.write([result.trace], overwrite=options.force)}")
     return 0 if result.holds else 1
 
