@@ -178,11 +178,12 @@ def test_what_disturbs_others_disturbs_nobody(
 
 def test_a_run_that_takes_too_long_is_ended(tmp_path: Path) -> None:
     misbehaving(tmp_path, "HANG")
-    said = r"^motor at 0.05 s: the run took longer than run_timeout = 1 s$"
+    # a busy machine may need that long to start the process
+    said = r"^motor( at [\d.]+ s)?: the run took longer than run_timeout = 1 s$"
     with pytest.raises(LoomfmuError, match=said):
         ran(tmp_path, MOTOR, tmp_path, run_timeout="1 s")
     motor2(tmp_path)
-    said = r"^motor at [\d.]+ s: the run took longer than run_timeout = 0.5 s$"
+    said = r"^motor( at [\d.]+ s)?: the run took longer than run_timeout = 0.5 s$"
     with pytest.raises(LoomfmuError, match=said):
         ran(tmp_path, MOTOR, tmp_path, run_timeout="0.5 s", duration="100000 s")
 
