@@ -34,7 +34,7 @@ def test_both_lists_pin_the_same_versions() -> None:
 def test_every_file_of_a_package_has_a_hash() -> None:
     text = (ROOT / "pins" / "test.txt").read_text(encoding="utf-8")
     packages = re.split(r"^(?=\w)", text, flags=re.MULTILINE)[1:]
-    assert len(packages) == len(pins("test.txt"))
+    assert len(packages) == len(PINNED.findall(text))  # some twice: for older and for newer Pythons
     assert [each for each in packages if "--hash=sha256:" not in each] == []
 
 
