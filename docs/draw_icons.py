@@ -15,7 +15,9 @@ from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
 from loomfmu.variables import Component
 
-FMUS = Path(__file__).parents[1] / "fmus"
+ROOT = Path(__file__).parents[1]
+FMUS = ROOT / "fmus"
+LOOM = ROOT / "src" / "loomfmu" / "fmi" / "system"  # where the icon of a whole scene lies
 BLUE, RED, PALE, GROUND, EDGE = "#1f5f8b", "#d1495b", "#a9bfcd", "#f5f8fa", "#8fa5b3"
 # an input of a component takes the output of the same name of the component before it
 WIRES = ("rotor_angle", "rotor_velocity", "rotor_acceleration", "travel", "lift", "velocity", "acceleration")
@@ -39,7 +41,7 @@ def trace(chain: list[Component], turns: float, *names: str) -> list[list[float]
 
 
 def draw(
-    name: str,
+    name: str | Path,
     *curves: tuple[list[float], list[float], str],
     levels: tuple[float, ...] = (),
     level_colour: str = PALE,
@@ -110,6 +112,10 @@ def main() -> None:
     time, lift = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True)], 2, "lift")
     time, other = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True, pattern_1=2)], 2, "lift")
     draw("heald_frame", (time, other, PALE), (time, lift, BLUE))
+
+    time, travel = trace([WeftInsertion()], 2, "travel")
+    scale = max(lift) / max(travel)
+    draw(LOOM, (time, other, PALE), (time, lift, BLUE), (time, [scale * x for x in travel], RED))
 
     carrier = HealdDamper(inputs_at_step_end=True)
     frame = HealdFrame(inputs_at_step_end=True)

@@ -130,7 +130,14 @@ def untouched(path: Path) -> tuple[int, ...]:
 
 
 @pytest.mark.parametrize("force", [[], ["--force"]])
-@pytest.mark.parametrize("command", [["run", "scene.toml", "--output"], ["export", "scene.toml", "--ssp"]])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["run", "scene.toml", "--output"],
+        ["export", "scene.toml", "--ssp"],
+        ["export", "scene.toml", "--fmu"],
+    ],
+)
 def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
     command: list[str], force: list[str], capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -165,6 +172,15 @@ def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
         assert capfd.readouterr().err == f"loomfmu: {shown}: cannot be written ({why})\n"
     assert {path: untouched(path) for path in Path().iterdir()} == before
     assert Path("/dev/full").is_char_device()
+
+
+def test_options_of_one_kind_of_export_are_refused_for_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(HEAD + SHAFT)
+    assert main(["export", path, "--fmu", "loom.fmu", "--flavour", "live"]) == 2
+    assert "--flavour is for --ssp: one FMU of a whole scene is always native" in capsys.readouterr().err
+    assert main(["export", path, "--ssp", "loom.ssp", "--fmi", "3"]) == 2
+    assert "--fmi is for --fmu: a system package holds FMUs of FMI 2.0" in capsys.readouterr().err
+    assert not list(Path().glob("loom.*"))
 
 
 def test_what_is_not_ours_is_replaced_only_when_told_to(capsys: pytest.CaptureFixture[str]) -> None:

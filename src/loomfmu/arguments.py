@@ -160,16 +160,26 @@ def _build(commands: Any) -> None:
 
 
 def _export(commands: Any) -> None:
-    export = commands.add_parser("export", help="write a scene as a system package (SSP) for other tools")
+    export = commands.add_parser(
+        "export", help="write a scene as one FMU, or as a system package (SSP), for other tools"
+    )
     export.add_argument("scene", metavar="SCENE.toml")
-    export.add_argument("--ssp", type=Path, required=True, metavar="FILE.ssp", help="the package to write")
+    file = export.add_mutually_exclusive_group(required=True)
+    file.add_argument(
+        "--fmu", type=Path, metavar="FILE.fmu",
+        help="write one native FMU: all mechanisms wired inside, without delay between them",
+    )  # fmt: skip
+    file.add_argument(
+        "--ssp", type=Path, metavar="FILE.ssp", help="write a system package: one FMU for each mechanism"
+    )
     _add_set(export)
+    export.add_argument("--fmi", type=int, choices=(2, 3), help="FMI version of FILE.fmu; 2 by default")
     export.add_argument(
         "--flavour", choices=("live", "native"),
-        help="kind of FMUs; native by default if they can be built",
+        help="kind of FMUs in FILE.ssp; native by default if they can be built",
     )  # fmt: skip
     _add_platform(export)
-    _add_force(export, "FILE.ssp even if loomfmu did not write it")
+    _add_force(export, "the file even if loomfmu did not write it")
 
 
 def _cache(commands: Any) -> None:

@@ -96,16 +96,25 @@ def _overrides(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _export(options: argparse.Namespace) -> int:
+    from .cosim import whole
     from .cosim.scenes import scene
     from .cosim.ssp import export as ssp
     from .fmi.native import builder as native_builder
 
+    if options.fmu and options.flavour:
+        raise LoomfmuError("--flavour is for --ssp: one FMU of a whole scene is always native")
+    if options.ssp and options.fmi:
+        raise LoomfmuError("--fmi is for --fmu: a system package holds FMUs of FMI 2.0")
     chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
     platforms = native_builder.check_platforms(tuple(chosen))
     loaded = scene.load(options.scene, _overrides(options))
-    for warning in ssp.export(loaded, options.ssp, options.flavour, platforms, options.force):
+    if options.fmu:
+        warnings = whole.export(loaded, options.fmu, platforms, options.fmi or 2, options.force)
+    else:
+        warnings = ssp.export(loaded, options.ssp, options.flavour, platforms, options.force)
+    for warning in warnings:
         complain(f"warning: {warning}")
-    say(options.ssp)
+    say(options.fmu or options.ssp)
     return 0
 
 

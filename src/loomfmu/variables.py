@@ -111,16 +111,21 @@ class Variable:
             raise LoomfmuError(complaint)
         return value
 
+    @property
+    def range(self) -> str:
+        """Its limits in the unit people read it in, as messages show them."""
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
+        low, high = (bound / units.unit(self.display).factor for bound in (low, high))
+        return f"[{low:.7g}, {high:.7g}]" + ("" if self.display == "1" else f" {self.display}")
+
     def complaint(self, value: float | int | bool) -> str:
         """What is wrong with that value, or an empty text."""
         low = -math.inf if self.minimum is None else self.minimum
         high = math.inf if self.maximum is None else self.maximum
         if low <= value <= high and math.isfinite(value):
             return ""
-        shown = units.show(value, self.display)
-        low, high = (bound / units.unit(self.display).factor for bound in (low, high))
-        label = "" if self.display == "1" else f" {self.display}"
-        return f"{self.name} = {shown} is outside [{low:.7g}, {high:.7g}]{label}"
+        return f"{self.name} = {units.show(value, self.display)} is outside {self.range}"
 
 
 @dataclass(frozen=True)
@@ -143,8 +148,9 @@ NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 @dataclass(frozen=True)
 class Terminal:
-    """Variables that one connection wires; two terminals of one name fit each other, member by member.
+    """Variables that one connection wires; two terminals of one kind fit each other, member by member.
 
+    The kind is what follows the last dot of the name, before which the instance of a whole system stands.
     `variables` are a component's own names for the `members`, in the same order.
     """
 
@@ -152,6 +158,11 @@ class Terminal:
     description: str
     members: tuple[str, ...]
     variables: tuple[str, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """What it fits."""
+        return self.name.rpartition(".")[2]
 
     def of(self, *variables: str) -> "Terminal":
         """This terminal on a component that calls its members so."""
@@ -312,12 +323,19 @@ class Component:
     longest_turn: ClassVar[float] = 0.0
     # of a shaft: the parameters that are 0 while it turns evenly; none of one that never does
     unsteady: ClassVar[tuple[str, ...]] = ()
+    # end and communication step that a host starts from [s]
+    experiment: ClassVar[tuple[float, float]] = (1.0, 1e-4)
 
     def __post_init__(self) -> None:
         for variable in variables_of(type(self)):
             complaint = variable.complaint(getattr(self, variable.name)) if variable.settable else ""
             if complaint:
                 raise ValueError(f"{type(self).__name__}.{complaint}")
+
+    @classmethod
+    def declared(cls) -> tuple[Variable, ...]:
+        """Its variables, in the order of their value references."""
+        return tuple(_variable(each) for each in fields(cls))
 
     @classmethod
     def longest_step(cls, values: Mapping[str, Any]) -> tuple[float, str]:
@@ -339,7 +357,7 @@ class Component:
 
 def variables_of(component: type[Component]) -> tuple[Variable, ...]:
     """All variables of a component in the order of their declaration; the index is the value reference."""
-    return tuple(_variable(declared) for declared in fields(component))
+    return component.declared()
 
 
 def arrays_of(component: type[Component]) -> dict[str, tuple[Variable, ...]]:

@@ -32,10 +32,11 @@ class Pruned:
     skipped: tuple[str, ...]
 
 
-def prune(scene: Scene, signals: Iterable[str]) -> Pruned:
-    """The scene with only what these signals need."""
+def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pruned:
+    """The scene with only what these signals need; `keep_shafts` leaves in shafts of constant speed."""
     signals = tuple(signals)
-    shafts = {name: _constant(each) for name, each in scene.instances.items() if _is_constant(scene, name)}
+    turning = () if keep_shafts else scene.instances.items()
+    shafts = {name: _constant(each) for name, each in turning if _is_constant(scene, name)}
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
     requested = {signal.split(".")[0] for signal in signals} - set(shafts)
     third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}

@@ -12,8 +12,6 @@ COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
 RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 FIRST_REFERENCE = 1  # not 0: then a value reference is a variable's place too, for which OMSimulator takes it
-DEFAULT_STOP_TIME = 1.0
-DEFAULT_STEP_SIZE = 1e-4
 DEFAULT_TOLERANCE = 1e-6  # for hosts that ask for one; nothing here is solved to a tolerance
 
 
@@ -33,7 +31,7 @@ def model_description(
     _interfaces(root, component, native)
     unit_definitions(root, variables)
     type_definitions(root, name, variables)
-    log_and_experiment(root)
+    log_and_experiment(root, component)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _scalar(listed, reference, variable, name)
@@ -64,14 +62,15 @@ def _interfaces(root: Element, component: type[Component], native: dict[str, str
             SubElement(SubElement(element, "SourceFiles"), "File", name="fmi2.c")
 
 
-def log_and_experiment(root: Element) -> None:
+def log_and_experiment(root: Element, component: type[Component]) -> None:
     """Log categories and default experiment, which FMI 2 and FMI 3 write alike."""
     categories = SubElement(root, "LogCategories")
     for category, description in CATEGORIES.values():
         SubElement(categories, "Category", name=category, description=description)
+    end, step_size = component.experiment
     SubElement(
-        root, "DefaultExperiment", startTime="0", stopTime=repr(DEFAULT_STOP_TIME),
-        tolerance=repr(DEFAULT_TOLERANCE), stepSize=repr(DEFAULT_STEP_SIZE),
+        root, "DefaultExperiment", startTime="0", stopTime=repr(end), tolerance=repr(DEFAULT_TOLERANCE),
+        stepSize=repr(step_size),
     )  # fmt: skip
 
 

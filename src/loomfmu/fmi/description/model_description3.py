@@ -33,7 +33,7 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     SubElement(root, "CoSimulation", common | steps)
     unit_definitions(root, variables, also=("s",))
     type_definitions(root, name, variables, fmi=3)
-    log_and_experiment(root)
+    log_and_experiment(root, component)
     listed = SubElement(root, "ModelVariables")
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _variable(listed, reference, variable, name)
@@ -76,8 +76,7 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
     outputs = [variable for variable in variables if variable.causality == "output"]
     for variable in outputs:
         needed = inputs if variable.depends is None else list(variable.depends)
-        found = sorted(references[name] for name in (*needed, *parameters))
-        found += [] if variable.depends == () else [_time_reference(variables)]
+        found = [*sorted(references[name] for name in (*needed, *parameters)), _time_reference(variables)]
         SubElement(
             structure, "Output", valueReference=str(references[variable.name]),
             dependencies=" ".join(map(str, found)),

@@ -22,7 +22,7 @@ def terminal_files(component: type[Component]) -> dict[str, bytes]:
     for terminal in component.terminals:
         element = SubElement(
             listed, "Terminal", name=terminal.name, matchingRule="plug",
-            terminalKind=f"{KIND}.{terminal.name}", description=terminal.description,
+            terminalKind=f"{KIND}.{terminal.kind}", description=terminal.description,
         )  # fmt: skip
         for member, variable in zip(terminal.members, terminal.variables, strict=True):
             SubElement(

@@ -33,7 +33,7 @@ from ..description.model_description import model_description, output_order
 from ..description.model_description3 import model_description3
 from .fat_binary import fat_binary
 from .tables import tables
-from .translate import translate
+from .translate import Translation, translate
 
 SHELL = Path(__file__).with_name("shell")
 
@@ -68,8 +68,8 @@ ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
 OPTIONS = " ".join(ARITHMETIC)
 FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 COMMON_FILES = (
-    "tables.h", "python_arithmetic.h", "instance.h", "messages.c", "instance.c", "values.c", "states.c",
-    "solver.c",
+    "tables.h", "python_arithmetic.h", "grid.h", "instance.h", "messages.c", "instance.c", "values.c",
+    "states.c", "solver.c",
 )  # fmt: skip
 SHELL_FILES = {
     2: (
@@ -81,6 +81,7 @@ SHELL_FILES = {
         "fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h",
     ),
 }  # fmt: skip
+ICONS = {2: "model.png", 3: "terminalsAndIcons/icon.png"}
 COMMAND = f"cc -shared -fPIC -std=c99 {OPTIONS} -o {{name}}.so fmi{{fmi}}.c -lm"
 
 BUILD_DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
@@ -132,14 +133,20 @@ def archive(component: type[Component], platforms: tuple[str, ...], fmi: int = 2
 
 def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:
     """All files of a native FMU by their names in it."""
+    note = NOTE.format(command=COMMAND.format(name=component.__name__, fmi=fmi))
+    documents = beside(component, {"icon.png": ICONS[fmi]}) | described(component, note)
+    return assembled(component, guid(component), documents, sources(component, fmi), platforms, fmi)
+
+
+def assembled(
+    component: type[Component], token: str, documents: dict[str, bytes], code: dict[str, str],
+    platforms: tuple[str, ...], fmi: int, capabilities: dict[str, str] | None = None,
+) -> dict[str, bytes]:  # fmt: skip
+    """A native FMU's files from what describes it and its C text, which is compiled."""
     name = component.__name__
-    code = sources(component, fmi)
-    note = NOTE.format(command=COMMAND.format(name=name, fmi=fmi))
-    icon = "model.png" if fmi == 2 else "terminalsAndIcons/icon.png"
     files = {
-        "modelDescription.xml": _description(component, fmi),
-        **beside(component, {"icon.png": icon}),
-        **described(component, note),
+        "modelDescription.xml": _description(component, token, fmi, capabilities or {}),
+        **documents,
         **licenses(platforms, code),
         "sources/buildDescription.xml": BUILD_DESCRIPTION.format(name=name, fmi=fmi).encode(),
         **{f"sources/{file}": text.encode() for file, text in code.items()},
@@ -149,25 +156,25 @@ def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -
     return files
 
 
-def _description(component: type[Component], fmi: int) -> bytes:
+def _description(component: type[Component], token: str, fmi: int, capabilities: dict[str, str]) -> bytes:
     if fmi == 3:
-        return model_description3(component, guid(component), version())
+        return model_description3(component, token, version())
     capabilities = {
         # of one without inputs too: PyFMI's master extrapolates a whole system or nothing of it
         "canInterpolateInputs": "true",
         "maxOutputDerivativeOrder": str(output_order(component)),
-    }
-    return model_description(component, guid(component), version(), capabilities)
+    } | capabilities
+    return model_description(component, token, version(), capabilities)
 
 
 def sources(component: type[Component], fmi: int = 2) -> dict[str, str]:
     """The C text of a native FMU: shell, tables, translated component, headers of the standard."""
-    translated = translate(component)
-    files = {
-        "component.h": translated.header,
-        "component.c": translated.code,
-        "model.h": tables(component, guid(component)),
-    }
+    return with_shell(translate(component), tables(component, guid(component)), fmi)
+
+
+def with_shell(translated: Translation, model: str, fmi: int) -> dict[str, str]:
+    """A translation and the tables of its variables with the shell and the headers of the standard."""
+    files = {"component.h": translated.header, "component.c": translated.code, "model.h": model}
     for file in (*COMMON_FILES, *SHELL_FILES[fmi]):
         place = SHELL if (SHELL / file).exists() else HEADERS
         files[file] = (place / file).read_text("utf-8")

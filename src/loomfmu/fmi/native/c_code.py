@@ -157,6 +157,8 @@ KEYWORDS = frozenset(
 
 
 def c_name(name: str) -> str:
-    """A name that C takes, its index included: its keywords get an underscore."""
-    word, bracket, index = name.partition("[")
-    return f"{word}_{bracket}{index}" if word in KEYWORDS else name
+    """A name that C takes, with its owner and its index: keywords of C get an underscore."""
+    owner, dot, member = name.rpartition(".")
+    word, bracket, index = member.partition("[")
+    own = f"{word}_{bracket}{index}" if word in KEYWORDS else member
+    return f"{c_name(owner)}.{own}" if dot else own

@@ -2,6 +2,8 @@
 
 import json
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from ... import units
 from ...variables import AT_STEP_END, NOTHING, Component, Variable, variables_of
@@ -27,19 +29,38 @@ MODEL = """/* {name}: its variables and problems, written by loomfmu from its de
 #define FIRST_REFERENCE {first}U /* the value reference of the first row, from where they count on */
 #define PROBLEMS {problem_count}
 #define INDICATORS {indicator_count}
+#define PARTS {part_count}
+#define FINITE {finite_count}
 #define MEMORYLESS {memoryless} /* 1: all outputs are functions of time, parameters and inputs alone */
 
 typedef struct {name} Component;
 
 #define component_start {name}__init__
-#define component_initialize {name}__initialize
-#define component_step {name}__step
+
+/* What is started and stepped, in this order, and which of the problems below are its own. */
+typedef struct {{
+    int64_t (*initialize)(Component *, double);
+    int64_t (*step)(Component *, double, double);
+    int first_problem;
+    int problems;
+}} Part;
+
+static const Part parts[PARTS] = {{
+{parts}}};
+
+#define INNER_STEPS {inner_steps} /* 1: it steps on a grid of its own, whatever the host's step is */
+#define INNER_STEP(component) {inner_step}
 
 /* The parameter that says that inputs hold at the end of a step; NONE without one. */
 #define INPUTS_AT_STEP_END {at_step_end}
 
 static const Row rows[VARIABLES] = {{
 {rows}
+}};
+
+/* Where the reals are that must be finite: outputs and locals, in fours. */
+static const size_t finite_offsets[FINITE + 1] = {{
+{finite}    0,
 }};
 
 /* Variables that change their sign where an output jumps. */
@@ -56,14 +77,32 @@ static const char *const categories[CATEGORIES] = {{{categories}}};
 """
 
 
-def tables(component: type[Component], token: str) -> str:
-    """The text of model.h; `token` is the identity that a host must show."""
+@dataclass(frozen=True)
+class Part:
+    """What the shell starts and steps: its functions in C, and how many problems it reports."""
+
+    initialize: str
+    step: str
+    problems: int
+
+
+def tables(
+    component: type[Component], token: str, parts: Sequence[Part] = (), inner_step: str = ""
+) -> str:  # fmt: skip
+    """The text of model.h; `token` is the identity that a host must show.
+
+    `parts` are those of a system of components, one component is a part by itself; `inner_step` is the
+    expression in C for the step of a system that has a grid of its own.
+    """
+    name = component.__name__
+    parts = parts or [Part(f"{name}__initialize", f"{name}__step", len(component.problems))]
     variables = variables_of(component)
     names = [variable.name for variable in variables]
     _check_problems(component, names)
+    finite = _finite(variables)
     at_step_end = names.index(AT_STEP_END) if AT_STEP_END in names else "NONE"
     return MODEL.format(
-        name=component.__name__,
+        name=name,
         token=token,
         count=len(variables),
         first=FIRST_REFERENCE,
@@ -71,6 +110,12 @@ def tables(component: type[Component], token: str) -> str:
         indicator_count=sum(variable.indicator for variable in variables),
         indicators=", ".join([*(str(names.index(v.name)) for v in variables if v.indicator), "NONE"]),
         memoryless=int(component.keeps == NOTHING),
+        part_count=len(parts),
+        parts="".join(_part(part, parts[:place]) for place, part in enumerate(parts)),
+        inner_steps=int(bool(inner_step)),
+        inner_step=inner_step or "0.0",
+        finite_count=len(finite),
+        finite="".join(f"    {_offset(variable)},\n" for variable in finite),
         at_step_end=at_step_end,
         rows="\n".join(_row(variable, names) for variable in variables),
         problems="".join(
@@ -81,13 +126,28 @@ def tables(component: type[Component], token: str) -> str:
     )
 
 
+def _part(part: Part, before: Sequence[Part]) -> str:
+    first = sum(each.problems for each in before)
+    return f"    {{{part.initialize}, {part.step}, {first}, {part.problems}}},\n"
+
+
+def _finite(variables: Sequence[Variable]) -> list[Variable]:
+    """Real outputs and locals; the last one is repeated, so that they come in fours."""
+    computed = [variable for variable in variables if variable.type is float and not variable.settable]
+    return computed + computed[-1:] * (-len(computed) % 4)
+
+
+def _offset(variable: Variable) -> str:
+    return f"offsetof(Component, {c_name(variable.member)})"
+
+
 def _row(variable: Variable, names: list[str]) -> str:
     fields = (
         _text(variable.name),
         KINDS[variable.type],
         variable.causality.upper(),
         variable.variability.upper(),
-        f"offsetof(Component, {c_name(variable.member)})",
+        _offset(variable),
         *(repr(float(limit)) for limit in variable.limits),
         _text(variable.display),
         repr(float(units.unit(variable.display).factor)),

@@ -29,6 +29,17 @@ from .c_code import (
 from .c_functions import FunctionWriter
 
 ENTRIES = ("initialize", "step")  # what the shell calls
+INCLUDES = '#include "component.h"\n#include "python_arithmetic.h"\n'
+HEADER = """{about}#ifndef COMPONENT_H
+#define COMPONENT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+{struct}
+
+#endif
+"""
 
 
 class TranslationError(LoomfmuError):
@@ -39,8 +50,23 @@ class TranslationError(LoomfmuError):
 class Translation:
     """A component in C: the struct of its variables, and the functions."""
 
-    header: str
-    code: str
+    name: str
+    struct: str
+    functions: str
+
+    @property
+    def header(self) -> str:
+        """The text of component.h."""
+        return HEADER.format(about=self._about, struct=self.struct)
+
+    @property
+    def code(self) -> str:
+        """The text of component.c."""
+        return f"{self._about}{INCLUDES}\n{self.functions}"
+
+    @property
+    def _about(self) -> str:
+        return f"/* {self.name}, translated by loomfmu from its Python source; do not edit. */\n"
 
 
 _done: dict[type[Component], Translation] = {}
@@ -63,9 +89,7 @@ def _translated(component: type[Component]) -> Translation:
         code = _code(component, tree, _comments(text))
     except Untranslatable as error:
         raise _located(component, text, tree, error) from None
-    about = f"/* {component.__name__}, translated by loomfmu from its Python source; do not edit. */\n"
-    include = '#include "component.h"\n#include "python_arithmetic.h"\n\n'
-    return Translation(header=about + _header(component), code=about + include + code)
+    return Translation(component.__name__, _struct(component), code)
 
 
 def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]) -> str:
@@ -195,13 +219,11 @@ def _within(comments: dict[int, str], function: ast.FunctionDef) -> dict[int, st
 # ---- the struct
 
 
-def _header(component: type[Component]) -> str:
+def _struct(component: type[Component]) -> str:
     """The struct of the variables, each with its unit and description."""
-    lines = ["#ifndef COMPONENT_H", "#define COMPONENT_H", "", "#include <stdbool.h>", "#include <stdint.h>"]
-    lines += ["", f"struct {component.__name__} {{"]
     members = groupby(variables_of(component), lambda variable: variable.member.partition("[")[0])
-    lines += [_member(name, list(same)) for name, same in members]
-    return "\n".join([*lines, "};", "", "#endif", ""])
+    lines = [_member(name, list(same)) for name, same in members]
+    return "\n".join([f"struct {component.__name__} {{", *lines, "};"])
 
 
 def _member(name: str, variables: list[Variable]) -> str:

@@ -26,6 +26,10 @@ static Status fmu_set_derivative(Instance *instance, unsigned reference, int ord
     if (row->causality != INPUT) {
         return fmu_refuse(instance, "value reference %lu, %s, is not an input", reference, row->name);
     }
+    if (INNER_STEPS) {
+        return fmu_refuse(instance, "value reference %lu, %s: input derivatives are not supported", reference,
+                          row->name);
+    }
     if (order < 1 || order > HIGHEST_ORDER || !isfinite(value)) {
         return fmu_refuse(instance, "value reference %lu: the derivative must be finite and of order 1 to 3%s",
                           reference, "");

@@ -52,10 +52,29 @@ static bool fmu_allowed(Instance *instance, int modes, const char *function)
     return false;
 }
 
+/* Whether all real outputs and locals are finite: at every step, so without branches and in four sums at once.
+ * What is not finite makes NaN of its difference from itself. */
+static bool fmu_is_finite(const Instance *instance)
+{
+    const char *component = (const char *)&instance->state.component;
+    double sums[4] = {0.0, 0.0, 0.0, 0.0};
+    int i, j;
+    for (i = 0; i < FINITE; i += 4) {
+        for (j = 0; j < 4; j++) {
+            double value = *(const double *)(const void *)(component + finite_offsets[i + j]);
+            sums[j] += value - value;
+        }
+    }
+    return !isnan(sums[0] + sums[1] + sums[2] + sums[3]);
+}
+
 /* A result that is not finite is none: Python would have raised an exception on the way to it. */
 static Status fmu_check_finite(Instance *instance, bool at_start, double time, Status status)
 {
     int i;
+    if (fmu_is_finite(instance)) {
+        return OK;
+    }
     for (i = 0; i < VARIABLES; i++) {
         const Row *row = &rows[i];
         if (row->kind == REAL && row->causality > INPUT && !isfinite(fmu_value(instance, row))) {
@@ -77,19 +96,28 @@ static Status fmu_check_finite(Instance *instance, bool at_start, double time, S
     return OK;
 }
 
+/* Logs a problem that a part reports by its own number, if it reports one. */
+static Status fmu_report_part(Instance *instance, const Part *part, int64_t problem, Status status)
+{
+    if (problem == 0) {
+        return OK;
+    }
+    return fmu_report(instance, problem > 0 && problem <= part->problems ? part->first_problem + problem : 0, status);
+}
+
 /* Computes the start from the parameters and inputs as they now stand. */
 static Status fmu_refresh(Instance *instance)
 {
     State *state = &instance->state;
-    int64_t problem;
     Status status = OK;
+    int i;
     if (!state->stale) {
         return OK;
     }
     state->stale = false;
-    problem = component_initialize(&state->component, state->time);
-    if (problem != 0) {
-        status = fmu_report(instance, problem, FAILED);
+    for (i = 0; i < PARTS && status == OK; i++) {
+        int64_t problem = parts[i].initialize(&state->component, state->time);
+        status = fmu_report_part(instance, &parts[i], problem, FAILED);
     }
     return status == OK ? fmu_check_finite(instance, true, state->time, FAILED) : status;
 }
@@ -167,16 +195,42 @@ static Status fmu_check_step(Instance *instance, double time, double size)
     return OK;
 }
 
-/* One step. Where it cannot be made the component stays as it was. */
+/* One step of all parts. */
+static Status fmu_step_parts(Instance *instance, double time, double size)
+{
+    Status status = OK;
+    int i;
+    for (i = 0; i < PARTS && status == OK; i++) {
+        int64_t problem = parts[i].step(&instance->state.component, time, size);
+        status = fmu_report_part(instance, &parts[i], problem, DISCARD);
+    }
+    return status == OK ? fmu_check_finite(instance, false, time, DISCARD) : status;
+}
+
+/* Steps to each point of the grid on the way, and from there to the end of the host's step. */
+static Status fmu_step_on_grid(Instance *instance, double time, double size, double inner)
+{
+    double at = grid_place(time, inner), end = grid_place(time + size, inner);
+    Status status = OK;
+    if (at >= end) { /* too short to tell both ends apart */
+        return fmu_step_parts(instance, time, size);
+    }
+    while (at < end && status == OK) {
+        double next = floor(at) + 1.0 < end ? floor(at) + 1.0 : end;
+        bool whole = at >= floor(at) && at <= floor(at) && next >= at + 1.0;
+        status = fmu_step_parts(instance, at * inner, whole ? inner : (next - at) * inner);
+        at = next;
+    }
+    return status;
+}
+
+/* One step of the host. Where it cannot be made the component stays as it was. */
 static Status fmu_step(Instance *instance, double time, double size)
 {
     State *state = &instance->state;
     Component before = state->component;
-    int64_t problem = component_step(&state->component, time, size);
-    Status status = problem != 0 ? fmu_report(instance, problem, DISCARD) : OK;
-    if (status == OK) {
-        status = fmu_check_finite(instance, false, time, DISCARD);
-    }
+    double inner = INNER_STEP(&state->component);
+    Status status = inner > 0.0 ? fmu_step_on_grid(instance, time, size, inner) : fmu_step_parts(instance, time, size);
     if (status == OK) {
         state->time = time + size;
     } else {

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "grid.h"
 #include "model.h"
 
 #define TEXT_SIZE 2048

@@ -29,18 +29,11 @@ static Status fmu_evaluate(Instance *instance)
 {
     State *state = &instance->state;
     Component before = state->component;
-    int64_t problem;
-    Status status = OK;
+    Status status;
     if (!state->stale) {
         return OK;
     }
-    problem = component_step(&state->component, state->time, 0.0);
-    if (problem != 0) {
-        status = fmu_report(instance, problem, DISCARD);
-    }
-    if (status == OK) {
-        status = fmu_check_finite(instance, false, state->time, DISCARD);
-    }
+    status = fmu_step_parts(instance, state->time, 0.0);
     if (status != OK) {
         state->component = before;
         return status;
@@ -65,7 +58,7 @@ static bool fmu_is_event(Instance *instance)
     const char *held = (const char *)&instance->state.component;
     Component now = instance->state.component;
     int i;
-    if (component_step(&now, instance->state.time, 0.0) != 0) {
+    if (parts[0].step(&now, instance->state.time, 0.0) != 0) { /* it has no other part */
         return false;
     }
     for (i = 0; i < VARIABLES; i++) {

@@ -1,0 +1,88 @@
+"""A whole scene as one native FMU for other tools."""
+
+import re
+from collections.abc import Collection
+from pathlib import Path
+
+from ..errors import LoomfmuError
+from ..files import check_target, write_file
+from ..fmi.builder import FMU, zipped
+from ..fmi.native.builder import PLATFORMS
+from ..fmi.native.c_code import KEYWORDS
+from ..fmi.system.builder import contents
+from ..fmi.system.system import Drive, Part, System
+from .planning.pruning import prune
+from .planning.requested import checked_claims, recorded
+from .scenes.graph import step_order
+from .scenes.instances import Instance
+from .scenes.scene import UNIFORM, Scene
+from .scenes.scene_files import files_of
+
+
+def export(
+    scene: Scene,
+    path: Path,
+    platforms: tuple[str, ...] = tuple(PLATFORMS),
+    fmi: int = 2,
+    overwrite: bool = False,
+) -> list[str]:
+    """Write a scene as one native FMU of FMI 2 or FMI 3, and return warnings.
+
+    It gives what the scene records and what its claims need, and holds only the instances that this takes.
+    The same scene gives the same bytes. `overwrite` replaces a file that is not an FMU of ours.
+
+    Raises:
+        LoomfmuError: the scene has third-party FMUs or a loop, a component does not translate, there is no
+            compiler, or the file cannot be written
+    """
+    scene = checked_claims(scene)
+    inputs = files_of(scene)
+    check_target(path, FMU, inputs, overwrite)  # before the FMU is compiled
+    write_file(path, zipped(contents(system(scene), platforms, fmi)), FMU, inputs, overwrite)
+    grid = f"grid = {scene.grid!r} is ignored: the FMU takes equal steps"
+    return [*scene.notes, *[grid] * (scene.grid != UNIFORM)]
+
+
+def system(scene: Scene) -> System:
+    """What a scene's components are as one. Raises LoomfmuError for what cannot be part of it."""
+    signals = recorded(scene)
+    needed = prune(scene, signals, keep_shafts=True).scene
+    order, lagged = step_order(needed.instances, needed.wires)
+    if lagged:
+        raise LoomfmuError(
+            f"loop: {lagged[0]} closes an algebraic loop, which one FMU of a whole scene cannot hold:"
+            f' use --ssp, or cut the wire: [wires] "{".".join(lagged[0].sink)}" = false'
+        )
+    parts = tuple(_part(needed.instances[name]) for name in order)
+    return System(
+        name=_identifier(scene.name, {part.component.__name__ for part in parts}),
+        title=scene.title,
+        description=scene.description,
+        parts=parts,
+        wires={".".join(wire.sink): ".".join(wire.source) for wire in needed.wires},
+        drives={
+            f"{drive.instance}.{drive.variable}": Drive(drive.periods, drive.values, drive.held)
+            for drive in needed.drives
+        },
+        outputs=frozenset(signals),
+        experiment=(scene.steps * scene.step_size, scene.step_size),
+        steps=0 if scene.step else int(scene.steps_per_period),
+        step=scene.step or 0.0,
+    )
+
+
+def _part(instance: Instance) -> Part:
+    fmu = instance.fmu
+    if fmu.component is None or not fmu.built:
+        raise LoomfmuError(
+            f"{instance.name} is an FMU file, {fmu.path}; one FMU of a whole scene is made of components"
+            " alone: use --ssp"
+        )
+    return Part(instance.name, fmu.component, instance.values)
+
+
+def _identifier(name: str, taken: Collection[str]) -> str:
+    """The name of a scene as one that C takes, and no component has."""
+    word = re.sub(r"[^A-Za-z0-9_]", "_", name)
+    word = word if word[:1].isalpha() else f"scene_{word}"
+    return f"{word}_scene" if word in taken or word in KEYWORDS else word

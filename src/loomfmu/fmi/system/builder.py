@@ -1,0 +1,86 @@
+"""Builds one native FMU of a system."""
+
+import hashlib
+import uuid
+from pathlib import Path
+
+from ...variables import Component
+from ..builder import NAMESPACE, version
+from ..description import documentation
+from ..description.model_description import model_description
+from ..description.terminals import terminal_files
+from ..native import builder as native
+from ..native.tables import tables
+from .code import inner_step, stepped, translated
+from .system import STEP, STEPS, System, component_of
+
+ICON = Path(__file__).with_name("icon.png")
+
+README = """# {title}
+
+{description}
+
+## What is inside
+
+The components below in one library, translated to C. Sources are stepped before their sinks, and a wire hands
+over the value at the end of the step: there is no delay between components.
+
+| instance | component | what it is |
+|---|---|---|
+{parts}
+
+{wires}
+
+## Steps
+
+The components step on a grid of their own, set by the parameter {grid}. A communication step may hold
+several of these steps. One that does not end on the grid ends with a shorter step, and the next one starts
+with a step to the grid. Inputs are held over a communication step.
+
+## Other platforms
+
+The FMU needs no Python and no library but those of the system. The folder `sources` holds all of it; one
+command, run in that folder, builds it for another platform:
+
+    {command}
+"""
+
+
+def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, bytes]:
+    """All files of the FMU by their names in it. Raises LoomfmuError as `build_native`."""
+    component = component_of(system)
+    translation = translated(system)
+    token = _token(component, translation.header + translation.code)
+    model = tables(component, token, stepped(system), inner_step(system))
+    documents = {
+        native.ICONS[fmi]: ICON.read_bytes(),
+        "documentation/index.html": documentation.page(system.name, _readme(system, component, fmi)),
+        **terminal_files(component),
+    }
+    code = native.with_shell(translation, model, fmi)
+    # inputs are held over several steps, so that no derivative of them counts
+    capabilities = {"canInterpolateInputs": "false"}
+    return native.assembled(component, token, documents, code, platforms, fmi, capabilities)
+
+
+def _token(component: type[Component], code: str) -> str:
+    """Identity of the FMU: of its variables and all that is computed."""
+    digest = hashlib.sha256(model_description(component, "", version()) + code.encode())
+    return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
+
+
+def _readme(system: System, component: type[Component], fmi: int) -> str:
+    parts = "\n".join(
+        f"| `{part.name}` | {part.component.__name__} | {(part.component.__doc__ or '').splitlines()[0]} |"
+        for part in system.parts
+    )
+    wires = "\n".join(f"- `{source}` to `{sink}`" for sink, source in system.wires.items())
+    driven = "\n".join(
+        f"- `{sink}` follows a table of {len(drive.points)} points" for sink, drive in system.drives.items()
+    )
+    readme = README.format(
+        title=system.title, description=system.description, parts=parts,
+        wires="\n".join(filter(None, (wires, driven))), grid=f"`{STEP if system.step else STEPS}`",
+        command=native.COMMAND.format(name=system.name, fmi=fmi),
+    )  # fmt: skip
+    return documentation.with_table(readme, component) + documentation.names_note(component)

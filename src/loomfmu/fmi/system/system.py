@@ -1,0 +1,168 @@
+"""What a system is made of, and its variables: those of its parts, with dotted names."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+
+from ...variables import Component, Problem, Terminal, Variable, variables_of
+
+Value = float | int | bool
+Reach = Callable[[str], tuple[str, ...]]
+STEP, STEPS = "step", "steps_per_revolution"  # the parameter that sets the grid, as scenes call it
+SPEED = "shaft.speed"  # with which a grid by revolutions goes
+
+
+@dataclass(frozen=True)
+class Part:
+    """A component in a system, with the values that differ from its declared start values."""
+
+    name: str
+    component: type[Component]
+    values: Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An input that follows a table: on straight lines between the points, or held."""
+
+    points: tuple[float, ...]
+    values: tuple[Value, ...]
+    held: bool
+
+
+@dataclass(frozen=True)
+class System:
+    """Components, the sources of their inputs, and the grid on which they are stepped.
+
+    Parts are in the order of their steps, sources before sinks. Variables are `part.variable`: `wires` and
+    `drives` give the source of an input, `outputs` are those that are shown. The grid is `step` [s], or
+    `steps` in a revolution at the speed of the part `shaft`; `experiment` is the end and its step size [s].
+    """
+
+    name: str
+    title: str
+    description: str
+    parts: tuple[Part, ...]
+    wires: Mapping[str, str]
+    drives: Mapping[str, Drive]
+    outputs: frozenset[str]
+    experiment: tuple[float, float]
+    steps: int = 0
+    step: float = 0.0
+
+    @property
+    def problem(self) -> Problem:
+        """What is reported where the grid has no steps."""
+        if self.step:
+            return Problem("step = {step} must be greater than 0")
+        return Problem(f"{SPEED} = {{{SPEED}}} must not be 0: it sets the step")
+
+
+def component_of(system: System) -> type[Component]:
+    """The system as a component: its variables are declared, its code is not in Python."""
+    reach = _dependencies(system)
+    variables = (_grid(system), *(v for part in system.parts for v in _variables(system, part, reach)))
+    members = {
+        "__doc__": system.title,
+        "declared": classmethod(lambda _cls: variables),
+        "problems": (system.problem, *(p for part in system.parts for p in problems_of(system, part))),
+        "terminals": tuple(_terminals(system, {v.name: v for v in variables})),
+        "experiment": system.experiment,
+    }
+    return type(system.name, (Component,), members)
+
+
+def _grid(system: System) -> Variable:
+    """The parameter that sets the grid."""
+    if system.step:
+        return Variable(
+            STEP, float, "parameter", "fixed", "s", "s", system.step,
+            "Step of the components, whatever the communication step", minimum=1e-12, maximum=1e9,
+        )  # fmt: skip
+    return Variable(
+        STEPS, int, "parameter", "fixed", "1", "1", system.steps,
+        f"Steps of the components in a revolution at {SPEED}, whatever the communication step",
+        minimum=1, maximum=1_000_000_000,
+    )  # fmt: skip
+
+
+def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
+    """The variables of a part as those of the system: what is wired, or not an output of it, stays inside."""
+
+    def dotted(name: str | None) -> str | None:
+        return None if name is None else f"{part.name}.{name}"
+
+    found = []
+    for each in variables_of(part.component):
+        name = f"{part.name}.{each.name}"
+        causality = each.causality
+        if causality == "output" or name in system.wires or name in system.drives:
+            causality = "output" if name in system.outputs else "local"
+        own = replace(
+            each, name=name, element=f"{part.name}.{each.member}", causality=causality,
+            start=each.type(part.values.get(each.name, each.start)), rate=dotted(each.rate),
+            depends=reach(name) if causality == "output" else None, indicator=False, source=None,
+            lowest_of=dotted(each.lowest_of), highest_of=dotted(each.highest_of), when=dotted(each.when),
+            unless=dotted(each.unless),
+        )  # fmt: skip
+        found.append(own)
+    return found
+
+
+def _dependencies(system: System) -> Reach:
+    """A function that gives the open inputs on which a variable depends."""
+    inputs = {
+        part.name: [f"{part.name}.{v.name}" for v in variables_of(part.component) if v.causality == "input"]
+        for part in system.parts
+    }
+    declared = {f"{part.name}.{v.name}": v for part in system.parts for v in variables_of(part.component)}
+
+    @cache
+    def reach(name: str) -> tuple[str, ...]:
+        owner = name.partition(".")[0]
+        if name in inputs[owner]:
+            if name in system.wires:
+                return reach(system.wires[name])
+            return () if name in system.drives else (name,)
+        own = declared[name].depends
+        needed = inputs[owner] if own is None else [f"{owner}.{each}" for each in own]
+        return tuple(dict.fromkeys(source for each in needed for source in reach(each)))
+
+    return reach
+
+
+def limited(system: System, part: Part) -> list[Variable]:
+    """The wired inputs of a part whose values must be within limits."""
+    return [
+        each
+        for each in variables_of(part.component)
+        if f"{part.name}.{each.name}" in system.wires
+        and each.type is not bool
+        and (each.minimum is not None or each.maximum is not None)
+    ]
+
+
+def problems_of(system: System, part: Part) -> list[Problem]:
+    """What a part reports: the problems of its component, and wired inputs outside their limits."""
+    found = []
+    names = {v.name for v in variables_of(part.component)}
+    for problem in part.component.problems:
+        text = problem.text
+        for name in names:
+            text = text.replace(f"{{{name}}}", f"{{{part.name}.{name}}}")
+        found.append(Problem(f"{part.name}: {text}", problem.warning))
+    for each in limited(system, part):
+        name = f"{part.name}.{each.name}"
+        found.append(Problem(f"{name} = {{{name}}} is outside {each.range}"))
+    return found
+
+
+def _terminals(system: System, variables: Mapping[str, Variable]) -> list[Terminal]:
+    """The terminals of the parts all of whose members can be wired from outside."""
+    found = []
+    for part in system.parts:
+        for terminal in part.component.terminals:
+            names = [f"{part.name}.{name}" for name in terminal.variables]
+            if {variables[name].causality for name in names} in ({"input"}, {"output"}):
+                found.append(replace(terminal, name=f"{part.name}.{terminal.name}").of(*names))
+    return found

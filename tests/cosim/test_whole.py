@@ -1,0 +1,377 @@
+"""A scene as one FMU gives the bits of its run, in whatever steps a host takes."""
+
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from foreign_motors import motor2
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from live_fmus import fmu_cache
+from motor_scenes import MOTOR
+from whole_fmus import Signals, Whole, exported
+
+from loomfmu import LoomfmuError, Result, run
+from loomfmu.cosim import whole
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
+
+__all__ = ["fmu_cache"]
+
+SIMS = Path(__file__).parents[2] / "sims"
+SCENES = sorted([*SIMS.glob("*.toml"), *SIMS.glob("beyond_the_limit/*.toml")])
+LOOPED = {"light_shaft"}  # scenes with an algebraic loop
+DEMO = SIMS / "wl680_3600.toml"
+pytestmark = [
+    pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: no native FMU"),
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="native FMUs are tested on Linux alone"),
+]
+
+
+def loaded(path: Path, **overrides: Any) -> Scene:
+    """A scene on its own steps."""
+    changed = {key.replace("__", "."): value for key, value in overrides.items()}
+    return scenes.load(path, {"grid": "uniform"} | changed)
+
+
+def ran(scene: Scene, directory: Path) -> Result:
+    return run(scene, output=directory / "run.h5", flavour="native")
+
+
+def traced(scene: Scene, directory: Path) -> Signals:
+    """All that a run of the scene records."""
+    trace = ran(scene, directory).trace
+    return {signal: np.asarray(trace[signal], dtype=float) for signal in trace}
+
+
+def same(found: Signals, expected: Signals, every: int = 1) -> None:
+    """Every signal is there, with the same bits."""
+    assert found.keys() == expected.keys()
+    for signal, values in found.items():
+        kept = expected[signal][::every][: len(values)]
+        np.testing.assert_array_equal(values, kept, err_msg=signal)
+
+
+@pytest.fixture(scope="module")
+def demo(fmu_cache: None, tmp_path_factory: pytest.TempPathFactory) -> Whole:
+    """The demonstration as one FMU."""
+    directory = tmp_path_factory.mktemp("demo")
+    return Whole(exported(loaded(DEMO), directory), directory / "unpacked")
+
+
+# ---- the bits of a run
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_it_gives_the_bits_of_the_run(tmp_path: Path, path: Path) -> None:
+    scene = loaded(path)
+    if path.stem in LOOPED:
+        with pytest.raises(
+            LoomfmuError, match=r"loop: weft.shaft_torque -> .*torque_1 closes an algebraic loop"
+        ):
+            whole.system(scene)
+        return
+    one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")
+    expected, some = traced(scene, tmp_path), min(scene.steps, 200)
+    same(one.instance().along(some, scene.step_size), expected)
+    every = next(n for n in range(scene.steps // 100, scene.steps) if scene.steps % n == 0)  # to the end
+    same(one.instance().along(scene.steps, scene.step_size, every), expected, every)
+
+
+def test_it_does_so_in_fmi_3(tmp_path: Path) -> None:
+    scene = loaded(SIMS / "worn_belt.toml", revolutions=1)
+    one = Whole(exported(scene, tmp_path, fmi=3), tmp_path / "unpacked")
+    assert one.fmi == 3
+    same(one.instance().along(scene.steps, scene.step_size), traced(scene, tmp_path))
+
+
+@pytest.mark.parametrize("every", [7, 1440])
+def test_a_communication_step_may_hold_many_steps(tmp_path: Path, demo: Whole, every: int) -> None:
+    scene = loaded(DEMO)
+    steps = scene.steps - scene.steps % every
+    same(demo.instance().along(steps, scene.step_size, every), traced(scene, tmp_path), every)
+
+
+def test_a_step_that_ends_off_the_grid_is_made_to_its_end(demo: Whole) -> None:
+    """Ends of communication steps are further points of the grid, and steps of any length agree."""
+    size = loaded(DEMO).step_size
+    usual, other = demo.instance(), demo.instance()
+    for step in range(137):
+        usual.step(step * size, size)
+    for step in range(100):
+        other.step(step * 1.37 * size, 1.37 * size)
+    expected, found = usual.all(), other.all()
+    # the dampers add up steps: each rounds its ends of some 0.1 s and 100 m/s2 anew
+    assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    for at in (found, expected):
+        assert at["belt.lowest_margin"] > 0.0
+    other.step(137 * size, size)  # and it is back on the grid
+    usual.step(137 * size, size)
+    assert other.all() == pytest.approx(usual.all(), rel=1e-10, abs=1e-12)
+
+
+def test_times_may_be_off_the_grid_by_what_a_host_rounds(tmp_path: Path, demo: Whole) -> None:
+    scene = loaded(DEMO)
+    instance, time = demo.instance(), 0.0
+    for _ in range(1000):
+        instance.step(time, scene.step_size)
+        time += scene.step_size  # off by 1e-13 s at the end
+    found = {signal: np.array([value]) for signal, value in instance.all().items()}
+    same(found, {signal: values[1000:] for signal, values in traced(scene, tmp_path).items()})
+
+
+def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
+    scene = loaded(DEMO)
+    found = fmpy.simulate_fmu(
+        str(demo.path), stop_time=100 * scene.step_size, output_interval=scene.step_size,
+        output=["belt.margin", "heald_1.lift"],
+    )  # fmt: skip
+    expected = traced(scene, tmp_path)
+    for signal in ("belt.margin", "heald_1.lift"):
+        np.testing.assert_array_equal(found[signal], expected[signal][: len(found)])
+
+
+# ---- parameters, states, instances
+
+
+@settings(max_examples=8)
+@given(
+    speed=st.floats(30.0, 75.0), clearance=st.floats(0.0, 1e-3), stroke=st.floats(0.05, 0.12),
+    steps=st.integers(90, 300),
+)  # fmt: skip
+def test_a_parameter_has_the_effect_of_set(
+    tmp_path_factory: pytest.TempPathFactory, demo: Whole, speed: float, clearance: float, stroke: float,
+    steps: int,
+) -> None:  # fmt: skip
+    values: dict[str, Any] = {
+        "shaft__speed": speed, "belt__guide_clearance": clearance, "heald_2__stroke": stroke,
+        "steps_per_revolution": steps,
+    }  # fmt: skip
+    scene = loaded(DEMO, revolutions=1, **values)
+    instance = demo.instance(**values)
+    found = instance.along(scene.steps, scene.step_size)
+    instance.free()
+    same(found, traced(scene, tmp_path_factory.mktemp("set")))
+
+
+def test_what_turns_unevenly_can_be_chosen_in_the_fmu(tmp_path: Path, demo: Whole) -> None:
+    scene = loaded(DEMO, shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
+    instance = demo.instance(shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
+    same(instance.along(scene.steps, scene.step_size), traced(scene, tmp_path))
+
+
+def test_a_state_is_saved_restored_and_serialized(demo: Whole) -> None:
+    size = loaded(DEMO).step_size
+    instance, other = demo.instance("one"), demo.instance("other")
+    instance.along(300, size)
+    state = instance.slave.getFMUstate()
+    content = instance.slave.serializeFMUstate(state)
+    ahead = [instance.step((300 + step) * size, size) or instance.all() for step in range(50)]
+    instance.slave.setFMUstate(state)
+    again = [instance.step((300 + step) * size, size) or instance.all() for step in range(50)]
+    other.slave.setFMUstate(other.slave.deSerializeFMUstate(content))
+    there = [other.step((300 + step) * size, size) or other.all() for step in range(50)]
+    assert ahead == again == there
+
+
+def test_a_reset_starts_again(demo: Whole) -> None:
+    size = loaded(DEMO).step_size
+    instance = demo.instance(shaft__speed=50.0)
+    instance.along(100, size)
+    instance.slave.reset()
+    instance.initialize()
+    same(instance.along(100, size), demo.instance().along(100, size))
+
+
+def test_two_instances_know_nothing_of_each_other(demo: Whole) -> None:
+    size = loaded(DEMO).step_size
+    one, two = demo.instance("one"), demo.instance("two", shaft__speed=50.0)
+    found: list[list[dict[str, float]]] = [[], []]
+    for step in range(60):
+        for each, rows in zip((one, two), found, strict=True):
+            each.step(step * size, size)
+            rows.append(each.all())
+    for values, rows in zip(({}, {"shaft__speed": 50.0}), found, strict=True):
+        alone = demo.instance(**values).along(60, size)
+        assert [row["damper_1.displacement"] for row in rows] == list(alone["damper_1.displacement"][1:])
+
+
+# ---- what is in it
+
+
+def test_only_what_its_outputs_need_is_in_it(tmp_path: Path) -> None:
+    text = 'record = ["weft.travel"]\n[loom]\nmachine = "WL680-3600"\nweave = "10/01"\n[shaft]\nspeed = 60\n'
+    made = whole.system(scenes.parse(text, "lean"))
+    assert [part.name for part in made.parts] == ["shaft", "weft"]
+    assert made.outputs == {
+        "shaft.angle", "shaft.velocity", "shaft.acceleration", "weft.travel", "weft.velocity",
+        "weft.acceleration",
+    }  # fmt: skip
+
+
+def test_the_same_scene_gives_the_same_bytes(tmp_path: Path) -> None:
+    scene = loaded(SIMS / "belt_alone.toml")
+    first = exported(scene, tmp_path).read_bytes()
+    assert exported(scene, tmp_path).read_bytes() == first
+
+
+OWN = '''
+from dataclasses import dataclass
+from typing import ClassVar
+
+from loomfmu.mechanism import Component, Problem, array, input_, output, parameter, state
+
+
+@dataclass(slots=True)
+class Gate(Component):
+    """Lets through what it is given, or its table."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (Problem("{given} is odd", warning=True),)
+
+    default: float = parameter("1", 0.5, "A name that C keeps for itself")
+    short: tuple[int, ...] = array(parameter("1", start, "Entry") for start in (3, 1, 2))
+    open: bool = input_("1", False, "Whether it is open")
+    place: int = input_("1", 0, "Entry that is read")
+    given: float = input_("1", 0.0, "What it is given", minimum=-1.5, maximum=1.5)
+    passed: float = output("1", "What comes through")
+    entry: int = output("1", "Entry", start=0)
+    is_open: bool = output("1", "Whether it is open", start=False)
+    count: int = state("1", "Steps", start=0)
+
+    def initialize(self, time: float) -> int:
+        """Show the start."""
+        self.count = 0
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Let through."""
+        self.passed = self.given + self.default if self.open else 0.0
+        self.entry = self.short[self.place]
+        self.is_open = self.open
+        self.count = self.count + 1
+        return 1 if self.given > 1.0 else 0
+'''
+
+GATES = """
+duration = "1 s"
+step = "10 ms"
+
+[one]
+component = "gate.py:Gate"
+short_2 = 7
+
+[two]
+component = "gate.py:Gate"
+default = 0.25
+
+[wires]
+"two.given" = "one.passed"
+"two.open" = "one.is_open"
+
+[inputs]
+"one.given" = [[0, 0.0], [0.3, 0.9], [0.5, LAST]]
+"one.open" = [[0, true], [0.105, false], [0.2, true]]
+"one.place" = [[0, 0], [0.5, 1], [0.75, 2]]
+"""
+
+
+def gates(directory: Path, last: float = 0.1) -> Scene:
+    """Two mechanisms of one's own, driven by tables of all types."""
+    (directory / "gate.py").write_text(OWN)
+    return scenes.parse(GATES.replace("LAST", str(last)), "double", directory=directory)
+
+
+def test_mechanisms_of_ones_own_and_tables_of_all_types(tmp_path: Path) -> None:
+    scene = gates(tmp_path)
+    one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")
+    assert one.description.modelName == "double_scene"  # which C keeps for itself
+    expected = traced(scene, tmp_path)
+    same(one.instance().along(scene.steps, scene.step_size), expected)
+    assert set(expected["one.entry"]) == {3.0, 7.0, 2.0}
+    steps = 2 * scene.steps  # at 5 ms: on straight lines the value is half way between
+    fine = one.instance(step=scene.step_size / 2).along(steps, scene.step_size / 2)
+    between = traced(scenes.parse(scene.text, "fine", {"step": "5 ms"}, tmp_path), tmp_path)
+    same(fine, between)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_its_sources_compile_without_a_warning(tmp_path: Path, demo: Whole, fmi: int) -> None:
+    if shutil.which("gcc") is None:
+        pytest.skip("gcc is not installed")
+    one = demo if fmi == 2 else Whole(exported(gates(tmp_path), tmp_path, fmi), tmp_path / "unpacked")
+    warnings = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+    options = ["-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", "-o", str(tmp_path / "x.so")]
+    command = ["gcc", *warnings, *options, f"fmi{fmi}.c", "-lm"]
+    sources = Path(one.directory) / "sources"
+    done = subprocess.run(command, cwd=sources, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+
+
+# ---- failures, in the words of the run
+
+
+def test_a_wired_value_outside_its_limits_ends_the_run(tmp_path: Path) -> None:
+    scene = gates(tmp_path, last=1.4)
+    with pytest.raises(LoomfmuError, match=r"two at .*given = 1.5\d* is outside \[-1.5, 1.5\]") as raised:
+        ran(scene, tmp_path)
+    at = float(str(raised.value).partition(" at ")[2].partition(" s")[0])
+    one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")
+    instance = one.instance()
+    before = round(at / scene.step_size)
+    instance.along(before, scene.step_size)
+    reached = instance.all()
+    with pytest.raises(Exception, match="DoStep"):
+        instance.step(before * scene.step_size, 5 * scene.step_size)
+    assert instance.log[-1].startswith("two.given = 1.5") and "is outside [-1.5, 1.5]" in instance.log[-1]
+    assert reached["two.passed"] > 1.0
+
+
+def test_warnings_are_those_of_the_run(tmp_path: Path, demo: Whole) -> None:
+    result = ran(loaded(DEMO, belt__guide_clearance="2 mm", revolutions=1), tmp_path)
+    instance = demo.instance(belt__guide_clearance=2e-3)
+    instance.along(10, 1e-4)
+    assert instance.log == [text for text in result.warnings if text.startswith("belt: ")] != []
+
+
+def test_a_shaft_that_stands_still_has_no_step(demo: Whole) -> None:
+    with pytest.raises(Exception, match="fmi2ExitInitializationMode failed"):
+        demo.instance(shaft__speed=0.0)
+
+
+def test_derivatives_of_inputs_are_refused(tmp_path: Path) -> None:
+    text = "duration = 1\nstep = 0.01\n[belt]\n"
+    one = Whole(exported(scenes.parse(text, "open"), tmp_path), tmp_path / "unpacked")
+    assert one.variables["belt.travel"].causality == "input"
+    assert one.description.coSimulation.canInterpolateInputs is False
+    instance = one.instance()
+    with pytest.raises(Exception, match="fmi2SetRealInputDerivatives failed"):
+        instance.slave.setRealInputDerivatives([one.variables["belt.travel"].valueReference], [1], [0.0])
+    assert instance.log[-1].endswith("belt.travel: input derivatives are not supported")
+
+
+def test_what_cannot_be_in_it_is_refused(tmp_path: Path) -> None:
+    motor2(tmp_path)
+    (tmp_path / "motor.toml").write_text(MOTOR)
+    with pytest.raises(LoomfmuError, match=r"motor is an FMU file, .*Motor.fmu; .* use --ssp"):
+        whole.export(scenes.load(tmp_path / "motor.toml"), tmp_path / "motor.fmu")
+    assert not (tmp_path / "motor.fmu").exists()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/gate.py").write_text(OWN.replace("0.5", "0.75"))
+    gates(tmp_path)
+    text = 'duration = 1\nstep = 0.1\n[one]\ncomponent = "gate.py:Gate"\n'
+    text += '[two]\ncomponent = "other/gate.py:Gate"\n'
+    scene = scenes.parse(text, "twice", directory=tmp_path)
+    with pytest.raises(LoomfmuError, match="two components are called Gate; rename one of them"):
+        whole.export(scene, tmp_path / "twice.fmu")
+
+
+def test_a_grid_of_windows_is_not_taken_over(tmp_path: Path) -> None:
+    scene = loaded(SIMS / "belt_alone.toml", grid="windows")
+    warnings = whole.export(scene, tmp_path / "loom.fmu", ("linux64",))
+    assert warnings == ["grid = 'windows' is ignored: the FMU takes equal steps"]
