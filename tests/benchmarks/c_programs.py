@@ -1,9 +1,10 @@
-"""A scene as a C program, in two ways: its components in one loop, and its native FMUs under a plain host.
+"""A scene as a C program: its components in one loop, or its native FMUs or one of all under a plain host.
 
-Both take `steps [file]`, print the seconds that the steps took, and write all outputs of every step to the
+All take `steps [file]`, print the seconds that the steps took, and write all outputs of every step to the
 file if there is one. They are compiled as the FMUs are.
 """
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -15,10 +16,13 @@ import numpy as np
 from own import Source, with_fmus
 
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim import whole
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import step_order
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.fmi.native.translate import translate
+from loomfmu.variables import variables_of
 
 HERE = Path(__file__).parent
 KINDS = ("Real", "Integer", "Boolean")
@@ -108,7 +112,7 @@ def _loop_parts(scene: Scene) -> Iterator[str]:
         lines = []
         for name in order:
             lines += [
-                f"{name}.{wire.sink[1]} = {wire.source[0]}.{wire.source[1]};"
+                f"{_place(scene, *wire.sink)} = {_place(scene, *wire.source)};"
                 for wire in scene.wires
                 if wire.sink[0] == name
             ]
@@ -117,7 +121,9 @@ def _loop_parts(scene: Scene) -> Iterator[str]:
             )
         declared = "void" if action == "initialize" else "double time, double size"
         yield from _function(f"static int {action}_all({declared})", [*lines, "return 0;"])
-    written = [f"*row++ = (double){name}.{variable};" for name, variable, _kind in _outputs(scene)]
+    written = [
+        f"*row++ = (double){_place(scene, name, variable)};" for name, variable, _kind in _outputs(scene)
+    ]
     yield from _function("static void record(double *row)", written)
     yield f"#define COLUMNS {len(written)}\n#define STEP_SIZE {scene.step_size!r}\n"
     yield '#include "timed_loop.h"\n'
@@ -130,9 +136,7 @@ def _function(head: str, lines: list[str]) -> Iterator[str]:
 def _component(name: str) -> str:
     """A translated component."""
     translated = translate(COMPONENTS[name])
-    struct = [line for line in translated.header.splitlines() if not line.startswith("#")]
-    code = "\n".join(line for line in translated.code.splitlines() if not line.startswith("#include"))
-    return "\n".join([*struct, code])
+    return f"{translated.struct}\n\n{translated.functions}"
 
 
 def _settings(scene: Scene, order: list[str]) -> list[str]:
@@ -141,8 +145,14 @@ def _settings(scene: Scene, order: list[str]) -> list[str]:
         instance = scene.instances[name]
         lines.append(f"{instance.fmu.name}__init__(&{name});")
         for variable, value in instance.values.items():
-            lines.append(f"{name}.{variable} = {_literal(value)};")
+            lines.append(f"{_place(scene, name, variable)} = {_literal(value)};")
     return lines
+
+
+def _place(scene: Scene, name: str, variable: str) -> str:
+    """Where the C of a component keeps a variable."""
+    component = COMPONENTS[scene.instances[name].fmu.name]
+    return f"{name}.{next(v.member for v in variables_of(component) if v.name == variable)}"
 
 
 def _literal(value: Any) -> str:
@@ -155,10 +165,26 @@ def _literal(value: Any) -> str:
 def host(source: Source, directory: Path) -> Program:
     """The native FMUs of a scene, called through FMI in the same order as by our master."""
     scene = with_fmus(source.scene(), "native")
+    return Program(_hosted(scene, directory), _columns(scene))
+
+
+def whole_fmu(source: Source, directory: Path) -> Program:
+    """The scene as one native FMU under the same host; its columns are named as those of the others."""
+    scene = source.scene()
+    whole.export(scene, directory / "whole.fmu", (native_builder.host_platform(),))
+    text = f'duration = {scene.step_size!r}\nstep = {scene.step_size!r}\n[all]\nfmu = "whole.fmu"\n'
+    alone = scenes.parse(text, "alone", directory=directory)
+    ports = alone.instances["all"].fmu.ports
+    names = (ports[variable].own for _name, variable, _kind in _outputs(alone))
+    return Program(_hosted(alone, directory), tuple(re.sub(r"\[(\d+)\]", r"_\1", name) for name in names))
+
+
+def _hosted(scene: Scene, directory: Path) -> Path:
+    """A host of the native FMUs of a scene."""
     (directory / "plan.h").write_text("\n".join(_plan(scene)), encoding="utf-8")
     for name in ("host.c", "timed_loop.h"):
         (directory / name).write_bytes((HERE / name).read_bytes())
-    return Program(_compiled(directory, "host.c", (f"-I{native_builder.HEADERS}",)), _columns(scene))
+    return _compiled(directory, "host.c", (f"-I{native_builder.HEADERS}",))
 
 
 def _plan(scene: Scene) -> Iterator[str]:

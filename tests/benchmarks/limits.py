@@ -21,6 +21,7 @@ STEPS = 1440  # in a revolution
 BLOCK = 1440  # samples of a numpy array: it stays in the cache
 SIZES: dict[str, tuple[int, float]] = {"full": (7, 8.0), "quick": (3, 2.0), "tiny": (1, 0.1)}
 LOOP, HOST, NUMPY = "one C loop", "native FMUs under a plain C host", "numpy"
+WHOLE = "the loom as one FMU under a plain C host"
 WITHOUT = "one C loop, without dampers"
 STEP = "step [us]"
 COLUMNS = ("what", "outputs", "step [us]", "spread [%]", "repeats", "largest difference [share]")
@@ -51,7 +52,7 @@ class Compared:
 
 
 class InC(Compared):
-    """A scene as a C program; `make` is `c_programs.loop` or `c_programs.host`."""
+    """A scene as a C program; `make` is `c_programs.loop`, `c_programs.host` or `c_programs.whole_fmu`."""
 
     def __init__(self, directory: Path, make: Any, source: Source):
         self.source = source
@@ -101,6 +102,7 @@ def measure(effort: str, notes: Notes) -> list[Table]:
     source = Source(WEFT.replace('record = ["weft.shaft_torque"]', "")) if tiny else demo()
     programs: dict[str, tuple[Any, ...]] = {
         LOOP: (InC, c_programs.loop, source),
+        WHOLE: (InC, c_programs.whole_fmu, source),
         HOST: (InC, c_programs.host, source),
         NUMPY: (InNumpy, source),
     }
@@ -150,6 +152,9 @@ def _left_out(source: Source) -> Table:
 # ---- what is said of it
 
 
+_WHOLE = "One FMU of the whole loom is what `loomfmu export --fmu` writes, stepped by the same plain host."
+
+
 def section(find: Find) -> str:
     """Each way beside the bare mathematics."""
     rows = find(NAME)
@@ -170,6 +175,7 @@ def section(find: Find) -> str:
         " and without our master. Every step writes all outputs to memory.",
         "The difference is the largest of any output at any sample of a revolution from that of the native"
         " FMUs under our master, as a share of the output's largest value; 0 means equal to the last bit.",
+        _WHOLE if any(row["what"] == WHOLE for row in rows) else "",
         table(heads, lines),
         f"numpy computes all samples at once, in blocks of {BLOCK}, and only what follows from the shaft's"
         " angle by a formula. What has a memory cannot be written so (the carrier of a damper, what the belt"

@@ -13,7 +13,7 @@ import records
 import written
 from children import Child, Failed
 from exact import MP, REDUCTION, Frame
-from limits import HOST, LOOP, NUMPY
+from limits import HOST, LOOP, NUMPY, WHOLE
 from precision import APART, delay
 from reference import Rotor
 from running import run
@@ -78,6 +78,7 @@ def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(d
     away = {row["what"]: row["largest difference [share]"] for row in find(done("limits"), "limits")}
     assert away[LOOP] == 0.0
     assert away[HOST] == 0.0
+    assert away[WHOLE] == 0.0
     assert 0.0 < away[NUMPY] < 1e-13  # some hundred roundings: the terms stand in another order
 
 
