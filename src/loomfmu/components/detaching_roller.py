@@ -18,6 +18,7 @@ from ..variables import NOTHING, Problem, indicator, input_, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
+_OF_VELOCITY = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "roller_ratio")
 
 
 @dataclass(slots=True)
@@ -71,6 +72,10 @@ class DetachingRoller(ShaftDriven):
         "1", 1.0, "Fibres in the nip as a share of the maximum, used if use_table is false",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
+    roller_ratio: float = input_(
+        "1", 0.5, "Velocity of the rollers relative to the shaft's, used if use_table is false",
+        minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
     prescribe_drafting_force: bool = parameter(
         "1", False, "Use largest_drafting_force; otherwise half of what the nip holds, by (16)"
     )
@@ -100,6 +105,15 @@ class DetachingRoller(ShaftDriven):
     )
     unit_torque: float = output("N.m", "Driving torque of both rollers of a unit, M")
     machine_torque: float = output("N.m", "Driving torque of all units, M0", nominal=10.0)
+    roller_velocity: float = output(
+        "rad/s", "Velocity of the rollers in use", display="rev/min", nominal=50.0, depends=_OF_VELOCITY
+    )
+    shaft_torque: float = output(
+        "N.m", "Torque of all units on the shaft, braking: machine_torque by the rollers' relative velocity",
+        nominal=10.0,
+    )  # fmt: skip
+    kinetic_energy: float = output("J", "Kinetic energy of the rollers of all units", depends=_OF_VELOCITY)
+    dissipated_power: float = output("W", "Power of the drafting forces of all units", nominal=100.0)
     nip_event: float = indicator("1", "Passes zero where the next nip begins")
     drafting_event: float = indicator("1", "Positive while fibres are drafted")
 
@@ -118,9 +132,11 @@ class DetachingRoller(ShaftDriven):
         self.drafting_event = (self.division - DRAFT_START) * (DRAFT_END - self.division)
         if self.use_table:
             first, second = assumed_motion(self.division)
+            ratio = first
             self.roller_acceleration = second * speed * speed + first * shaft_acceleration
             self.drafted_share = assumed_fibre_share(self.division)
         else:
+            ratio = self.roller_ratio
             self.roller_acceleration = self.acceleration
             self.drafted_share = self.fibre_share if drafting else 0.0
         self.top_roller_torque = top_roller_torque(
@@ -138,4 +154,11 @@ class DetachingRoller(ShaftDriven):
         self.back_torque = self.drafting_torque + self.front_torque
         self.unit_torque = self.back_torque + self.front_torque
         self.machine_torque = self.units * self.unit_torque
+        self.roller_velocity = ratio * speed
+        self.shaft_torque = self.machine_torque * ratio
+        # both rollers of a unit, each with the inertia of M12 and M13
+        top = top_roller_torque(1.0, self.roller_radius, self.top_radius, self.top_inertia)
+        inertia = 2.0 * self.units * (self.roller_inertia + top)
+        self.kinetic_energy = 0.5 * inertia * self.roller_velocity * self.roller_velocity
+        self.dissipated_power = self.units * self.drafting_torque * self.roller_velocity
         return 1 if self.drafted_share > 0.0 and self.holding_force < 0.0 else 0

@@ -1,11 +1,11 @@
 """HealdFrame: a heald frame that follows its pattern."""
 
 from dataclasses import dataclass
-from math import inf, pi, sin
+from math import fabs, inf, pi, sin
 from typing import ClassVar
 
 from ..arrays import array
-from ..physics.heald import lift_fraction, peg, slow_points_passed
+from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
 from ..variables import (
     NOTHING,
@@ -20,6 +20,11 @@ from ..variables import (
 )
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
+
+_OF_ROTOR = (
+    "rotor_angle", "rotor_velocity", "rotor_acceleration", "lift_fraction", "lift_rate", "lift_acceleration",
+)  # fmt: skip
+_SLOWEST = 1e-9  # rotor_ratio below which the rotor stands: a cam then has no torque about it
 
 
 @dataclass(slots=True)
@@ -36,7 +41,7 @@ class HealdFrame(Component):
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration",
+            "lift_fraction", "lift_rate", "lift_acceleration", "rotor_ratio", "lift_slope",
         ),
         FRAME.of("lift", "velocity", "acceleration"),
     )  # fmt: skip
@@ -45,6 +50,10 @@ class HealdFrame(Component):
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
     )
     frame_mass: float = parameter("kg", 15.0, "Mass of the frame", minimum=0.0, maximum=1e3, nominal=10.0)
+    gravity: float = parameter(
+        "m/s2", 9.80665, "Gravity on the frame; 0 if springs carry its weight", minimum=0.0, maximum=100.0,
+        nominal=10.0,
+    )  # fmt: skip
     warp_ratio: float = parameter(
         "1", 0.16666666666666666, "Warp height at the rapier as a share of the lift",
         minimum=0.0, maximum=1.0,
@@ -84,17 +93,41 @@ class HealdFrame(Component):
         "1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0, when="follow_lift",
         minimum=-1e15, maximum=1e15,
     )  # fmt: skip
+    rotor_ratio: float = input_(
+        "1", 1.0, "Rotor velocity relative to the shaft's, for shaft_torque", minimum=-1e3, maximum=1e3
+    )
+    lift_slope: float = input_(
+        "1", 0.25, "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
+        when="follow_lift", minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
+    load: float = input_(
+        "N", 0.0, "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
+        nominal=100.0, minimum=-1e12, maximum=1e12,
+    )  # fmt: skip
     lift: float = output(
-        "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity"
-    )
-    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration")
-    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0)
+        "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity",
+        depends=_OF_ROTOR,
+    )  # fmt: skip
+    velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=_OF_ROTOR)
+    acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=_OF_ROTOR)
     warp_height: float = output(
-        "m", "Height of the warp above the closed shed, at the rapier", display="mm", nominal=0.01
-    )
-    inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0)
+        "m", "Height of the warp above the closed shed, at the rapier", display="mm", nominal=0.01,
+        depends=_OF_ROTOR,
+    )  # fmt: skip
+    inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0, depends=_OF_ROTOR)
     moving: bool = output("1", "The frame changes position between the current slow points", start=False,
-                          variability="discrete")  # fmt: skip
+                          variability="discrete", depends=_OF_ROTOR)  # fmt: skip
+    drive_force: float = output(
+        "N", "Force of the drive on the frame, upwards: inertia and weight less load", nominal=100.0
+    )
+    rotor_torque: float = output("N.m", "Torque of the frame on the rotor, braking", nominal=10.0)
+    shaft_torque: float = output(
+        "N.m", "Torque of the frame on the main shaft through the dobby, braking", nominal=10.0
+    )
+    kinetic_energy: float = output("J", "Kinetic energy of the frame", nominal=10.0, depends=_OF_ROTOR)
+    potential_energy: float = output(
+        "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
+    )
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 
     def requested(self, pick: int) -> int:
@@ -118,6 +151,19 @@ class HealdFrame(Component):
         if (pick % 2 == 0) != falling:
             return share, rate, self.lift_acceleration
         return 1.0 - share, -rate, -self.lift_acceleration
+
+    def slopes(self, pick: int, turned: float, change: int) -> tuple[float, float]:
+        """Slope of the share of the stroke: by the rotor's angle and by the shaft's."""
+        if not self.follow_lift:
+            by_rotor = change * crank_slope(turned)
+            return by_rotor, by_rotor * self.rotor_ratio
+        # lift_fraction rises in even turns: a frame that does otherwise follows it upside down
+        by_shaft = fabs(1.0 * change) * self.lift_slope
+        if (pick % 2 == 0) != (change > 0):
+            by_shaft = -by_shaft
+        if fabs(self.rotor_ratio) < _SLOWEST:
+            return 0.0, by_shaft
+        return by_shaft / self.rotor_ratio, by_shaft
 
     def initialize(self, time: float) -> int:
         """Place the frame."""
@@ -149,4 +195,11 @@ class HealdFrame(Component):
         self.warp_height = self.warp_ratio * (self.lift - 0.5 * self.stroke)
         self.inertia_force = self.frame_mass * self.acceleration
         self.moving = change != 0
+        by_rotor, by_shaft = self.slopes(pick, angle - 2.0 * pi * pick, change)
+        weight = self.frame_mass * self.gravity
+        self.drive_force = self.inertia_force + weight - self.load
+        self.rotor_torque = self.drive_force * self.stroke * by_rotor
+        self.shaft_torque = self.drive_force * self.stroke * by_shaft
+        self.kinetic_energy = 0.5 * self.frame_mass * self.velocity * self.velocity
+        self.potential_energy = weight * self.lift
         return 0

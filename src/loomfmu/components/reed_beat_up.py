@@ -152,6 +152,7 @@ class ReedBeatUp(ShaftDriven):
     crank_torque: float = output(
         "N.m", "Torque the crank needs in its direction, from the shaft or the servo", nominal=10.0
     )
+    kinetic_energy: float = output("J", "Kinetic energy of reed and rocker", nominal=10.0)
     beat_up_crank: float = auxiliary("rad", "Crank angle at the beat-up")
     closure: float = auxiliary("m", "Margin by which the crank-rocker closes over a whole turn")
     reach: float = auxiliary("m", "Margin by which the rod reaches the reed's line over the swing")
@@ -250,4 +251,9 @@ class ReedBeatUp(ShaftDriven):
             self.reed_mass * self.acceleration * slope + self.rocker_inertia * rocker_acceleration * first
         )
         self.shaft_torque = 0.0 if self.servo else self.crank_torque
+        rocker_velocity = first * turning
+        self.kinetic_energy = 0.5 * (
+            self.reed_mass * self.velocity * self.velocity
+            + self.rocker_inertia * rocker_velocity * rocker_velocity
+        )
         return 0

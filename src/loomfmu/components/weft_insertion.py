@@ -75,12 +75,21 @@ class WeftInsertion(ShaftDriven):
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
     )
     moving_mass: float = parameter(
-        "kg", 0.1105, "Mass that moves with the head, counted in shaft_torque", display="g",
+        "kg", 0.1105, "Mass of head and rigid belt section, counted in shaft_torque", display="g",
         minimum=0.0, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     wheel_inertia: float = parameter(
-        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published)", minimum=0.0, maximum=10.0
-    )
+        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published; typically 0.03 kg.m2)",
+        minimum=0.0, maximum=10.0,
+    )  # fmt: skip
+    belt_mass: float = parameter(
+        "kg/m", 0.0, "Mass of the belt per length (none published; typically 0.06 kg/m)",
+        minimum=0.0, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    belt_length: float = parameter(
+        "m", 3.0, "Length of the belt behind the head, all of which moves (assumed)",
+        minimum=0.0, maximum=20.0,
+    )  # fmt: skip
     travel: float = output(
         "m", "Travel of the rapier head from its outer dead centre", rate="velocity",
         depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
@@ -89,6 +98,7 @@ class WeftInsertion(ShaftDriven):
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
     stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
     shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
+    kinetic_energy: float = output("J", "Kinetic energy of head, belt and wheel", nominal=10.0)
     travel_per_angle: float = auxiliary("m", "Travel per radian of the sector gear, signed")
     sector_start: float = auxiliary("rad", "Angle of the sector gear at shaft angle 0")
     closure: float = auxiliary("m", "Margin by which the four-bar closes over the rocker's swing")
@@ -146,6 +156,11 @@ class WeftInsertion(ShaftDriven):
         self.velocity = first * speed
         self.acceleration = second * speed * speed + first * acceleration
         wheel_radius = 0.5 * self.wheel_diameter
-        reflected = self.moving_mass + self.wheel_inertia / (wheel_radius * wheel_radius)
+        reflected = (
+            self.moving_mass
+            + self.belt_mass * self.belt_length
+            + self.wheel_inertia / (wheel_radius * wheel_radius)
+        )
         self.shaft_torque = reflected * self.acceleration * first
+        self.kinetic_energy = 0.5 * reflected * self.velocity * self.velocity
         return 0

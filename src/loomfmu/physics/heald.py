@@ -31,6 +31,21 @@ def lift_fraction(angle: float, velocity: float, acceleration: float) -> tuple[f
     )
 
 
+def crank_slope(angle: float) -> float:
+    """Slope of `lift_fraction` by the rotor's angle, `sin(S/2) / 4`: what turns a force into a torque.
+
+    Args:
+        angle: of the rotor S [rad]
+
+    Returns:
+        slope [1/rad]
+
+    >>> crank_slope(pi), crank_slope(0.0)
+    (0.25, 0.0)
+    """
+    return 0.25 * sin(0.5 * angle)
+
+
 def slow_points_passed(angle: float) -> int:
     """Number of slow points that the rotor has passed: whole turns of its angle.
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import fabs, floor, inf, pi, sin
 from typing import ClassVar
 
-from ...physics.heald import lift_fraction
+from ...physics.heald import crank_slope, lift_fraction
 from ...physics.rotor_laws.mechanisms import (
     NONCIRCULAR_GEARS,
     SLOTTED_LEVERS,
@@ -18,7 +18,7 @@ from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
 from ...physics.shaft import too_far
-from ...variables import NOTHING, Terminal, indicator, output
+from ...variables import NOTHING, Terminal, indicator, output, parameter
 from ..terminals import ROTOR
 from .laws import RotorLaws
 
@@ -37,10 +37,14 @@ class DobbyDrive(RotorLaws):
         *RotorLaws.terminals,
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration",
+            "lift_fraction", "lift_rate", "lift_acceleration", "rotor_ratio", "lift_slope",
         ),
     )  # fmt: skip
 
+    rotor_inertia: float = parameter(
+        "kg.m2", 0.05, "Inertia of the rotor (assumed: none published); for spline_cam, of the cam shaft",
+        minimum=0.0, maximum=1e3,
+    )  # fmt: skip
     rotor_angle: float = output(
         "rad", "Rotor angle from the slow point of pick 0, not wrapped", display="deg", unbounded=True,
         nominal=6.0, rate="rotor_velocity",
@@ -54,6 +58,15 @@ class DobbyDrive(RotorLaws):
     )
     lift_rate: float = output("1/s", "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration")
     lift_acceleration: float = output("1/s2", "Second rate of lift_fraction", nominal=1000.0)
+    rotor_ratio: float = output(
+        "1", "Rotor velocity relative to the shaft's: what turns a torque on the rotor into one on the shaft"
+    )
+    lift_slope: float = output("1", "Slope of lift_fraction by the shaft angle")
+    rotor_torque: float = output("N.m", "Torque that the rotor's own inertia takes from its modulator")
+    shaft_torque: float = output(
+        "N.m", "Torque of the rotor's own inertia on the main shaft, braking; those of the frames are theirs"
+    )
+    kinetic_energy: float = output("J", "Kinetic energy of the rotor", nominal=10.0)
     dwell_angle: float = output(
         "rad", "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
         display="deg", variability="discrete", nominal=1.5, depends=(),
@@ -104,7 +117,16 @@ class DobbyDrive(RotorLaws):
         self.lift_fraction, self.lift_rate, self.lift_acceleration = lift_fraction(
             self.rotor_angle, self.rotor_velocity, self.rotor_acceleration
         )
+        self.rotor_ratio = first
+        self.lift_slope = crank_slope(self.rotor_angle) * first
+        self.load_shaft(self.rotor_velocity, self.rotor_acceleration, first)
         return 0
+
+    def load_shaft(self, velocity: float, acceleration: float, ratio: float) -> None:
+        """Torques and energy of the inertia that turns with this motion, at this ratio to the shaft."""
+        self.rotor_torque = self.rotor_inertia * acceleration
+        self.shaft_torque = self.rotor_torque * ratio
+        self.kinetic_energy = 0.5 * self.rotor_inertia * velocity * velocity
 
     def turn_cam(self, turned: float, speed: float, acceleration: float) -> int:
         """Lift the frames by the spline cam; the rotor angle is its phase."""
@@ -117,6 +139,9 @@ class DobbyDrive(RotorLaws):
         self.lift_fraction, first, second = self.cam(x)
         self.lift_rate = first * speed
         self.lift_acceleration = second * speed * speed + first * acceleration
+        self.rotor_ratio = rate
+        self.lift_slope = first
+        self.load_shaft(0.5 * speed, 0.5 * acceleration, 0.5)
         return 0
 
     def find_peaks(self) -> None:
