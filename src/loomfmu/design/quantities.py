@@ -8,12 +8,16 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..components.belt_monitor import BeltMonitor
+from ..components.dobby.drive import DobbyDrive
+from ..components.heald_frame import HealdFrame
 from ..errors import LoomfmuError
 from ..variables import Variable, variables_of
 
 Quantity = float | str  # a number in SI, or a text such as "0.5 mm"
 
 BELT = {variable.name: variable for variable in variables_of(BeltMonitor)}
+DOBBY = {variable.name: variable for variable in variables_of(DobbyDrive)}
+FRAME = {variable.name: variable for variable in variables_of(HealdFrame)}
 
 
 def _free(unit: str, display: str, minimum: float, maximum: float, description: str) -> Variable:
@@ -31,6 +35,13 @@ KNOWN = {
     "mass": BELT["head_mass"],
     "stiffness": BELT["bending_stiffness"],
     "length_factor": BELT["prescribed_length_factor"],
+    "speed_reduction": DOBBY["speed_reduction"],
+    "rotor_inertia": DOBBY["rotor_inertia"],
+    "stroke": FRAME["stroke"],
+    "frame_mass": FRAME["frame_mass"],
+    "gravity": FRAME["gravity"],
+    "warp_tension": _free("N", "N", 0.0, 1e6, "Tension of all threads of a frame"),
+    "warp_length": _free("m", "mm", 1e-3, 100.0, "Length of the warp to one side of the healds"),
     "width": _free("m", "m", 1e-3, 100.0, "Width in which weft is inserted"),
     "lowest_radius": _free("m", "mm", 1e-3, 10.0, "Smallest radius of a cam"),
     "highest_radius": _free("m", "mm", 1e-3, 10.0, "Largest radius of a cam"),

@@ -1,0 +1,215 @@
+"""Torques on the shaft and energies of the mechanisms: what one takes, the other holds."""
+
+import random
+from math import pi
+
+import pytest
+from driving import declared, flags
+from hypothesis import given
+from hypothesis import strategies as st
+from reference import MP, Rotor, machine
+
+from loomfmu.components import COMPONENTS, DetachingRoller, DobbyDrive, HealdFrame, ReedBeatUp, WeftInsertion
+from loomfmu.machines import parameters
+
+ANGLES = st.floats(-50.0, 50.0)
+SPEEDS = st.floats(-100.0, 100.0)
+ACCELERATIONS = st.floats(-2000.0, 2000.0)
+SHAFT = {"follow_shaft": True, "inputs_at_step_end": True}
+FRAME = {"stroke": 0.12, "frame_mass": 17.0, "gravity": 9.81, "inputs_at_step_end": True}
+
+
+def on_shaft(component, theta, speed, acceleration):
+    component.shaft_angle, component.shaft_velocity, component.shaft_acceleration = theta, speed, acceleration
+    assert component.initialize(0.0) == 0
+    return component
+
+
+def driven(dobby, frame):
+    """The frame behind the dobby."""
+    for name in frame.terminals[0].variables:
+        setattr(frame, name, getattr(dobby, name))
+    assert frame.initialize(0.0) == 0
+    return frame
+
+
+def balanced(taken, *stored):
+    """The power taken from the shaft is the sum of those stored, dissipated and handed on, to rounding."""
+    # a few products and sums of numbers of this size, and of the smallest there are
+    size = abs(taken) + sum(abs(each) for each in stored)
+    assert abs(taken - sum(stored)) <= 1e-14 * size + 1e-300
+
+
+# The law of energy, d(kinetic + potential)/dt + dissipation = shaft_torque w + what the load brings
+
+
+@given(ANGLES, SPEEDS, ACCELERATIONS, st.floats(-500.0, 500.0), st.sampled_from((4, 7)))
+def test_frame_takes_from_the_shaft_what_it_stores_and_hands_on(theta, speed, acceleration, load, law):
+    dobby = on_shaft(DobbyDrive(law=law, **SHAFT), theta, speed, acceleration)
+    frame = driven(dobby, HealdFrame(load=load, follow_lift=law == 7, **FRAME))
+    # terms that cancel where the frame's turns are counted off: rounding of angles up to 50 rad
+    slack = 1e-12 * (17.0 * (abs(frame.acceleration) + 9.81) + abs(load)) * 0.12 * (abs(speed) + 1.0)
+    stored = 17.0 * (frame.acceleration + 9.81) * frame.velocity
+    assert frame.shaft_torque * speed == pytest.approx(stored - load * frame.velocity, abs=slack)
+    assert frame.rotor_torque * dobby.rotor_velocity == pytest.approx(frame.shaft_torque * speed, abs=slack)
+    assert frame.kinetic_energy == 0.5 * 17.0 * frame.velocity * frame.velocity
+    assert frame.potential_energy == pytest.approx(17.0 * 9.81 * frame.lift, rel=1e-15)
+
+
+@given(ANGLES, SPEEDS, ACCELERATIONS, st.integers(1, 9))
+def test_rotor_takes_from_the_shaft_what_it_stores(theta, speed, acceleration, law):
+    dobby = on_shaft(DobbyDrive(law=law, rotor_inertia=0.3, **SHAFT), theta, speed, acceleration)
+    velocity, second = dobby.rotor_velocity, dobby.rotor_acceleration
+    if law == 7:  # the cam's shaft turns once in two picks
+        velocity, second = 0.5 * speed, 0.5 * acceleration
+    balanced(dobby.shaft_torque * speed, 0.3 * velocity * second)
+    assert dobby.kinetic_energy == 0.5 * 0.3 * velocity * velocity
+    assert dobby.rotor_torque == 0.3 * second
+    assert dobby.rotor_ratio * speed == dobby.rotor_velocity
+    # angles up to 50 rad are rounded to 4e-15
+    assert dobby.lift_slope * speed == pytest.approx(dobby.lift_rate, abs=1e-14 * abs(speed))
+
+
+@given(ANGLES, SPEEDS, ACCELERATIONS)
+def test_weft_drive_takes_from_the_shaft_what_it_stores(theta, speed, acceleration):
+    given_ = {"belt_mass": 0.06, "belt_length": 3.0, "wheel_inertia": 0.03}
+    weft = on_shaft(WeftInsertion(**SHAFT, **given_), theta, speed, acceleration)
+    mass = 0.1105 + 0.18 + 0.03 / 0.1985**2
+    balanced(weft.shaft_torque * speed, mass * weft.velocity * weft.acceleration)
+    assert weft.kinetic_energy == pytest.approx(0.5 * mass * weft.velocity**2, rel=1e-14)
+
+
+@given(ANGLES, SPEEDS, ACCELERATIONS, st.booleans())
+def test_reed_takes_from_its_crank_what_it_stores(theta, speed, acceleration, servo):
+    reed = on_shaft(ReedBeatUp(reed_mass=40.0, servo=servo, **SHAFT), theta, speed, acceleration)
+    balanced(reed.crank_torque * reed.crank_velocity, 40.0 * reed.velocity * reed.acceleration)
+    assert reed.kinetic_energy == 0.5 * 40.0 * reed.velocity * reed.velocity
+    assert reed.shaft_torque == (0.0 if servo else reed.crank_torque)
+
+
+@given(ANGLES, SPEEDS, ACCELERATIONS, st.booleans(), st.floats(-3.0, 3.0))
+def test_rollers_take_from_the_shaft_what_they_store_and_draft(theta, speed, acceleration, own, ratio):
+    roller = DetachingRoller(use_table=own, roller_ratio=ratio, acceleration=4000.0, **SHAFT)
+    on_shaft(roller, theta, speed, acceleration)
+    inertia = 2.0 * 8.0 * (135.64e-6 + 33.98e-6 * (12.5 / 12.25) ** 2)
+    balanced(
+        roller.shaft_torque * speed,
+        inertia * roller.roller_velocity * roller.roller_acceleration,
+        8.0 * roller.drafting_force * 12.5e-3 * roller.roller_velocity,
+    )
+    assert roller.dissipated_power == pytest.approx(8.0 * roller.drafting_torque * roller.roller_velocity)
+    assert roller.kinetic_energy == pytest.approx(0.5 * inertia * roller.roller_velocity**2, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("component", "given"), [(each, given) for each in COMPONENTS.values() for given in flags(each)]
+)
+def test_torque_on_the_shaft_is_what_the_energies_ask_for(component, given):
+    """`d(kinetic + potential)/dt + dissipated power = shaft_torque w`, by differences along a motion."""
+    names = {variable.name for variable in declared(component)}
+    if not {"shaft_torque", "kinetic_energy", "shaft_angle"} <= names or given.get("servo"):
+        return  # what a servo drives takes nothing from the shaft
+    if given.get("use_table") is False:
+        return  # its motion comes from elsewhere
+    rng = random.Random(7)
+    instance = component(**given | {"follow_shaft": True, "inputs_at_step_end": True})
+    step = 1e-5
+    for _ in range(40):
+        angle, speed = rng.uniform(-20.0, 20.0), rng.uniform(-60.0, 60.0)
+        acceleration = rng.uniform(-2e3, 2e3)
+        energies = []
+        for k in (-2, -1, 1, 2, 0):  # the last sample is the one in the middle
+            time = k * step
+            instance.shaft_angle = angle + speed * time + 0.5 * acceleration * time * time
+            instance.shaft_velocity = speed + acceleration * time
+            instance.shaft_acceleration = acceleration
+            assert instance.initialize(0.0) == 0
+            energies.append(instance.kinetic_energy + getattr(instance, "potential_energy", 0.0))
+        before, last, first, after, _here = energies
+        stored = (8.0 * (first - last) - (after - before)) / (12.0 * step)
+        power = instance.shaft_torque * instance.shaft_velocity - getattr(instance, "dissipated_power", 0.0)
+        # over 20 us the energies, up to 1e4 J, are rounded to 1e-12 J; the fourth power of the step is less
+        assert stored == pytest.approx(power, rel=1e-6, abs=1e-4 * max(energies))
+
+
+# The same against the energy alone, differentiated with 50 digits
+
+
+@pytest.mark.parametrize("name", ["WL680-3600", "WL800-3600", "WL450-4600"])
+def test_torque_of_head_belt_and_wheel_is_the_derivative_of_their_energy(name):
+    of = machine(name)
+    weft = WeftInsertion(
+        **parameters("WeftInsertion", machine=name), belt_mass=0.06, belt_length=2.5, wheel_inertia=0.03,
+        moving_mass=0.1105, **SHAFT,
+    )  # fmt: skip
+    radius = MP.mpf(weft.wheel_diameter) / 2
+    mass = MP.mpf("0.1105") + MP.mpf("0.06") * MP.mpf("2.5") + MP.mpf("0.03") / radius**2
+
+    def energy(time, theta):
+        """With the shaft at 60 rad/s and 500 rad/s2."""
+        _travel, slope, _bend = of.travel(theta + 60 * time + 250 * time**2)
+        return mass / 2 * (slope * (60 + 500 * time)) ** 2
+
+    for k in range(1, 40, 3):
+        theta = 0.16 * k
+        on_shaft(weft, theta, 60.0, 500.0)
+        exact = MP.diff(lambda time, theta=theta: energy(time, MP.mpf(theta)), 0) / 60
+        # torques of 1e4 N m and energies of 1e4 J, from the linkages' angles, which are rounded to 1e-15
+        assert abs(weft.shaft_torque - exact) < 1e-10
+        assert abs(weft.kinetic_energy - energy(0, MP.mpf(theta))) < 1e-10
+
+
+@pytest.mark.parametrize(("law", "name"), [(2, "harmonic_ends"), (3, "sloped_line"), (4, "sloped_sine")])
+def test_torque_of_frame_and_rotor_is_the_derivative_of_their_energy(law, name):
+    of = Rotor(name, 0.6)
+    dobby = DobbyDrive(law=law, speed_reduction=0.6, slow_point=0.0, rotor_inertia=0.05, **SHAFT)
+
+    def energies(time, theta):
+        """Of the frame and of the rotor, with the shaft at 40 rad/s and -300 rad/s2."""
+        turned = theta + 40 * time - 150 * time**2
+        angle, ratio = of.angle(turned), of.velocity(turned)
+        turning = ratio * (40 - 300 * time)
+        rise = MP.mpf(FRAME["stroke"]) / 4 * MP.sin(angle / 2) * turning
+        lift = MP.mpf(FRAME["stroke"]) * (1 - MP.cos(angle / 2)) / 2
+        frame = 17 * (rise**2 / 2 + MP.mpf(FRAME["gravity"]) * lift)
+        return frame, MP.mpf(0.05) * turning**2 / 2
+
+    for theta in (0.2, 0.9, 1.7, 2.8):
+        on_shaft(dobby, theta, 40.0, -300.0)
+        frame = driven(dobby, HealdFrame(pattern_1=2, **FRAME))
+        for part, component in enumerate((frame, dobby)):
+            exact = MP.diff(lambda t, part=part, theta=theta: energies(t, MP.mpf(theta))[part], 0) / 40
+            # rounding of torques up to 100 N m, with a few operations
+            assert abs(component.shaft_torque - exact) < 1e-12
+
+
+# Where nothing moves
+
+
+def test_a_standing_shaft_still_carries_the_frames_weight():
+    dobby = on_shaft(DobbyDrive(slow_point=0.0, **SHAFT), 0.5 * pi, 0.0, 0.0)
+    frame = driven(dobby, HealdFrame(pattern_1=2, load=-100.0, **FRAME))
+    assert frame.drive_force == 17.0 * 9.81 + 100.0
+    # virtual work: H/4 sin(S/2) S'
+    lever = 0.12 * dobby.lift_slope
+    assert frame.shaft_torque == pytest.approx(frame.drive_force * lever, rel=1e-14)
+    assert frame.shaft_torque > 0.0
+
+
+def test_a_frame_that_holds_takes_no_torque():
+    dobby = on_shaft(DobbyDrive(slow_point=0.0, **SHAFT), 2.0, 40.0, 100.0)
+    for follow in (False, True):
+        frame = driven(dobby, HealdFrame(pattern_1=3, load=-100.0, follow_lift=follow, **FRAME))
+        assert frame.drive_force == pytest.approx(17.0 * 9.81 + 100.0)
+        assert (frame.rotor_torque, frame.shaft_torque) == (0.0, 0.0)
+
+
+def test_crank_and_lift_give_the_same_torques():
+    for theta in (0.3, 2.0, 5.0, 7.0, 10.0):
+        dobby = on_shaft(DobbyDrive(slow_point=0.0, **SHAFT), theta, 40.0, 100.0)
+        by_crank, by_lift = (
+            driven(dobby, HealdFrame(load=50.0, follow_lift=follow, **FRAME)) for follow in (False, True)
+        )
+        for name in ("rotor_torque", "shaft_torque"):
+            # rounding of the rotor's angle
+            assert getattr(by_lift, name) == pytest.approx(getattr(by_crank, name), rel=1e-12)
