@@ -27,7 +27,7 @@ def on_shaft(component, theta, speed, acceleration):
 
 def driven(dobby, frame):
     """The frame behind the dobby."""
-    for name in frame.terminals[0].variables:
+    for name in (*frame.terminals[0].variables, "rotor_ratio", "lift_slope"):
         setattr(frame, name, getattr(dobby, name))
     assert frame.initialize(0.0) == 0
     return frame

@@ -41,7 +41,7 @@ class HealdFrame(Component):
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration", "rotor_ratio", "lift_slope",
+            "lift_fraction", "lift_rate", "lift_acceleration",
         ),
         FRAME.of("lift", "velocity", "acceleration"),
     )  # fmt: skip
@@ -94,11 +94,12 @@ class HealdFrame(Component):
         minimum=-1e15, maximum=1e15,
     )  # fmt: skip
     rotor_ratio: float = input_(
-        "1", 1.0, "Rotor velocity relative to the shaft's, for shaft_torque", minimum=-1e3, maximum=1e3
-    )
+        "1", 1.0, "Rotor velocity relative to the shaft's, for shaft_torque", minimum=-1e3, maximum=1e3,
+        source="dobby.rotor_ratio",
+    )  # fmt: skip
     lift_slope: float = input_(
         "1", 0.25, "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
-        when="follow_lift", minimum=-1e6, maximum=1e6,
+        when="follow_lift", minimum=-1e6, maximum=1e6, source="dobby.lift_slope",
     )  # fmt: skip
     load: float = input_(
         "N", 0.0, "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",

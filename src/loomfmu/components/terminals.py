@@ -6,10 +6,7 @@ SHAFT = Terminal("shaft", "Motion of the main shaft", ("angle", "velocity", "acc
 HEAD = Terminal("head", "Motion of the rapier head", ("travel", "velocity", "acceleration"))
 ROTOR = Terminal(
     "rotor",
-    "Motion of the dobby's rotor, the lift it gives a frame, and both per turn of the shaft",
-    (
-        "angle", "velocity", "acceleration", "lift_fraction", "lift_rate", "lift_acceleration",
-        "ratio", "lift_slope",
-    ),
-)  # fmt: skip
+    "Motion of the dobby's rotor, and the lift it gives a frame",
+    ("angle", "velocity", "acceleration", "lift_fraction", "lift_rate", "lift_acceleration"),
+)
 FRAME = Terminal("frame", "Motion of a heald frame", ("lift", "velocity", "acceleration"))

@@ -19,7 +19,9 @@ from .quantities import Quantity, read, whole
 
 LAWS = next(v.choices for v in variables_of(DobbyDrive) if v.name == "law")
 TURN = 4.0 * pi  # two picks, after which a frame that changes at every pick is where it was
-PLACES = 360  # in two picks; the crests of force and torque lie several of them apart
+# outputs of the dobby that a frame takes
+FOLLOWED = (*HealdFrame.terminals[0].variables, "rotor_ratio", "lift_slope")
+PLACES = 180  # in two picks; the crests of force and torque lie several of them apart
 WITHIN = 1e-9  # rad, by which the place of a crest is known: its height is then exact to rounding
 
 
@@ -62,7 +64,7 @@ class Weave:
         dobby.step(0.0, 0.0)
         force, rotor, shaft = 0.0, dobby.rotor_torque, dobby.shaft_torque
         for count, frame in self.frames:
-            for name in frame.terminals[0].variables:
+            for name in FOLLOWED:
                 setattr(frame, name, getattr(dobby, name))
             frame.load = 0.0
             frame.step(0.0, 0.0)

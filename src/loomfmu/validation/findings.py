@@ -12,7 +12,7 @@ from ..design import loom
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics.belt import elastica_deflection
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, rotor_law
-from . import belt, cam, rotor
+from . import belt, cam, loads, rotor
 from .chain import RPM, carrier
 from .lock import limit as lock_limit
 from .sections import Chapter, Row, Section, number
@@ -27,7 +27,16 @@ def chapter() -> Chapter:
     return Chapter(
         "Findings of our own",
         "",
-        (damper(), against_the_tables(), belt_design(), over_speed(), shed(), limits(), unconnected()),
+        (
+            damper(),
+            against_the_tables(),
+            belt_design(),
+            over_speed(),
+            loads.weft(),
+            shed(),
+            limits(),
+            unconnected(),
+        ),
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..components.heald_damper import HealdDamper
 from ..machines import table
-from . import cam, rotor
+from . import cam, loads, rotor
 from .chain import HealdLine
 from .plot_style import BLACK, BLUE, GREEN, GREY, LAW_COLOURS, ORANGE, RED, Draw
 
@@ -60,6 +60,34 @@ def dwell(figure: "Figure") -> None:
     axes.set_title(
         "Dwell within 1.5 % of the stroke: measured and by the laws (dashed: inferred)", fontsize=12
     )
+
+
+def dobby_loads(figure: "Figure") -> None:
+    """Peaks of the loads of a frame over the speed reduction."""
+    panels = figure.subplots(2, 1, sharex=True)
+    reductions = np.linspace(0.0, 0.8, 17)
+    cases: tuple[tuple[str, str, dict[str, float]], ...] = (
+        ("-", "15 kg, inertia alone", {}),
+        ("--", "6.5 kg, inertia and warp", {"mass": 6.5, "warp": loads.WARP}),
+    )
+    for law in loads.LAWS:
+        for style, case, given in cases:
+            peaks = [loads.peaks(law, float(z), **given) for z in reductions]
+            for panel, values in zip(
+                panels,
+                ([each.frame_force.value for each in peaks], [each.rotor_torque.value for each in peaks]),
+                strict=True,
+            ):
+                panel.plot(reductions, np.abs(values), style, color=LAW_COLOURS[law], label=f"{law}, {case}")
+    for panel in panels:
+        panel.axvspan(0.4, 0.5, color=GREY, alpha=0.3, lw=0.0)
+    panels[0].set(ylabel="force on a frame, N", ylim=(0.0, None))
+    panels[1].set(
+        ylabel="torque on the rotor, N m", xlabel="speed reduction zeta", xlim=(0.0, 0.8), ylim=(0.0, None)
+    )
+    handles, labels = panels[1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=10)
+    panels[0].set_title("Peaks at 280 picks/min (grey: least loads by the source)", fontsize=12)
 
 
 def heald(figure: "Figure") -> None:
@@ -142,6 +170,7 @@ def cam_profile(figure: "Figure") -> None:
 
 
 FIGURES: dict[str, tuple[float, Draw]] = {
+    "dobby_loads.png": (7.0, dobby_loads),
     "rotor_laws.png": (8.0, rotor_laws),
     "dwell.png": (5.0, dwell),
     "heald.png": (8.0, heald),

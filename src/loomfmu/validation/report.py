@@ -17,6 +17,7 @@ from . import (
     errata_others,
     errata_weft,
     findings,
+    loads,
     lock,
     plots,
     productivity,
@@ -63,8 +64,8 @@ def chapters() -> tuple[Chapter, ...]:
             "Rotary dobby (Korolev, thesis, Moscow 2014)",
             "Most of the source's curves are in figures that are lost.",
             (
-                *cyclograms.sections(), *rotor.sections(), dwells.section(), *cam.sections(),
-                *lock.sections(), *warp.sections(), *productivity.sections(),
+                *cyclograms.sections(), *rotor.sections(), dwells.section(), *loads.sections(),
+                *cam.sections(), *lock.sections(), *warp.sections(), *productivity.sections(),
             ),
         ),
         reed.chapter(),

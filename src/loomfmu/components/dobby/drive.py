@@ -37,7 +37,7 @@ class DobbyDrive(RotorLaws):
         *RotorLaws.terminals,
         ROTOR.of(
             "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration", "rotor_ratio", "lift_slope",
+            "lift_fraction", "lift_rate", "lift_acceleration",
         ),
     )  # fmt: skip
 
