@@ -86,6 +86,11 @@ class DamperVariables(Component):
         "Largest acceleration of the carrier so far relative to the frame's; 0 while the frame rests",
         nominal=10.0,
     )
+    kinetic_energy: float = output("J", "Kinetic energy of the carrier in space", nominal=10.0)
+    potential_energy: float = output(
+        "J", "Energy of springs and stop, from where the carrier hangs balanced", nominal=1.0
+    )
+    dissipated_power: float = output("W", "Power lost in the damping of suspension and stop", nominal=10.0)
     damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
     stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
     contact: int = state(

@@ -53,6 +53,7 @@ class HealdDamper(DamperVariables):
         self.largest_lift = fabs(self.lift)
         self.remember()
         self.show(self.acceleration, self.warp_force)
+        self.show_energies(0.0)
         return 0
 
     def remember(self) -> None:
@@ -81,6 +82,7 @@ class HealdDamper(DamperVariables):
         problem = self.move(step_size, a0, a1, a2, a3, load, load_rate)
         self.remember()
         self.show(self.acceleration, self.warp_force)
+        self.show_energies(0.0 if self.inputs_at_step_end else step_size)
         return problem
 
     def frame_between(self, time: float, h: float) -> tuple[float, float, float, float]:
@@ -255,3 +257,15 @@ class HealdDamper(DamperVariables):
         self.acceleration_ratio = 0.0
         if self.peak_frame > RESTING:
             self.acceleration_ratio = self.peak_carrier / self.peak_frame
+
+    def show_energies(self, lead: float) -> None:
+        """Energies of the carrier's state, the frame's velocity carried over `lead`."""
+        side = self.on_stop()
+        pressed = side * side * (self.displacement - side * self.free_travel)
+        velocity = self.velocity + self.acceleration * lead + self.rate
+        self.kinetic_energy = 0.5 * self.carrier_mass * velocity * velocity
+        self.potential_energy = (
+            2.0 * self.spring_stiffness * self.displacement * self.displacement
+            + 0.5 * self.stop_stiffness * pressed * pressed
+        )
+        self.dissipated_power = (self.damping + side * side * self.stop_damping) * self.rate * self.rate

@@ -8,6 +8,7 @@ from ..physics.shaft import carried
 from ..physics.warp import (
     eye_pull,
     thread_drive,
+    thread_energy,
     thread_extension,
     thread_force,
     thread_growth,
@@ -77,6 +78,13 @@ class WarpTension(Component):
     )
     mean_tension: float = output("N", "Mean tension so far", display="cN", nominal=0.5)
     frame_load: float = output("N", "Load of the warp on the heald carrier, positive upwards", nominal=100.0)
+    potential_energy: float = output(
+        "J", "Energy stored in all threads, from the closed shed at pretension", nominal=10.0
+    )
+    dissipated_power: float = output(
+        "W", "Power that creep, relaxation and slack take from all threads; negative where creep returns it",
+        nominal=10.0,
+    )  # fmt: skip
     slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
     elapsed: float = state("s", "Time covered by the extremes and the mean", minimum=0.0)
     pending: float = state("s", "Time from the last sample of the inputs to the next", minimum=0.0)
@@ -216,6 +224,7 @@ class WarpTension(Component):
         """Outputs at the end of the step, the inputs carried over `lead` if they hold at its start."""
         force = self.sampled_force
         self.extension = self.sampled_extension
+        rate = self.sampled_rate
         if lead > 0.0:
             extension, rate, second = self.sample(lead)
             p0, p1, p2, p3, p4, p5 = self.drive(lead, extension, rate, second)
@@ -224,6 +233,11 @@ class WarpTension(Component):
         tension = self.pretension + force
         self.slack = tension < 0.0
         self.tension = 0.0 if self.slack else tension
+        stored, taken = thread_energy(
+            force, self.extension, self.thread_stiffness, self.creep_rate, self.relaxation_rate
+        )
+        self.potential_energy = self.thread_count * (stored + self.pretension * self.extension)
+        self.dissipated_power = self.thread_count * (taken + (self.tension - tension) * rate)
         height = carried(self.lift, self.velocity, self.acceleration, lead)
         height = height - 0.5 * self.stroke + self.shed_offset
         pull = eye_pull(height, self.front_length, self.back_length)
