@@ -97,9 +97,10 @@ class HealdFrame(Component):
         "1", 1.0, "Rotor velocity relative to the shaft's, for shaft_torque", minimum=-1e3, maximum=1e3,
         source="dobby.rotor_ratio",
     )  # fmt: skip
+    # not `when` follow_lift: a wire to it alone must not switch that on
     lift_slope: float = input_(
         "1", 0.25, "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
-        when="follow_lift", minimum=-1e6, maximum=1e6, source="dobby.lift_slope",
+        minimum=-1e6, maximum=1e6, source="dobby.lift_slope",
     )  # fmt: skip
     load: float = input_(
         "N", 0.0, "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
