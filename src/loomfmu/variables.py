@@ -30,7 +30,7 @@ class Variable:
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
-    instance's own number; `lowest_of` and `highest_of` name the output whose extreme so far this one holds;
+    instance's own number, and in an array * for each instance that has such an output; `lowest_of` and `highest_of` name the output whose extreme so far this one holds;
     `when` and `unless` name the yes-or-no parameter with which, or without which alone, it has an effect;
     `pole` says that an output grows without bound at the edges of its component's windows;
     `element` is its place in an array, such as `table[35]` for `table_36`; `carried` says that outputs

@@ -3,16 +3,20 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..physics.driven_shaft import driven_motion, summed
+from ..arrays import array
+from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
 from .terminals import SHAFT
+
+LOADS = 32  # mechanisms: 28 heald frames, dobby, weft insertion, reed and one more
 
 
 @dataclass(slots=True)
 class DrivenShaft(Component):
     """The loom's main shaft with its inertia: driven by a motor, braked by the mechanisms.
 
-    Exact for torques that run on straight lines between their samples, or that are held over a step. The
+    Exact for torques that run on straight lines between their samples, or that are held over a step. Where a
+    mechanism also states the work that it takes, its torque follows the parabola that does this work. The
     mechanisms' own masses are no part of the inertia: they act through the torques.
     """
 
@@ -36,21 +40,23 @@ class DrivenShaft(Component):
     )  # fmt: skip
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
     inputs_at_step_end: bool = at_step_end()
-    torque_1: float = input_(
-        "N.m", 0.0, "Load torque of a first mechanism; positive brakes the shaft", nominal=10.0,
-        minimum=-1e12, maximum=1e12, source="weft.shaft_torque",
+    use_work: tuple[bool, ...] = array(
+        parameter("1", False, f"Use work_{number}; otherwise torque_{number} runs on a straight line")
+        for number in range(1, LOADS + 1)
+    )
+    torque: tuple[float, ...] = array(
+        input_(
+            "N.m", 0.0, f"Load torque of mechanism {number}; positive brakes the shaft", nominal=10.0,
+            minimum=-1e12, maximum=1e12, source="*.shaft_torque",
+        )
+        for number in range(1, LOADS + 1)
     )  # fmt: skip
-    torque_2: float = input_(
-        "N.m", 0.0, "Load torque of a second mechanism", nominal=10.0,
-        minimum=-1e12, maximum=1e12, source="reed.shaft_torque",
-    )  # fmt: skip
-    torque_3: float = input_(
-        "N.m", 0.0, "Load torque of a third mechanism", nominal=10.0,
-        minimum=-1e12, maximum=1e12,
-    )  # fmt: skip
-    torque_4: float = input_(
-        "N.m", 0.0, "Load torque of a fourth mechanism", nominal=10.0,
-        minimum=-1e12, maximum=1e12,
+    work: tuple[float, ...] = array(
+        input_(
+            "J", 0.0, f"Work that mechanism {number} has taken from the shaft, at the end of the step",
+            nominal=10.0, minimum=-1e15, maximum=1e15, source="*.shaft_work", when=f"use_work_{number}",
+        )
+        for number in range(1, LOADS + 1)
     )  # fmt: skip
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
@@ -59,8 +65,19 @@ class DrivenShaft(Component):
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)
+    motor_power: float = output("W", "Power of the motor", nominal=1000.0)
+    motor_work: float = output(
+        "J", "Work of the motor since the start", nominal=100.0, rate="motor_power"
+    )
+    load_work: float = output("J", "Work of the shaft on all mechanisms since the start", nominal=100.0)
+    other_work: float = output(
+        "J", "Part of load_work that went to torques without work of their own", nominal=100.0
+    )
+    kinetic_energy: float = output("J", "Kinetic energy of inertia", nominal=1000.0)
     angle_rest: float = state("rad", "Rounding error of the angle, carried on")
     velocity_rest: float = state("rad/s", "Rounding error of the velocity, carried on")
+    coupled_torque: float = state("N.m", "Load torque of the mechanisms whose work is used")
+    coupled_work: float = state("J", "Work that these mechanisms had taken at the last sample")
 
     def initialize(self, time: float) -> int:
         """Place the shaft at its start, at speed or at rest."""
@@ -68,31 +85,66 @@ class DrivenShaft(Component):
         self.velocity = self.speed if self.start_at_speed else 0.0
         self.angle_rest = 0.0
         self.velocity_rest = 0.0
-        self.show()
+        self.motor_work = 0.0
+        self.load_work = 0.0
+        self.other_work = 0.0
+        load, coupled, work = self.loads()
+        self.show(load, coupled, work)
         return 0
 
     def step(self, time: float, step_size: float) -> int:
         """Turn the shaft over the step, exactly."""
-        load = self.load()
-        held = self.load_torque if self.inputs_at_step_end else load
-        velocity, lead = driven_motion(
-            self.drive() - held, load - held, step_size, self.inertia, self.torque_slope
+        load, coupled, work = self.loads()
+        held, held_coupled = load, coupled
+        if self.inputs_at_step_end:
+            held, held_coupled = self.load_torque, self.coupled_torque
+        net = self.drive() - held
+        rise = load - held
+        bulge = 0.0
+        if self.inputs_at_step_end:
+            bulge = bulge_for(
+                work - self.coupled_work, held_coupled, coupled - held_coupled, self.velocity, net, rise,
+                step_size, self.inertia, self.torque_slope,
+            )  # fmt: skip
+        gained, more, second, third = driven_motion(
+            self.velocity, net, rise, bulge, step_size, self.inertia, self.torque_slope
         )
-        self.angle, self.angle_rest = summed(self.angle, self.angle_rest, self.velocity * step_size + lead)
-        self.velocity, self.velocity_rest = summed(self.velocity, self.velocity_rest, velocity)
-        self.show()
+        mean = self.velocity + more
+        done = work_of(held, rise, bulge, step_size, mean, second, third)
+        self.load_work += done
+        self.other_work += work_of(
+            held - held_coupled, rise - (coupled - held_coupled), 0.0, step_size, mean, second, third
+        )
+        self.motor_work += done + self.inertia * gained * (self.velocity + 0.5 * gained)
+        self.angle, self.angle_rest = summed(
+            self.angle, self.angle_rest, self.velocity * step_size + more * step_size
+        )
+        self.velocity, self.velocity_rest = summed(self.velocity, self.velocity_rest, gained)
+        self.show(load, coupled, work)
         return 0
 
-    def load(self) -> float:
-        """Torque of all mechanisms at the present sample."""
-        return self.torque_1 + self.torque_2 + self.torque_3 + self.torque_4
+    def loads(self) -> tuple[float, float, float]:
+        """Torque of all mechanisms; torque and work of those whose work is used."""
+        load = 0.0
+        coupled = 0.0
+        work = 0.0
+        for index in range(LOADS):
+            load += self.torque[index]
+            if self.use_work[index]:
+                coupled += self.torque[index]
+                work += self.work[index]
+        return load, coupled, work
 
     def drive(self) -> float:
         """Torque of the motor at the present velocity."""
         return self.torque_slope * (self.speed - self.velocity - self.velocity_rest)
 
-    def show(self) -> None:
-        """Torques and acceleration at the end of the step."""
-        self.load_torque = self.load()
+    def show(self, load: float, coupled: float, work: float) -> None:
+        """Keep the loads, and show torques, acceleration and power at the end of the step."""
+        self.load_torque = load
+        self.coupled_torque = coupled
+        self.coupled_work = work
         self.motor_torque = self.drive()
         self.acceleration = (self.motor_torque - self.load_torque) / self.inertia
+        self.motor_power = self.motor_torque * self.velocity
+        self.kinetic_energy = 0.5 * self.inertia * self.velocity * self.velocity

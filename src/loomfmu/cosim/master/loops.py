@@ -25,6 +25,8 @@ Integers = NDArray[np.int32]
 
 MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or three where the loop is linear
 TOLERANCE = 1e-11  # of the largest value on a wire so far: what rounding leaves of a loop with a gain of 1e4
+ROUNDING = 1e-9  # of the largest value: what may be left after FEW exchanges where rounding leaves more
+FEW = 8
 FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
 NOT_SETTLED, NOT_SAVED, NOT_RESTORED = -1, -2, -3  # how stepper.c says why a step could not be iterated
 HISTORY = 256  # samples over which an oscillation is followed
@@ -44,13 +46,15 @@ def _product(one: Floats, other: Floats) -> float:
 class Broyden:
     """Solves `outputs(inputs) = inputs` for the real values on the wires of a loop, by Broyden's method.
 
-    What it has learnt of the loop's slopes is kept from one step to the next. Values that are not real are
-    handed on as they are. The compiled stepper does the same arithmetic, to the last bit.
+    What it has learnt of the loop's slopes is kept from one step to the next, and a step begins with the values
+    that go on as over the last one. Values that are not real are handed on as they are. The compiled stepper
+    does the same arithmetic, to the last bit.
     """
 
     def __init__(self, reals: Floats, integers: Integers, slots: Sequence[int]):
         self._reals, self._integers, self._slots = reals, integers, list(slots)
         self.largest = np.zeros(len(slots))
+        self.last = np.full(len(slots), np.nan)  # values at the end of the step before the last
         self.inverse = -np.eye(len(slots))  # of the slopes of outputs(inputs) - inputs; at first: of -1
 
     def settle(self, exchange: Callable[[], None]) -> bool:
@@ -58,9 +62,11 @@ class Broyden:
 
         `exchange` takes the values on the wires from the master's memory and writes the new ones there.
         """
-        guess = self._reals[self._slots]
+        settled = self._reals[self._slots]
+        guess = np.where(np.isnan(self.last), settled, settled + (settled - self.last))
+        self.last[:] = settled
         change = residual = np.zeros(0)
-        for _ in range(MOST_EXCHANGES):
+        for number in range(MOST_EXCHANGES):
             self._reals[self._slots] = guess
             others = self._integers.copy()
             exchange()
@@ -69,7 +75,7 @@ class Broyden:
                 return False
             before, residual = residual, found - guess
             largest = np.maximum(self.largest, np.abs(found))
-            agrees = np.all(np.abs(residual) <= TOLERANCE * largest)
+            agrees = np.all(np.abs(residual) <= (TOLERANCE if number < FEW else ROUNDING) * largest)
             if agrees and np.array_equal(others, self._integers):
                 self.largest[:] = largest
                 return True
@@ -153,8 +159,8 @@ class CompiledIteration(CompiledStepper):
         self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
         self._struct = _Loop(
             loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
-            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, TOLERANCE, FLAT,
-            self._solver.largest.ctypes.data, self._solver.inverse.ctypes.data, self._room.ctypes.data,
+            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, TOLERANCE,
+            ROUNDING, FLAT, self._solver.last.ctypes.data, self._solver.largest.ctypes.data, self._solver.inverse.ctypes.data, self._room.ctypes.data,
             self._integers.ctypes.data,
         )  # fmt: skip
         super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
@@ -181,8 +187,11 @@ class _Loop(ctypes.Structure):
         ("slots", ctypes.c_void_p),
         ("count", ctypes.c_size_t),
         ("most_exchanges", ctypes.c_int64),
+        ("few", ctypes.c_int64),
         ("tolerance", ctypes.c_double),
+        ("rounding", ctypes.c_double),
         ("flat", ctypes.c_double),
+        ("last", ctypes.c_void_p),
         ("largest", ctypes.c_void_p),
         ("inverse", ctypes.c_void_p),
         ("room", ctypes.c_void_p),

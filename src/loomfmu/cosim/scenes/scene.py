@@ -124,7 +124,7 @@ def parse(
     for key, value in (overrides or {}).items():
         override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
-    wires = wires_of(instances, tables.get("wires", {}))
+    wires = wires_of(instances, tables.get("wires", {}), tables.get("inputs"))
     for each in wires:
         instances[each.sink[0]].follow(each)
     scene = assemble(tables, instances, wires, name, text, Path(directory))

@@ -9,7 +9,7 @@ from ...components import COMPONENTS
 from ...components.shaft_driven import ShaftDriven
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, shown, suggestion
-from ...variables import Component, Terminal, variables_of
+from ...variables import Component, Terminal, arrays_of, variables_of
 from . import weave as weaves
 
 COMPONENT_OF = {
@@ -31,6 +31,8 @@ SOURCES = {"shaft": "shaft", "head": "weft", "rotor": "dobby", "frame": "heald_#
 
 # input of a mechanism on the shaft -> output of the shaft that it follows
 FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
+
+ALL = "*."  # in the place of an instance: the output of that name of every instance that has it
 
 FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
 
@@ -117,10 +119,14 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
-def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
+def wires(
+    components: Mapping[str, type[Component]], given: Mapping[str, Any] | None = None
+) -> dict[str, str]:
     """Where inputs such as `belt.travel` are usually wired to, by the declarations of all instances.
 
     Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
+    `given` is what a scene says of inputs itself, a source or a value, or false: inputs that take an output of
+    every instance leave out what has a source already.
     """
     offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
     for name, component in components.items():
@@ -130,7 +136,7 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     for name, component in components.items():
         number = name.removeprefix(stem(name))
         for v in variables_of(component):
-            if v.causality == "input" and v.source:
+            if v.causality == "input" and v.source and not v.source.startswith(ALL):
                 found[f"{name}.{v.name}"] = v.source.replace("_#", number)
         for terminal in _terminals(component, "input"):
             offering = offered.get((terminal.name, len(terminal.variables)), {})
@@ -142,7 +148,42 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
                 owner, outputs = next(iter(offering.items())) if len(offering) == 1 else ("", ())
             pairs = zip(terminal.variables, outputs, strict=False)
             found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
+        found |= _from_all(name, components, given or {})
     return found
+
+
+def _from_all(
+    name: str, components: Mapping[str, type[Component]], given: Mapping[str, Any]
+) -> dict[str, str]:
+    """Wires of an instance whose arrays take an output of each other instance, at the next free place.
+
+    The first array decides: where its wire is cut, the others have none at this place.
+    """
+    arrays = arrays_of(components[name]).values()
+    from_all = [each for each in arrays if (each[0].source or "").startswith(ALL)]
+    outputs = [(each[0].source or "").removeprefix(ALL) for each in from_all]
+    places = [[f"{name}.{v.name}" for v in place] for place in zip(*from_all, strict=True)]
+    free = [place for place in places if not any(given.get(sink, False) is not False for sink in place)]
+    wired = {given[sink] for place in places for sink in place if isinstance(given.get(sink), str)}
+    offered = {
+        other: {v.name for v in variables_of(component) if v.causality == "output"}
+        for other, component in components.items()
+    }
+    offering = [
+        other
+        for other, names in offered.items()
+        if outputs and outputs[0] in names and f"{other}.{outputs[0]}" not in wired
+    ]
+    if len(offering) > len(free):
+        raise LoomfmuError(
+            f"{name} has free inputs for {len(free)} mechanisms, but {len(offering)} have {outputs[0]}"
+        )
+    return {
+        sink: f"{other}.{output}"
+        for other, place in zip(offering, free, strict=False)
+        for sink, output in zip(place, outputs, strict=True)
+        if output in offered[other] and (sink == place[0] or given.get(place[0]) is not False)
+    }
 
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:

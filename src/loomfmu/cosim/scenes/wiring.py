@@ -10,12 +10,17 @@ from .graph import Wire
 from .instances import Instance
 
 
-def wires_of(instances: dict[str, Instance], spelt_out: Any) -> list[Wire]:
-    """The standard loom's wires where both ends are there, and those that the scene spells out."""
+def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None) -> list[Wire]:
+    """The standard loom's wires where both ends are there, and those that the scene spells out.
+
+    `driven` is the table of the inputs that the scene drives.
+    """
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
-    usual = standard_loom.wires(components)
+    given = {f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()}
+    given |= (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
+    usual = standard_loom.wires(components, given)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     for sink, source in dotted(spelt_out).items():
         if source is False:

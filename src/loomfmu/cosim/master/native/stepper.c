@@ -56,8 +56,9 @@ struct loop { /* calls that are repeated until they agree with themselves */
     size_t rollback_count;
     const int64_t *slots; /* where the values on its wires stand among the reals */
     size_t count;
-    int64_t most_exchanges;
-    double tolerance, flat;
+    int64_t most_exchanges, few; /* after that many rounding may leave more than the tolerance */
+    double tolerance, rounding, flat;
+    double *last;    /* values at the end of the step before the last; NaN where there was none */
     double *largest; /* magnitude of each value so far */
     double *inverse; /* count by count: of the slopes of what comes out less what went in */
     double *room;    /* six vectors */
@@ -229,8 +230,11 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
 
     if (!roll(loop, false, outcome))
         return false;
-    for (size_t place = 0; place < count; place++)
-        guess[place] = plan->reals[loop->slots[place]];
+    for (size_t place = 0; place < count; place++) {
+        double value = plan->reals[loop->slots[place]];
+        guess[place] = isnan(loop->last[place]) ? value : value + (value - loop->last[place]);
+        loop->last[place] = value;
+    }
     for (int64_t exchange = 0; exchange < loop->most_exchanges; exchange++) {
         for (size_t place = 0; place < count; place++)
             plan->reals[loop->slots[place]] = guess[place];
@@ -239,6 +243,7 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
             return false;
         if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
             return false;
+        double tolerance = exchange < loop->few ? loop->tolerance : loop->rounding;
         bool agrees = !memcmp(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
         for (size_t place = 0; place < count; place++) {
             double found = plan->reals[loop->slots[place]];
@@ -249,7 +254,7 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
             double before = residual[place];
             residual[place] = found - guess[place];
             effect[place] = residual[place] - before;
-            if (!(fabs(residual[place]) <= loop->tolerance * fmax(loop->largest[place], fabs(found))))
+            if (!(fabs(residual[place]) <= tolerance * fmax(loop->largest[place], fabs(found))))
                 agrees = false;
         }
         if (agrees) {
