@@ -153,6 +153,9 @@ class ReedBeatUp(ShaftDriven):
         "N.m", "Torque the crank needs in its direction, from the shaft or the servo", nominal=10.0
     )
     kinetic_energy: float = output("J", "Kinetic energy of reed and rocker", nominal=10.0)
+    shaft_work: float = output(
+        "J", "Work taken from the shaft, now kinetic_energy; 0 with a servo", nominal=10.0
+    )
     beat_up_crank: float = auxiliary("rad", "Crank angle at the beat-up")
     closure: float = auxiliary("m", "Margin by which the crank-rocker closes over a whole turn")
     reach: float = auxiliary("m", "Margin by which the rod reaches the reed's line over the swing")
@@ -256,4 +259,5 @@ class ReedBeatUp(ShaftDriven):
             self.reed_mass * self.velocity * self.velocity
             + self.rocker_inertia * rocker_velocity * rocker_velocity
         )
+        self.shaft_work = 0.0 if self.servo else self.kinetic_energy
         return 0

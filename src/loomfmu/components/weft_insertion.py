@@ -99,6 +99,7 @@ class WeftInsertion(ShaftDriven):
     stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
     shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
     kinetic_energy: float = output("J", "Kinetic energy of head, belt and wheel", nominal=10.0)
+    shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
     travel_per_angle: float = auxiliary("m", "Travel per radian of the sector gear, signed")
     sector_start: float = auxiliary("rad", "Angle of the sector gear at shaft angle 0")
     closure: float = auxiliary("m", "Margin by which the four-bar closes over the rocker's swing")
@@ -163,4 +164,5 @@ class WeftInsertion(ShaftDriven):
         )
         self.shaft_torque = reflected * self.acceleration * first
         self.kinetic_energy = 0.5 * reflected * self.velocity * self.velocity
+        self.shaft_work = self.kinetic_energy
         return 0

@@ -67,6 +67,7 @@ class DobbyDrive(RotorLaws):
         "N.m", "Torque of the rotor's own inertia on the main shaft, braking; those of the frames are theirs"
     )
     kinetic_energy: float = output("J", "Kinetic energy of the rotor", nominal=10.0)
+    shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
     dwell_angle: float = output(
         "rad", "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
         display="deg", variability="discrete", nominal=1.5, depends=(),
@@ -127,6 +128,7 @@ class DobbyDrive(RotorLaws):
         self.rotor_torque = self.rotor_inertia * acceleration
         self.shaft_torque = self.rotor_torque * ratio
         self.kinetic_energy = 0.5 * self.rotor_inertia * velocity * velocity
+        self.shaft_work = self.kinetic_energy
 
     def turn_cam(self, turned: float, speed: float, acceleration: float) -> int:
         """Lift the frames by the spline cam; the rotor angle is its phase."""

@@ -119,14 +119,10 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
-def wires(
-    components: Mapping[str, type[Component]], given: Mapping[str, Any] | None = None
-) -> dict[str, str]:
+def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     """Where inputs such as `belt.travel` are usually wired to, by the declarations of all instances.
 
     Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
-    `given` is what a scene says of inputs itself, a source or a value, or false: inputs that take an output of
-    every instance leave out what has a source already.
     """
     offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
     for name, component in components.items():
@@ -148,42 +144,44 @@ def wires(
                 owner, outputs = next(iter(offering.items())) if len(offering) == 1 else ("", ())
             pairs = zip(terminal.variables, outputs, strict=False)
             found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
-        found |= _from_all(name, components, given or {})
     return found
 
 
-def _from_all(
+def gathered(
     name: str, components: Mapping[str, type[Component]], given: Mapping[str, Any]
 ) -> dict[str, str]:
-    """Wires of an instance whose arrays take an output of each other instance, at the next free place.
+    """Wires of an instance whose arrays take an output of every instance that has it, at the next free place.
 
-    The first array decides: where its wire is cut, the others have none at this place.
+    `given` are the inputs that have a source or a value, or false where their wire is cut. The first array
+    decides: where its wire is cut, or wired by hand, the others have none at this place.
     """
     arrays = arrays_of(components[name]).values()
     from_all = [each for each in arrays if (each[0].source or "").startswith(ALL)]
-    outputs = [(each[0].source or "").removeprefix(ALL) for each in from_all]
+    if not from_all:
+        return {}
+    first, *others = [(each[0].source or "").removeprefix(ALL) for each in from_all]
     places = [[f"{name}.{v.name}" for v in place] for place in zip(*from_all, strict=True)]
     free = [place for place in places if not any(given.get(sink, False) is not False for sink in place)]
-    wired = {given[sink] for place in places for sink in place if isinstance(given.get(sink), str)}
-    offered = {
-        other: {v.name for v in variables_of(component) if v.causality == "output"}
-        for other, component in components.items()
-    }
-    offering = [
-        other
-        for other, names in offered.items()
-        if outputs and outputs[0] in names and f"{other}.{outputs[0]}" not in wired
-    ]
+    wired = [given.get(sink) for place in places for sink in place]
+    offered = {other: _complete(other, each, given) for other, each in components.items()}
+    offering = [other for other in offered if first in offered[other] and f"{other}.{first}" not in wired]
     if len(offering) > len(free):
         raise LoomfmuError(
-            f"{name} has free inputs for {len(free)} mechanisms, but {len(offering)} have {outputs[0]}"
+            f"{name} has free inputs for {len(free)} mechanisms, but {len(offering)} have an output {first}"
         )
-    return {
-        sink: f"{other}.{output}"
-        for other, place in zip(offering, free, strict=False)
-        for sink, output in zip(place, outputs, strict=True)
-        if output in offered[other] and (sink == place[0] or given.get(place[0]) is not False)
-    }
+    wires = {}
+    for other, (sink, *further) in zip(offering, free, strict=False):
+        wires[sink] = f"{other}.{first}"
+        if given.get(sink) is not False:
+            pairs = zip(further, others, strict=True)
+            wires |= {to: f"{other}.{output}" for to, output in pairs if output in offered[other]}
+    return wires
+
+
+def _complete(name: str, component: type[Component], fed: Mapping[str, Any]) -> set[str]:
+    """The outputs of an instance, without those that leave out what feeds one of its inputs."""
+    outputs = [v for v in variables_of(component) if v.causality == "output"]
+    return {v.name for v in outputs if not (v.unfed and fed.get(f"{name}.{v.unfed}"))}
 
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:

@@ -18,10 +18,12 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
-    given = {f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()}
-    given |= (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
-    usual = standard_loom.wires(components, given)
+    usual = standard_loom.wires(components)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
+    values = {f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()}
+    tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
+    for name in components:
+        sources |= standard_loom.gathered(name, components, sources | tables)
     for sink, source in dotted(spelt_out).items():
         if source is False:
             if sources.pop(sink, None) is None:
