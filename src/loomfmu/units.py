@@ -80,6 +80,8 @@ UNITS = {
     "N.m.s/rad": Unit(kg=1, m=2, s=-1, rad=-1),
     "J": Unit(kg=1, m=2, s=-2),
     "W": Unit(kg=1, m=2, s=-3),
+    "kW": Unit(kg=1, m=2, s=-3, factor=1e3),
+    "W/s": Unit(kg=1, m=2, s=-4),
     "kg/m": Unit(kg=1, m=-1),
     "kg.m2": Unit(kg=1, m=2),
     "K": Unit(K=1),

@@ -30,13 +30,11 @@ class Variable:
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
-    instance's own number, and in an array * for each instance that has such an output; `unfed` names the input
-    without which alone an output is complete; `lowest_of` and `highest_of` name the output whose extreme so far
-    this one holds;
-    `when` and `unless` name the yes-or-no parameter with which, or without which alone, it has an effect;
-    `pole` says that an output grows without bound at the edges of its component's windows;
-    `element` is its place in an array, such as `table[35]` for `table_36`; `carried` says that outputs
-    beside extremes follow from what it held before the step.
+    instance's own number, and in an array with * for every instance that has such an output; `lowest_of` and
+    `highest_of` name the output whose extreme so far this one holds; `when` and `unless` name the yes-or-no
+    parameter with which, or without which alone, it has an effect; `pole` says that an output grows without
+    bound at the edges of its component's windows; `element` is its place in an array, such as `table[35]` for
+    `table_36`; `carried` says that outputs beside extremes follow from what it held before the step.
     """
 
     name: str
@@ -56,7 +54,6 @@ class Variable:
     choices: tuple[str, ...] = ()
     indicator: bool = False
     source: str | None = None
-    unfed: str | None = None
     lowest_of: str | None = None
     highest_of: str | None = None
     when: str | None = None
@@ -260,14 +257,13 @@ def output(
     lowest_of: str | None = None,
     highest_of: str | None = None,
     pole: bool = False,
-    unfed: str | None = None,
 ) -> Any:
     """A value that the component computes; integers and booleans are discrete if nothing else is said."""
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "output", variability or usual, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of, pole=pole, unfed=unfed,
+        lowest_of=lowest_of, highest_of=highest_of, pole=pole,
     )  # fmt: skip
 
 

@@ -58,6 +58,13 @@ class DrivenShaft(Component):
         )
         for number in range(1, LOADS + 1)
     )  # fmt: skip
+    passed_torque: tuple[float, ...] = array(
+        input_(
+            "N.m", 0.0, f"Part of torque_{number} whose work is not in work_{number}", nominal=10.0,
+            minimum=-1e12, maximum=1e12, source="*.passed_torque",
+        )
+        for number in range(1, LOADS + 1)
+    )  # fmt: skip
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
     )
@@ -65,19 +72,20 @@ class DrivenShaft(Component):
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)
-    motor_power: float = output("W", "Power of the motor", nominal=1000.0)
+    motor_power: float = output("W", "Power of the motor", display="kW", nominal=1000.0, rate="motor_power_rate")
+    motor_power_rate: float = output("W/s", "Rate of motor_power", nominal=1e5)
     motor_work: float = output(
         "J", "Work of the motor since the start", nominal=100.0, rate="motor_power"
     )
     load_work: float = output("J", "Work of the shaft on all mechanisms since the start", nominal=100.0)
     other_work: float = output(
-        "J", "Part of load_work that went to torques without work of their own", nominal=100.0
+        "J", "Part of load_work that no mechanism states: of torques without work_1 and so on", nominal=100.0
     )
     kinetic_energy: float = output("J", "Kinetic energy of inertia", nominal=1000.0)
     angle_rest: float = state("rad", "Rounding error of the angle, carried on")
     velocity_rest: float = state("rad/s", "Rounding error of the velocity, carried on")
-    coupled_torque: float = state("N.m", "Load torque of the mechanisms whose work is used")
-    coupled_work: float = state("J", "Work that these mechanisms had taken at the last sample")
+    coupled_torque: float = state("N.m", "Load torque whose work the mechanisms state")
+    coupled_work: float = state("J", "Work that the mechanisms had stated at the last sample")
 
     def initialize(self, time: float) -> int:
         """Place the shaft at its start, at speed or at rest."""
@@ -124,14 +132,14 @@ class DrivenShaft(Component):
         return 0
 
     def loads(self) -> tuple[float, float, float]:
-        """Torque of all mechanisms; torque and work of those whose work is used."""
+        """Torque of all mechanisms; the part whose work they state, and this work."""
         load = 0.0
         coupled = 0.0
         work = 0.0
         for index in range(LOADS):
             load += self.torque[index]
             if self.use_work[index]:
-                coupled += self.torque[index]
+                coupled += self.torque[index] - self.passed_torque[index]
                 work += self.work[index]
         return load, coupled, work
 
@@ -147,4 +155,5 @@ class DrivenShaft(Component):
         self.motor_torque = self.drive()
         self.acceleration = (self.motor_torque - self.load_torque) / self.inertia
         self.motor_power = self.motor_torque * self.velocity
+        self.motor_power_rate = (self.motor_torque - self.torque_slope * self.velocity) * self.acceleration
         self.kinetic_energy = 0.5 * self.inertia * self.velocity * self.velocity

@@ -130,9 +130,10 @@ class HealdFrame(Component):
     potential_energy: float = output(
         "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
     )
+    passed_torque: float = output("N.m", "Part of shaft_torque that goes to load", nominal=10.0)
     shaft_work: float = output(
-        "J", "Work taken from the shaft, now kinetic and potential energy; without that of load",
-        nominal=10.0, depends=_OF_ROTOR, unfed="load",
+        "J", "Work taken from the shaft, now kinetic and potential energy; without that of passed_torque",
+        nominal=10.0, depends=_OF_ROTOR,
     )  # fmt: skip
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 
@@ -206,6 +207,7 @@ class HealdFrame(Component):
         self.drive_force = self.inertia_force + weight - self.load
         self.rotor_torque = self.drive_force * self.stroke * by_rotor
         self.shaft_torque = self.drive_force * self.stroke * by_shaft
+        self.passed_torque = -self.load * self.stroke * by_shaft
         self.kinetic_energy = 0.5 * self.frame_mass * self.velocity * self.velocity
         self.potential_energy = weight * self.lift
         self.shaft_work = self.kinetic_energy + self.potential_energy

@@ -16,7 +16,7 @@ AT_LEAST, AT_MOST = 1, -1
 
 # units of what is judged: that of the numbers, and the one that people read them in
 ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
-LENGTH, FORCE, SPEED = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min")
+LENGTH, FORCE, SPEED, POWER = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min"), ("W", "kW")
 
 # What a claim needs of the window grid: all equal steps, steps that land where `landings` says, or nothing,
 # since its component finds what is judged on its own continuous curve.
@@ -65,7 +65,10 @@ class Claim(ABC):
         return {each.name: argument_of(each) for each in fields(cls)}
 
     def signals(self, instances: Iterable[str]) -> list[str]:
-        """The signals that must be recorded for it, in a scene with these instances."""
+        """The signals that must be recorded for it, in a scene with these instances.
+
+        With * for the instance they are those of all instances that have such an output.
+        """
         needed = [need.partition(".") for need in self.needs]
         return [f"{getattr(self, owner)}.{variable}" for owner, _, variable in needed]
 

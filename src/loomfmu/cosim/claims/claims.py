@@ -15,16 +15,17 @@ from typing import Any, Literal
 
 from ...errors import LoomfmuError, shown, suggestion
 from ...traces import Signals, Verdict
-from . import heald_claims, latched_claims, loom_claims, signal_claims
+from . import drive_claims, heald_claims, latched_claims, loom_claims, signal_claims
 from .claim import Claim
 
 KINDS = Claim.kinds
-FILES = (signal_claims, latched_claims, heald_claims, loom_claims)  # each kind in them adds itself to KINDS
+FILES = (signal_claims, latched_claims, heald_claims, loom_claims, drive_claims)  # each kind in them adds itself to KINDS
 
 
 Kind = Literal[  # for editors and type checkers; a test holds it to the classes
-    "above", "below", "clear_shed", "dwell", "dwell_contains", "locks_in_time", "lowest_margin", "nip_holds",
-    "peak_load", "rapier_in_open_shed", "reed_clear_of_rapier", "stop_contacts",
+    "above", "below", "clear_shed", "dwell", "dwell_contains", "energy_balance", "locks_in_time",
+    "lowest_margin", "motor_power", "nip_holds", "peak_load", "rapier_in_open_shed", "reed_clear_of_rapier",
+    "speed_fluctuation", "stop_contacts",
 ]  # fmt: skip
 
 

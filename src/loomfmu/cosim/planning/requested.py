@@ -48,7 +48,7 @@ def checked_claims(scene: Scene) -> Scene:
         where = f"claim {table['kind']!r}"
         for angle in angles_in(table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, and the scene has no shaft")
-        for signal in claim.signals(scene.instances):
+        for signal in signals_of(scene, claim):
             output_port(scene, signal, where)
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
             _check_parameter(scene, claim.bound, claim.signal)
@@ -86,7 +86,19 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
 
 def judged_by(scene: Scene) -> list[str]:
     """The signals that the scene's claims need, and the rates of these."""
-    return with_rates(scene, [s for claim in claims_of(scene) for s in claim.signals(scene.instances)])
+    return with_rates(scene, [s for claim in claims_of(scene) for s in signals_of(scene, claim)])
+
+
+def signals_of(scene: Scene, claim: Claim) -> Iterator[str]:
+    """The signals that a claim needs."""
+    for signal in claim.signals(scene.instances):
+        instance, _, variable = signal.partition(".")
+        for name, each in scene.instances.items():
+            port = each.fmu.ports.get(variable)
+            if instance == "*" and port is not None and port.causality == "output":
+                yield f"{name}.{variable}"
+        if instance != "*":
+            yield signal
 
 
 def shaft_angle(scene: Scene) -> list[str]:

@@ -26,7 +26,7 @@ from ..scenes.scene import Scene
 from ..scenes.standard_loom import turns_others
 from .plan import in_memory
 from .pruning import prune
-from .requested import claims_of, shaft_angle, with_rates
+from .requested import claims_of, shaft_angle, signals_of, with_rates
 
 Floats = NDArray[np.float64]
 
@@ -189,7 +189,7 @@ def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
     """The signals that show where the claims look, and where the extremes held by the kept signals occur."""
     wanted, owners = list(shaft_angle(scene)), list[str]()
     for claim in claims_of(scene):
-        signals = claim.signals(scene.instances)
+        signals = list(signals_of(scene, claim))
         wanted += signals if claim.grid == LANDINGS else []
         owners += [signal.split(".")[0] for signal in signals]
     owners += [signal.split(".")[0] for signal in _latched(scene, kept)]

@@ -163,7 +163,10 @@ def gathered(
     places = [[f"{name}.{v.name}" for v in place] for place in zip(*from_all, strict=True)]
     free = [place for place in places if not any(given.get(sink, False) is not False for sink in place)]
     wired = [given.get(sink) for place in places for sink in place]
-    offered = {other: _complete(other, each, given) for other, each in components.items()}
+    offered = {
+        other: {v.name for v in variables_of(component) if v.causality == "output"}
+        for other, component in components.items()
+    }
     offering = [other for other in offered if first in offered[other] and f"{other}.{first}" not in wired]
     if len(offering) > len(free):
         raise LoomfmuError(
@@ -176,12 +179,6 @@ def gathered(
             pairs = zip(further, others, strict=True)
             wires |= {to: f"{other}.{output}" for to, output in pairs if output in offered[other]}
     return wires
-
-
-def _complete(name: str, component: type[Component], fed: Mapping[str, Any]) -> set[str]:
-    """The outputs of an instance, without those that leave out what feeds one of its inputs."""
-    outputs = [v for v in variables_of(component) if v.causality == "output"]
-    return {v.name for v in outputs if not (v.unfed and fed.get(f"{name}.{v.unfed}"))}
 
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
