@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 
 from loomfmu.components import COMPONENTS, DrivenShaft, WeftInsertion
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.standard_loom import wires
+from loomfmu.cosim.scenes.standard_loom import gathered
+from loomfmu.errors import LoomfmuError
 from loomfmu.machines import parameters
 from loomfmu.physics.driven_shaft import driven_motion
 from loomfmu.variables import variables_of
@@ -21,7 +22,8 @@ from loomfmu.variables import variables_of
 MP = mpmath.mp.clone()
 MP.dps = 120
 FULL = DrivenShaft().speed
-TORQUES = ("torque_1", "torque_2", "torque_3", "torque_4")
+TORQUES = DrivenShaft.torque.names
+EVEN = ("motor_power", "motor_power_rate", "motor_work", "load_work", "other_work", "kinetic_energy")
 
 
 def started(load=0.0, **given):
@@ -167,7 +169,7 @@ def test_nothing_is_lost_in_steps_that_are_too_small_to_be_seen():
     velocity, angle = under(MP.mpf(1e-6), 20000 * MP.mpf(1e-9), shaft)
     assert shaft.velocity == pytest.approx(float(velocity), rel=2.3e-16)  # the last digit
     assert shaft.angle == pytest.approx(float(angle), rel=3e-16)
-    gained, _angle = driven_motion(-1e-6, 0.0, 1e-9, 2.0, 40.0)
+    gained, *_means = driven_motion(FULL, -1e-6, 0.0, 0.0, 1e-9, 2.0, 40.0)
     assert FULL + gained == FULL != shaft.velocity
 
 
@@ -228,6 +230,8 @@ def test_energy_is_balanced():
         kinetic = 0.5 * shaft.inertia * shaft.velocity**2
         # the weights are exact to z^10 / 1e10, z = 0.2; rounding of works up to 5 kJ in 40 steps
         assert motor_work - load_work == pytest.approx(kinetic, abs=1e-10), n
+        books = (shaft.motor_work, shaft.load_work, shaft.other_work, shaft.kinetic_energy)
+        assert books == pytest.approx((motor_work, load_work, load_work, kinetic), abs=1e-10)
     assert motor_work > 1e3
 
 
@@ -257,7 +261,7 @@ def test_a_jump_of_the_load_turns_up_in_the_acceleration_alone():
     shaft.step(0.1, 0.0)
     after = values(shaft)
     changed = {name for name in before if after[name] != before[name]}
-    assert changed == {"torque_1", "load_torque", "acceleration"}
+    assert changed == {"torque_1", "load_torque", "acceleration", "motor_power_rate"}
     assert after["acceleration"] == pytest.approx(before["acceleration"] - 50.0, abs=1e-13)  # rounding
     # and the next step begins from the load after the jump
     shaft.step(0.1, 1e-3)
@@ -275,15 +279,16 @@ def test_backwards_is_the_mirror_image():
         backwards.torque_3 = -forwards.torque_3
         for shaft in (forwards, backwards):
             shaft.step(n * 0.01, 0.01)
-        assert {name: -value for name, value in values(backwards, "output").items()} == values(
-            forwards, "output"
-        )
+        mirrored = values(backwards, "output").items()
+        assert {n: v if n in EVEN else -v for n, v in mirrored} == values(forwards, "output")
 
 
 def test_starting_amid_a_load():
     shaft = started(40.0, start_angle=2.0)
     assert values(shaft, "output") == {
         "angle": 2.0, "velocity": FULL, "acceleration": -20.0, "motor_torque": 0.0, "load_torque": 40.0,
+        "motor_power": 0.0, "motor_power_rate": 800.0 * FULL, "motor_work": 0.0, "load_work": 0.0,
+        "other_work": 0.0, "kinetic_energy": FULL**2,
     }  # fmt: skip
     assert shaft.initialize(5.0) == 0  # the start is where the run starts, whatever its time
     assert shaft.angle == 2.0
@@ -377,17 +382,42 @@ def test_a_torque_of_the_step_before_wants_a_shaft_that_outweighs_the_masses():
 # In a scene
 
 
-def test_its_torques_are_wired_to_outputs_of_the_same_unit():
-    unit = {name: {v.name: v for v in variables_of(each)} for name, each in COMPONENTS.items()}
-    owner = {"weft": "WeftInsertion", "reed": "ReedBeatUp"}
-    found = wires({"shaft": DrivenShaft})
-    assert found
-    for sink, source in found.items():
-        sink = sink.removeprefix("shaft.")
-        instance, variable = source.split(".")
-        given, taken = unit[owner[instance]][variable], unit["DrivenShaft"][sink]
-        assert (given.causality, taken.causality) == ("output", "input")
-        assert given.unit == taken.unit == "N.m"
+MECHANISMS = {
+    "shaft": DrivenShaft, "weft": COMPONENTS["WeftInsertion"], "belt": COMPONENTS["BeltMonitor"],
+    "heald_1": COMPONENTS["HealdFrame"], "reed": COMPONENTS["ReedBeatUp"],
+}  # fmt: skip
+
+
+def test_every_mechanism_with_a_torque_has_the_next_free_place():
+    assert gathered("shaft", MECHANISMS, {}) == {
+        "shaft.torque_1": "weft.shaft_torque", "shaft.work_1": "weft.shaft_work",
+        "shaft.torque_2": "heald_1.shaft_torque", "shaft.work_2": "heald_1.shaft_work",
+        "shaft.passed_torque_2": "heald_1.passed_torque",
+        "shaft.torque_3": "reed.shaft_torque", "shaft.work_3": "reed.shaft_work",
+    }  # fmt: skip
+    assert gathered("reed", MECHANISMS, {}) == {}
+
+
+def test_a_place_that_is_taken_is_passed_over_and_a_torque_counts_once():
+    given = {"shaft.torque_1": 60.0, "shaft.torque_2": "reed.shaft_torque"}
+    found = gathered("shaft", MECHANISMS, given)
+    assert set(found) == {
+        *(f"shaft.{n}" for n in ("torque_3", "work_3", "torque_4", "work_4", "passed_torque_4"))
+    }
+
+
+def test_where_the_wire_of_a_torque_is_cut_its_work_does_not_count():
+    found = gathered("shaft", MECHANISMS, {"shaft.torque_1": False})
+    assert found["shaft.torque_1"] == "weft.shaft_torque"  # for the scene to cut
+    assert "shaft.work_1" not in found
+
+
+def test_more_mechanisms_than_places_are_refused():
+    frames = {f"heald_{n}": COMPONENTS["HealdFrame"] for n in range(1, 34)}
+    with pytest.raises(
+        LoomfmuError, match="has free inputs for 32 mechanisms, but 33 have an output shaft_t"
+    ):
+        gathered("shaft", {"shaft": DrivenShaft} | frames, {})
 
 
 def test_a_scene_takes_it_for_its_shaft():
@@ -399,10 +429,13 @@ def test_a_scene_takes_it_for_its_shaft():
     shaft = scene.instances["shaft"]
     assert shaft.fmu.name == "DrivenShaft"
     wanted = {"inertia": 1.5, "torque_slope": 30.0, "torque_4": 25.0, "inputs_at_step_end": True}
+    wanted |= {f"use_work_{n}": True for n in (1, 2, 3, 5)}
     assert shaft.values == wanted | {"speed": pytest.approx(300 * RPM, rel=1e-15)}
     wires = {str(wire) for wire in scene.wires}
     assert "weft.shaft_torque -> shaft.torque_1" in wires
-    assert "reed.shaft_torque -> shaft.torque_2" in wires
+    assert "dobby.shaft_torque -> shaft.torque_2" in wires
+    assert "heald_1.shaft_work -> shaft.work_3" in wires
+    assert "reed.shaft_torque -> shaft.torque_5" in wires
     assert "shaft.acceleration -> weft.shaft_acceleration" in wires
     # 1 revolution of 0.2 s: the time of a scene is that of the nominal speed
     assert scene.steps * scene.step_size == pytest.approx(0.2, rel=1e-15)

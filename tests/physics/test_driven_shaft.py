@@ -5,16 +5,22 @@ from math import fsum
 
 import mpmath
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from loomfmu.physics.driven_shaft import driven_motion, summed
+from loomfmu.physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 
 MP = mpmath.mp.clone()
 MP.dps = 200  # the closed form divides by k^2: with k h / J = 1e-18 it cancels 54 digits
 
 torques = st.one_of(st.just(0.0), st.floats(-1e3, -1e-3), st.floats(1e-3, 1e3))
 decades = st.floats(-9.0, 3.0)
+
+
+def moved(net, rise, duration, inertia, slope):
+    """Change of velocity and angle beyond that at the initial velocity, under a load on a straight line."""
+    gained, more, _second, _third = driven_motion(0.0, net, rise, 0.0, duration, inertia, slope)
+    return gained, more * duration
 
 
 def solved(net, rise, duration, inertia, slope):
@@ -30,7 +36,7 @@ def solved(net, rise, duration, inertia, slope):
 
 
 def agree(net, rise, duration, inertia, slope):
-    found = driven_motion(net, rise, duration, inertia, slope)
+    found = moved(net, rise, duration, inertia, slope)
     wanted = solved(net, rise, duration, inertia, slope)
     # the motor's and the load's part are each right to rounding; their difference is to that of either
     parts = [solved(*each, duration, inertia, slope) for each in ((net, 0.0), (0.0, rise))]
@@ -58,7 +64,7 @@ def test_no_decay_is_special(decay):
 
 def test_a_motor_that_has_all_the_time_gives_way_until_it_balances_the_load():
     # N = N0 - k (w - w(0)) - dT comes to nothing, but for the load's own rate: w' = -dT / (k h)
-    velocity, _angle = driven_motion(6.0, 4.0, 1e3, 0.01, 2.0)
+    velocity, _angle = moved(6.0, 4.0, 1e3, 0.01, 2.0)
     lag = 0.01 * 4.0 / 1e3 / 2.0 / 2.0  # J dT / (k^2 h)
     assert velocity == pytest.approx((6.0 - 4.0) / 2.0 + lag, rel=1e-15)
 
@@ -70,12 +76,12 @@ def test_work_of_the_motor_is_work_of_the_load_and_kinetic_energy(net, rise, slo
     def surplus(share):
         """Power of the motor less that of the load, after a share of the step."""
         share = float(share)
-        gained, _angle = driven_motion(net, rise * share, duration * share, inertia, slope)
+        gained, _angle = moved(net, rise * share, duration * share, inertia, slope)
         motor = net + load - slope * gained
         return MP.mpf((motor - load - rise * share) * (velocity + gained))
 
     work = duration * MP.quad(surplus, [0, 1], method="gauss-legendre", maxdegree=4)
-    gained, _angle = driven_motion(net, rise, duration, inertia, slope)
+    gained, _angle = moved(net, rise, duration, inertia, slope)
     kinetic = inertia * gained * (velocity + 0.5 * gained)
     # rounding of the torques and of the powers; z is 5 at most, and the quadrature of 48 points exact
     largest = (abs(net) + abs(rise) + load + slope * abs(gained)) * (abs(velocity) + abs(gained) + 100.0)
@@ -85,10 +91,10 @@ def test_work_of_the_motor_is_work_of_the_load_and_kinetic_energy(net, rise, slo
 @given(torques, torques, st.floats(0.0, 1.0), st.sampled_from([0.0, 0.1, 40.0, 1e4]))
 def test_a_step_is_the_sum_of_its_parts(net, rise, part, slope):
     inertia, duration = 2.0, 0.1
-    whole = driven_motion(net, rise, duration, inertia, slope)
-    first = driven_motion(net, rise * part, duration * part, inertia, slope)
+    whole = moved(net, rise, duration, inertia, slope)
+    first = moved(net, rise * part, duration * part, inertia, slope)
     rest = duration * (1.0 - part)
-    second = driven_motion(net - rise * part - slope * first[0], rise * (1.0 - part), rest, inertia, slope)
+    second = moved(net - rise * part - slope * first[0], rise * (1.0 - part), rest, inertia, slope)
     # the balance of motor and load at the joint is rounded: to 1e-16 of either, over J or over k
     scale = 1e-15 * (abs(net) + 2.0 * abs(rise)) * min(duration / inertia, 1.0 / slope if slope else 1.0)
     assert abs(first[0] + second[0] - whole[0]) <= 4.0 * scale
@@ -96,7 +102,72 @@ def test_a_step_is_the_sum_of_its_parts(net, rise, part, slope):
 
 
 def test_a_step_of_no_length_moves_nothing():
-    assert driven_motion(5.0, 3.0, 0.0, 2.0, 40.0) == (0.0, 0.0)
+    assert moved(5.0, 3.0, 0.0, 2.0, 40.0) == (0.0, 0.0)
+
+
+# Loads on a parabola
+
+
+def along(share, velocity, net, rise, bulge, duration, inertia, slope):
+    """Velocity after a share of a step, in 200 digits: a polynomial and a decay."""
+    u, h, j, k = MP.mpf(share), MP.mpf(duration), MP.mpf(inertia), MP.mpf(slope)
+    n0, n1, n2 = MP.mpf(net), -MP.mpf(rise) - 6 * MP.mpf(bulge), 6 * MP.mpf(bulge)
+    if k == 0:
+        return velocity + h / j * (n0 * u + n1 * u**2 / 2 + n2 * u**3 / 3)
+    z = k * h / j
+    c2 = n2 / k
+    c1 = (n1 - 2 * c2 * k / z) / k
+    c0 = (n0 - c1 * k / z) / k
+    return velocity + c0 + c1 * u + c2 * u**2 - c0 * MP.exp(-z * u)
+
+
+@settings(max_examples=15, deadline=None)  # quadratures in 200 digits
+@given(
+    st.floats(-50.0, 50.0), torques, torques, torques, st.floats(-5.0, 0.0), st.floats(-2.0, 2.0),
+    st.sampled_from([0.0, 0.1, 40.0]),
+)  # fmt: skip
+def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise, bulge, size, mass, slope):
+    step = (10.0**size, 10.0**mass, slope)
+    gained, more, second, third = driven_motion(velocity, net, rise, bulge, *step)
+
+    def at(share):
+        return along(share, MP.mpf(velocity), net, rise, bulge, *step)
+
+    # a polynomial and a decay by exp(-400) at most, on 8 pieces: exact to 1e-17
+    pieces = MP.linspace(0, 1, 9)
+    largest = abs(velocity) + step[0] / step[1] * (abs(net) + abs(rise) + 6.0 * abs(bulge))
+    assert abs(velocity + gained - at(1)) <= 1e-14 * largest  # some ten roundings
+    assert abs(velocity + more - MP.quad(at, pieces)) <= 1e-14 * largest
+    start = 17.0
+
+    def power(u):
+        return (start + MP.mpf(rise) * u + 6 * MP.mpf(bulge) * u * (1 - u)) * at(u)
+
+    work = work_of(start, rise, bulge, step[0], velocity + more, second, third)
+    torque = start + abs(rise) + 12.0 * abs(bulge)
+    assert abs(work - step[0] * MP.quad(power, pieces)) <= 1e-14 * step[0] * largest * torque
+
+
+@given(st.floats(5.0, 60.0), torques, torques, st.floats(-5.0, -2.0), st.sampled_from([0.0, 40.0]))
+def test_the_bulge_makes_torques_do_a_known_work(velocity, net, rise, size, slope):
+    duration, inertia, start, wanted = 10.0**size, 2.0, 7.0, 0.3
+    for way in (1.0, -1.0):
+        given = (way * start, way * rise, way * velocity, way * net, way * rise, duration, inertia, slope)
+        bulge = bulge_for(wanted, *given)
+        step = driven_motion(way * velocity, way * net, way * rise, bulge, duration, inertia, slope)
+        gained, more, second, third = step
+        work = work_of(way * start, way * rise, bulge, duration, way * velocity + more, second, third)
+        if way * (velocity * way + gained) > 0.0 and abs(gained) < velocity:
+            # rounding of the work of either part
+            assert work == pytest.approx(
+                wanted, abs=1e-12 * duration * velocity * (abs(rise) + abs(bulge) + 8.0)
+            )
+    assert bulge_for(1.0, 7.0, 0.0, 0.0, 0.0, 0.0, 0.1, 2.0, 0.0) == 0.0  # at rest a torque does no work
+
+
+def test_work_that_cannot_be_done_stops_at_what_can():
+    # to give away more than it has would need the root of a negative number
+    assert bulge_for(1e6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1, 2.0, 0.0) > 0.0
 
 
 # Sums

@@ -72,11 +72,11 @@ class DrivenShaft(Component):
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
     motor_torque: float = output("N.m", "Motor torque on the shaft", nominal=10.0)
     load_torque: float = output("N.m", "Load torque of all mechanisms, braking", nominal=10.0)
-    motor_power: float = output("W", "Power of the motor", display="kW", nominal=1000.0, rate="motor_power_rate")
-    motor_power_rate: float = output("W/s", "Rate of motor_power", nominal=1e5)
-    motor_work: float = output(
-        "J", "Work of the motor since the start", nominal=100.0, rate="motor_power"
+    motor_power: float = output(
+        "W", "Power of the motor", display="kW", nominal=1000.0, rate="motor_power_rate"
     )
+    motor_power_rate: float = output("W/s", "Rate of motor_power", nominal=1e5)
+    motor_work: float = output("J", "Work of the motor since the start", nominal=100.0, rate="motor_power")
     load_work: float = output("J", "Work of the shaft on all mechanisms since the start", nominal=100.0)
     other_work: float = output(
         "J", "Part of load_work that no mechanism states: of torques without work_1 and so on", nominal=100.0

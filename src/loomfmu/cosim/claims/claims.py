@@ -19,7 +19,13 @@ from . import drive_claims, heald_claims, latched_claims, loom_claims, signal_cl
 from .claim import Claim
 
 KINDS = Claim.kinds
-FILES = (signal_claims, latched_claims, heald_claims, loom_claims, drive_claims)  # each kind in them adds itself to KINDS
+FILES = (
+    signal_claims,
+    latched_claims,
+    heald_claims,
+    loom_claims,
+    drive_claims,
+)  # each kind in them adds itself to KINDS
 
 
 Kind = Literal[  # for editors and type checkers; a test holds it to the classes

@@ -35,8 +35,8 @@ class MotorPower(Claim):
 class SpeedFluctuation(Claim):
     """In each revolution the shaft's highest and lowest velocity differ by no more than a share of the mean.
 
-    Revolutions are counted from where the run starts. The first `skip` of them are left out, such as those of
-    a start-up.
+    Revolutions are counted from where the run starts. The first `skip` of them, such as those of a start-up,
+    are left out.
     """
 
     at_most: float = argument(Quantity("1", "%", low=0.0))
@@ -66,9 +66,9 @@ class SpeedFluctuation(Claim):
 class EnergyBalance(Claim):
     """What the motor delivers is found again: in the shaft, in its mechanisms and in torques from outside.
 
-    What is judged is the largest share that is missing at any sample since the start. It is a share of the
-    work that the shaft and its loads exchange in a revolution, to and fro. A run whose torques are a step late
-    does not balance.
+    What is judged is the largest share that is missing at any sample since the start: of the work that the
+    shaft and its loads exchange in a revolution, to and fro. A run whose torques are a step late does not
+    balance.
     """
 
     at_most: float = argument(Quantity("1", low=0.0), 1e-9)

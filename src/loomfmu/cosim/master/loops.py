@@ -32,6 +32,7 @@ NOT_SETTLED, NOT_SAVED, NOT_RESTORED = -1, -2, -3  # how stepper.c says why a st
 HISTORY = 256  # samples over which an oscillation is followed
 FLIPS = 10  # in a row, each larger than the one before: an extremum of a smooth signal gives one
 GROWTH = 30.0  # from which on it is an oscillation, and not noise
+FEW_FLIPS, SUDDEN = 4, 1e4  # or fewer flips with that growth: the next step may be beyond an FMU's limits
 NOTICED = 1e-6  # share of the largest value from which on it is reported
 
 
@@ -46,7 +47,7 @@ def _product(one: Floats, other: Floats) -> float:
 class Broyden:
     """Solves `outputs(inputs) = inputs` for the real values on the wires of a loop, by Broyden's method.
 
-    What it has learnt of the loop's slopes is kept from one step to the next, and a step begins with the values
+    What it has learnt of the loop's slopes is kept from one step to the next, and a step begins with values
     that go on as over the last one. Values that are not real are handed on as they are. The compiled stepper
     does the same arithmetic, to the last bit.
     """
@@ -160,8 +161,8 @@ class CompiledIteration(CompiledStepper):
         self._struct = _Loop(
             loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
             self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, TOLERANCE,
-            ROUNDING, FLAT, self._solver.last.ctypes.data, self._solver.largest.ctypes.data, self._solver.inverse.ctypes.data, self._room.ctypes.data,
-            self._integers.ctypes.data,
+            ROUNDING, FLAT, self._solver.last.ctypes.data, self._solver.largest.ctypes.data,
+            self._solver.inverse.ctypes.data, self._room.ctypes.data, self._integers.ctypes.data,
         )  # fmt: skip
         super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
 
@@ -282,7 +283,8 @@ class Growth:
         start = 0
         for end in np.append(np.flatnonzero(~swings), len(swings)) if len(swings) else ():
             first, last = abs(change[start]), abs(change[end])
-            if end - start >= FLIPS and last > GROWTH * first and last > NOTICED * largest:
+            grows = last > (GROWTH if end - start >= FLIPS else SUDDEN) * first
+            if end - start >= FEW_FLIPS and grows and last > NOTICED * largest:
                 factor = (last / first) ** (1.0 / (end - start))
                 raise LoomfmuError(
                     f"loop: {self._wires}: unstable: grows by a factor of {factor:.3g} per step from"

@@ -20,7 +20,9 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
     usual = standard_loom.wires(components)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
-    values = {f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()}
+    values = {
+        f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
+    }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
     for name in components:
         sources |= standard_loom.gathered(name, components, sources | tables)
