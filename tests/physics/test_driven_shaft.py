@@ -107,23 +107,26 @@ def test_a_step_of_no_length_moves_nothing():
 
 # Loads on a parabola
 
+FINE = mpmath.mp.clone()
+FINE.dps = 60  # the particular part cancels 24 digits
+
 
 def along(share, velocity, net, rise, bulge, duration, inertia, slope):
-    """Velocity after a share of a step, in 200 digits: a polynomial and a decay."""
-    u, h, j, k = MP.mpf(share), MP.mpf(duration), MP.mpf(inertia), MP.mpf(slope)
-    n0, n1, n2 = MP.mpf(net), -MP.mpf(rise) - 6 * MP.mpf(bulge), 6 * MP.mpf(bulge)
+    """Velocity after a share of a step, in 60 digits: a polynomial and a decay."""
+    u, h, j, k = FINE.mpf(share), FINE.mpf(duration), FINE.mpf(inertia), FINE.mpf(slope)
+    n0, n1, n2 = FINE.mpf(net), -FINE.mpf(rise) - 6 * FINE.mpf(bulge), 6 * FINE.mpf(bulge)
     if k == 0:
         return velocity + h / j * (n0 * u + n1 * u**2 / 2 + n2 * u**3 / 3)
     z = k * h / j
     c2 = n2 / k
     c1 = (n1 - 2 * c2 * k / z) / k
     c0 = (n0 - c1 * k / z) / k
-    return velocity + c0 + c1 * u + c2 * u**2 - c0 * MP.exp(-z * u)
+    return velocity + c0 + c1 * u + c2 * u**2 - c0 * FINE.exp(-z * u)
 
 
-@settings(max_examples=15, deadline=None)  # quadratures in 200 digits
+@settings(max_examples=10, deadline=None)  # quadratures in 60 digits
 @given(
-    st.floats(-50.0, 50.0), torques, torques, torques, st.floats(-5.0, 0.0), st.floats(-2.0, 2.0),
+    st.floats(-50.0, 50.0), torques, torques, torques, st.floats(-5.0, 0.0), st.floats(0.0, 2.0),
     st.sampled_from([0.0, 0.1, 40.0]),
 )  # fmt: skip
 def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise, bulge, size, mass, slope):
@@ -131,21 +134,26 @@ def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise,
     gained, more, second, third = driven_motion(velocity, net, rise, bulge, *step)
 
     def at(share):
-        return along(share, MP.mpf(velocity), net, rise, bulge, *step)
+        return along(share, FINE.mpf(velocity), net, rise, bulge, *step)
 
-    # a polynomial and a decay by exp(-400) at most, on 8 pieces: exact to 1e-17
-    pieces = MP.linspace(0, 1, 9)
+    # a polynomial and a decay by exp(-40) at most, on 8 pieces: exact to 1e-17
+    pieces = FINE.linspace(0, 1, 9)
     largest = abs(velocity) + step[0] / step[1] * (abs(net) + abs(rise) + 6.0 * abs(bulge))
     assert abs(velocity + gained - at(1)) <= 1e-14 * largest  # some ten roundings
-    assert abs(velocity + more - MP.quad(at, pieces)) <= 1e-14 * largest
+    assert (
+        abs(velocity + more - FINE.quad(at, pieces, method="gauss-legendre", maxdegree=4)) <= 1e-14 * largest
+    )
     start = 17.0
 
     def power(u):
-        return (start + MP.mpf(rise) * u + 6 * MP.mpf(bulge) * u * (1 - u)) * at(u)
+        return (start + FINE.mpf(rise) * u + 6 * FINE.mpf(bulge) * u * (1 - u)) * at(u)
 
     work = work_of(start, rise, bulge, step[0], velocity + more, second, third)
     torque = start + abs(rise) + 12.0 * abs(bulge)
-    assert abs(work - step[0] * MP.quad(power, pieces)) <= 1e-14 * step[0] * largest * torque
+    assert (
+        abs(work - step[0] * FINE.quad(power, pieces, method="gauss-legendre", maxdegree=4))
+        <= 1e-14 * step[0] * largest * torque
+    )
 
 
 @given(st.floats(5.0, 60.0), torques, torques, st.floats(-5.0, -2.0), st.sampled_from([0.0, 40.0]))
