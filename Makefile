@@ -14,7 +14,6 @@ FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
 .PHONY: demo test check stress attack bench docs validation wheel pins clean
 
 demo: .venv/installed
-	$(BIN)/loomfmu build
 	$(BIN)/loomfmu run sims/wl680_3600.toml
 
 test: .venv/installed-for-tests check
@@ -48,11 +47,12 @@ docs: .venv/installed
 validation: .venv/installed-for-tests
 	$(BIN)/loomfmu validate
 
-# a package that needs no compiler for its stepper, on any platform
-wheel: .venv/installed-for-tests
+# a package that brings native FMUs and stepper for all platforms: who installs it needs no compiler
+wheel: .venv/installed
+	$(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
 	$(BIN)/python -c "from loomfmu.cosim.master.steppers import build_all; build_all()"
 	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist .
-	rm -r src/loomfmu/cosim/master/native/*/
+	rm -r src/loomfmu/cosim/master/native/*/ src/loomfmu/fmi/native/shipped
 
 .venv/created:
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"
@@ -73,7 +73,7 @@ wheel: .venv/installed-for-tests
 pins: .venv/created
 	$(PIP) install uv
 	$(PIN) pyproject.toml --group build --extra test --output-file pins/test.txt
-	$(PIN) pyproject.toml --group build --constraint pins/test.txt --output-file pins/run.txt
+	$(PIN) pyproject.toml --group build --extra native --constraint pins/test.txt --output-file pins/run.txt
 
 clean:
 	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

@@ -10,7 +10,7 @@ from filelock import FileLock
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.cache import cache_directory
-from loomfmu.fmi.native.builder import host_platform
+from loomfmu.fmi.native.platforms import host
 
 
 def shared_directory(request: pytest.FixtureRequest, factory: pytest.TempPathFactory) -> Path:
@@ -35,5 +35,5 @@ def native_fmus() -> dict[str, fmus.Fmu]:
     cache = cache_directory()
     cache.mkdir(parents=True, exist_ok=True)
     with FileLock(cache / "native.lock"), ThreadPoolExecutor(max_workers=4) as pool:
-        list(pool.map(lambda each: fmus.file_of(each, "native", (host_platform(),)), COMPONENTS.values()))
+        list(pool.map(lambda each: fmus.file_of(each, "native", (host(),)), COMPONENTS.values()))
     return {name: fmus.of_component(name, "native") for name in COMPONENTS}

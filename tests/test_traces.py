@@ -76,13 +76,13 @@ def test_the_root_says_what_was_run(file: h5py.File, result: loomfmu.Result) -> 
     assert said["status"] == "complete"
     assert said["software"] == f"loomfmu {metadata.version('loomfmu')}"
     assert (said["revolutions"], said["steps_per_revolution"]) == ("1.5", "1440")
-    assert (said["set"], said["flavour"]) == ("{}", "live")
+    assert (said["set"], said["flavour"]) == ("{}", "native")
     assert said["command"] == f"loomfmu run {result.scene.file}"
     assert json.loads(said["claims"]) == [verdict.as_dict() for verdict in result.claims]
     kinds = {instance.fmu.name for instance in result.scene.instances.values()}
     assert len(kinds) == 6
     for kind in kinds - {"MainShaft"}:  # a shaft of constant speed needs no FMU
-        fmu = fmus.of_component(kind)
+        fmu = fmus.of_component(kind, "native")
         assert said[f"fmu_{kind}_version"] == metadata.version("loomfmu")
         assert said[f"fmu_{kind}_sha256"] == hashlib.sha256(fmu.path.read_bytes()).hexdigest()
 

@@ -6,6 +6,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+from .version import __version__ as __version__
+
 if TYPE_CHECKING:
     from . import design as design
     from .cosim.claims.claims import judge as judge
@@ -18,8 +20,6 @@ if TYPE_CHECKING:
     from .sweeps.run import sweep as sweep
     from .traces import Trace as Trace
     from .traces import Verdict as Verdict
-
-    __version__: str
 
 # public name -> its module
 _HOMES = {
@@ -39,10 +39,6 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     """Load the public names when they are first used: importing loomfmu alone costs next to nothing."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("loomfmu")
     if name == "__all__":
         return __dir__()
     if name not in _HOMES:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from .printed import complain, say
+from .version import __version__
 
 ABOUT = (
     "Simulate the mechanisms of a weaving loom as FMUs over the main shaft's angle, and check claims about"
@@ -29,12 +30,8 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _Version(argparse.Action):
-    """Reads the version only if it is wanted: that takes longer than parsing the command."""
-
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from importlib.metadata import version
-
-        say(f"loomfmu {version('loomfmu')}")
+        say(f"loomfmu {__version__}")
         parser.exit()
 
 
@@ -67,7 +64,11 @@ def _run(commands: Any) -> None:
     run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
     _add_set(run)
     run.add_argument("--output", metavar="FILE.h5", help="trace file; results/SCENE.h5 by default")
-    run.add_argument("--native", action="store_true", help="use native FMUs instead of live ones")
+    flavour = run.add_mutually_exclusive_group()
+    flavour.add_argument(
+        "--live", action="store_true", help="use live FMUs (Python) instead of native ones (compiled)"
+    )
+    flavour.add_argument("--native", action="store_true", help=argparse.SUPPRESS)  # which it does anyway
     run.add_argument("--report", action="store_true", help="also write a page to look at, beside the trace")
     run.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
     _add_force(run, "FILE.h5 even if it is not a trace")

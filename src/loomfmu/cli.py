@@ -9,8 +9,11 @@ import shutil
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from signal import SIG_IGN, SIGINT, signal
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from . import printed, units
@@ -18,7 +21,10 @@ from .arguments import parser
 from .errors import LoomfmuError, described, why
 from .printed import complain, say
 
+BEGUN = perf_counter()  # when the command started
+
 if TYPE_CHECKING:
+    from .cosim.results import Result
     from .traces import Trace, Verdict
 
 
@@ -99,14 +105,12 @@ def _export(options: argparse.Namespace) -> int:
     from .cosim import whole
     from .cosim.scenes import scene
     from .cosim.ssp import export as ssp
-    from .fmi.native import builder as native_builder
 
     if options.fmu and options.flavour:
         raise LoomfmuError("--flavour is for --ssp: one FMU of a whole scene is always native")
     if options.ssp and options.fmi:
         raise LoomfmuError("--fmi is for --fmu: a system package holds FMUs of FMI 2.0")
-    chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
-    platforms = native_builder.check_platforms(tuple(chosen))
+    platforms = _platforms(options)
     loaded = scene.load(options.scene, _overrides(options))
     if options.fmu:
         warnings = whole.export(loaded, options.fmu, platforms, options.fmi or 2, options.force)
@@ -126,7 +130,7 @@ def _run(options: argparse.Namespace) -> int:
         from . import report
 
         report.check()  # before the run, not after it
-    options.scene = checked(options.scene, _overrides(options), "native" if options.native else "live")
+    options.scene = checked(options.scene, _overrides(options), "live" if options.live else "native")
     if unprotected := options.scene.unprotected:
         return supervised(lambda: _status(lambda: _run_here(options), options), unprotected)
     return _run_here(options)
@@ -138,7 +142,7 @@ def _run_here(options: argparse.Namespace) -> int:
 
     result = run(
         options.scene, output=options.output, progress=True,
-        flavour="native" if options.native else "live", overwrite=options.force,
+        flavour="live" if options.live else "native", overwrite=options.force,
     )  # fmt: skip
     for warning in result.warnings:
         complain(f"warning: {warning}")
@@ -155,6 +159,7 @@ def _run_here(options: argparse.Namespace) -> int:
     _print_verdicts(result.claims)
     if scene.description:
         say(*scene.description.splitlines(), "")
+    _print_pace(result)
     command = "loomfmu"
     if Path(sys.argv[0]).name == command and shutil.which(command) != shutil.which(sys.argv[0]):
         command = sys.argv[0]  # it is not on the PATH, or another one is
@@ -166,6 +171,14 @@ def _run_here(options: argparse.Namespace) -> int:
 
         say(f"report: {report.write([result.trace], overwrite=options.force)}")
     return 0 if result.holds else 1
+
+
+def _print_pace(result: "Result") -> None:
+    """How fast the steps were, with FMUs of which flavour, and how long the command took until now."""
+    flavours = {each.fmu.flavour for each in result.scene.instances.values()} - {""}
+    pace = f"{1e6 * result.seconds / result.steps:.3g} us each" if result.steps else "none"
+    kind = f"{' and '.join(sorted(flavours, reverse=True))} FMUs".lstrip()
+    say(f"{result.steps} steps with {kind}, {pace}; {perf_counter() - BEGUN:.2f} s in total")
 
 
 def _sweep(options: argparse.Namespace) -> int:
@@ -186,20 +199,32 @@ def _sweep(options: argparse.Namespace) -> int:
 def _build(options: argparse.Namespace) -> int:
     from . import catalogue
     from .fmi import builder
-    from .fmi.native import builder as native_builder
+    from .fmi.native.builder import build_native
 
     built = catalogue.components(options.names)
     if not options.native and (options.platform or options.fmi != 2):
         raise LoomfmuError("--platform and --fmi are for native FMUs: add --native")
-    chosen = options.platform.split(",") if options.platform else native_builder.PLATFORMS
-    platforms = native_builder.check_platforms(tuple(chosen))
-    for component in built:
-        if options.native:
-            output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
-            say(native_builder.build_native(component, output, platforms, options.fmi, options.force))
-        else:
-            say(builder.build(component, options.output or Path("build/fmus"), options.force))
+    platforms = _platforms(options)
+    if options.native:
+        output = options.output or Path("build/native" if options.fmi == 2 else "build/native_fmi3")
+        build = partial(
+            build_native, directory=output, platforms=platforms, fmi=options.fmi, overwrite=options.force
+        )
+    else:
+        build = partial(
+            builder.build, directory=options.output or Path("build/fmus"), overwrite=options.force
+        )
+    with ThreadPoolExecutor() as pool:  # compilers run side by side
+        for path in pool.map(build, built):
+            say(path)
     return 0
+
+
+def _platforms(options: argparse.Namespace) -> tuple[str, ...]:
+    """The platforms that were chosen, all by default. Raises LoomfmuError for one that is not known."""
+    from .fmi.native.platforms import PLATFORMS, check_platforms
+
+    return check_platforms(tuple(options.platform.split(",") if options.platform else PLATFORMS))
 
 
 def _list(options: argparse.Namespace) -> int:

@@ -355,9 +355,14 @@ class Component:
         raise NotImplementedError
 
 
+_variables: dict[type[Component], tuple[Variable, ...]] = {}
+
+
 def variables_of(component: type[Component]) -> tuple[Variable, ...]:
     """All variables of a component in the order of their declaration; the index is the value reference."""
-    return component.declared()
+    if component not in _variables:
+        _variables[component] = component.declared()
+    return _variables[component]
 
 
 def arrays_of(component: type[Component]) -> dict[str, tuple[Variable, ...]]:

@@ -21,6 +21,7 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import step_order
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.native import compiler, platforms
 from loomfmu.fmi.native.translate import translate
 from loomfmu.variables import variables_of
 
@@ -57,8 +58,8 @@ def _run(*command: str, directory: Path | None = None) -> str:
 
 def _compiled(directory: Path, source: str, options: tuple[str, ...] = ()) -> Path:
     """A program from a C file of that directory, compiled with the flags of the FMUs."""
-    target = next(iter(native_builder.PLATFORMS[native_builder.host_platform()].targets))
-    flags = [flag for flag in native_builder.FLAGS if flag != "-shared"]
+    target = next(iter(platforms.PLATFORMS[platforms.host()].targets))
+    flags = [flag for flag in compiler.FLAGS if flag != "-shared"]
     program = directory / Path(source).stem
     _run(
         sys.executable, "-m", "ziglang", "cc", "-target", target, *flags, *options, "-o", str(program),
@@ -171,7 +172,7 @@ def host(source: Source, directory: Path) -> Program:
 def whole_fmu(source: Source, directory: Path) -> Program:
     """The scene as one native FMU under the same host; its columns are named as those of the others."""
     scene = source.scene()
-    whole.export(scene, directory / "whole.fmu", (native_builder.host_platform(),))
+    whole.export(scene, directory / "whole.fmu", (platforms.host(),))
     text = f'duration = {scene.step_size!r}\nstep = {scene.step_size!r}\n[all]\nfmu = "whole.fmu"\n'
     alone = scenes.parse(text, "alone", directory=directory)
     ports = alone.instances["all"].fmu.ports
@@ -196,7 +197,7 @@ def _plan(scene: Scene) -> Iterator[str]:
     yield "static const struct made made[INSTANCES] = {"
     for name in order:
         fmu = scene.instances[name].fmu
-        library = fmu.directory / "binaries" / native_builder.host_platform() / f"{fmu.identifier}.so"
+        library = fmu.directory / "binaries" / platforms.host() / f"{fmu.identifier}.so"
         yield f'    {{"{name}", "{library}", "{fmu.guid}"}},'
     yield "};\n\nstatic const struct setting settings[] = {"
     for place, name in enumerate(order):

@@ -17,7 +17,7 @@ from own import Signals, Source
 
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.ssp import export as ssp
-from loomfmu.fmi.native.builder import host_platform
+from loomfmu.fmi.native.platforms import host
 
 NOT_RUN = {
     "pyfmi": ("PyFMI", "not installable here: no wheel for this Python"),
@@ -39,7 +39,7 @@ class Peer:
         self.directory, self.source, self.recorded = directory, source, recorded
         self.package = directory / "loom.ssp"
         self.scene: Scene = source.scene()
-        ssp.export(self.scene, self.package, flavour, (host_platform(),))
+        ssp.export(self.scene, self.package, flavour, (host(),))
         self.time(45, 1.0)  # whatever is loaded, is loaded
 
     def time(self, steps: int, turns: float) -> Timing:

@@ -15,7 +15,7 @@ from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.ssp import export as ssp
-from loomfmu.fmi.native.builder import host_platform
+from loomfmu.fmi.native.platforms import host
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
 Signals = dict[str, NDArray[np.float64]]
@@ -47,7 +47,7 @@ def reals(scene: Scene) -> list[str]:
 def packed(scene: Scene, directory: Path) -> Path:
     """The scene as a system package with native FMUs."""
     path = directory / f"{scene.name}.ssp"
-    ssp.export(scene, path, "native", (host_platform(),))
+    ssp.export(scene, path, "native", (host(),))
     return path
 
 

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 from fmpy.validation import validate_fmu
+from masters import DEMO
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing.fmus import Fmu
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
 
 
@@ -33,4 +35,4 @@ def test_fmutool_finds_no_fault(natives: dict[str, Fmu], name: str) -> None:
 
 @pytest.mark.usefixtures("natives")
 def test_a_package_holds_native_fmus_by_default() -> None:
-    assert ssp.default_flavour() == "native"
+    assert ssp.default_flavour(scenes.load(DEMO)) == "native"

@@ -10,7 +10,8 @@ from masters import oms_library
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.fmi.native.builder import build_native, host_platform
+from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.platforms import host
 from loomfmu.variables import variables_of
 
 PARTS = {"shaft": "MainShaft", "dobby": "DobbyDrive", "heald_1": "HealdFrame"}
@@ -31,7 +32,7 @@ WEAKLY_COUPLED = 1  # oms_system_wc
 @pytest.mark.usefixtures("natives")
 def test_they_give_the_bits_of_fmi_2(tmp_path: Path) -> None:
     for name in PARTS.values():
-        build_native(name, tmp_path, (host_platform(),), 3)
+        build_native(name, tmp_path, (host(),), 3)
     third = {f"{instance}.fmu": str(tmp_path / f"{name}.fmu") for instance, name in PARTS.items()}
     expected = run(scenes.parse(SCENE), output=tmp_path / "2.h5", flavour="native").trace
     result = run(scenes.parse(SCENE, overrides=third), output=tmp_path / "3.h5")
@@ -47,7 +48,7 @@ def test_they_give_the_bits_of_fmi_2(tmp_path: Path) -> None:
 def test_omsimulator_steps_each_of_them(tmp_path: Path, name: str) -> None:
     # it takes the references in a ModelStructure for places in the list of variables, counted from 1
     library = oms_library()
-    path = build_native(name, tmp_path, (host_platform(),), 3)
+    path = build_native(name, tmp_path, (host(),), 3)
     assert library.oms_setTempDirectory(str(tmp_path).encode()) == 0
     assert library.oms_newModel(b"model") == 0
     try:

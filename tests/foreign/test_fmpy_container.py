@@ -10,13 +10,14 @@ from fmpy.container_fmu.config import Component, Configuration, Connection
 from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, ModelVariable
 
 from loomfmu.components import WeftInsertion
-from loomfmu.fmi.native.builder import build_native, host_platform
+from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.platforms import host
 
 SHAFT = ("angle", "velocity", "acceleration")
 
 
 def part(name: str, directory: Path) -> Component:
-    path = build_native(name, directory, (host_platform(),), 3)
+    path = build_native(name, directory, (host(),), 3)
     return Component(name, path, fmpy.read_model_description(path))
 
 

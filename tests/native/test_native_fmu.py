@@ -18,6 +18,7 @@ from loomfmu.errors import LoomfmuError
 from loomfmu.fmi.builder import guid
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
+from loomfmu.fmi.native.platforms import check_platforms
 from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
@@ -154,7 +155,7 @@ def test_a_fat_binary_holds_its_parts():
 
 def test_an_unknown_platform_or_flavour_is_named(tools):
     with pytest.raises(LoomfmuError, match=r"there is no platform 'linux46'; did you mean 'linux64'\?"):
-        native_builder.check_platforms(("win64", "linux46"))
+        check_platforms(("win64", "linux46"))
     with pytest.raises(LoomfmuError, match=r"there is no flavour 'nativ'; did you mean 'native'\?"):
         fmus.of_component("MainShaft", "nativ")
 

@@ -25,8 +25,8 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         **({"files": json.dumps(scene.texts)} if scene.texts else {}),
         **({"package_sha256": scene.package_sha256} if scene.package else {}),
         "set": json.dumps(_texts(scene.overrides)),
-        "flavour": flavour,
-        **_command(scene, flavour),
+        **({} if scene.package else {"flavour": _flavour(scene, flavour)}),
+        **_command(scene, _flavour(scene, flavour)),
         **(
             {"revolutions": f"{scene.periods!r}", "steps_per_revolution": str(scene.steps_per_period)}
             if scene.step is None
@@ -58,6 +58,12 @@ def _described(instance: Instance, values: list[str]) -> dict[str, str]:
     }
 
 
+def _flavour(scene: Scene, wanted: str) -> str:
+    """The flavour of the FMUs that were built for a scene, which may be another one than was wanted."""
+    built = {each.fmu.flavour for each in scene.instances.values() if each.fmu.built}
+    return wanted if wanted in built or not built else built.pop()
+
+
 def _command(scene: Scene, flavour: str) -> dict[str, str]:
     """The command that repeats the run, if its scene was read from a file."""
     source = scene.package or scene.file
@@ -66,7 +72,7 @@ def _command(scene: Scene, flavour: str) -> dict[str, str]:
     words = ["loomfmu", "run", str(source)]
     for key, text in _texts(scene.overrides).items():
         words += ["--set", f"{key}={text}"]
-    return {"command": shlex.join([*words, *(["--native"] if flavour == "native" else [])])}
+    return {"command": shlex.join([*words, *(["--live"] if flavour == "live" else [])])}
 
 
 def _texts(overrides: dict[str, Any]) -> dict[str, str]:

@@ -44,10 +44,12 @@ class Result(Judged):
     """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
 
     `path` is where the trace was written. `trace` stays that of this run if another one is written there.
+    `seconds` is the time that the steps took, the writing of their samples included.
     """
 
     path: Path
     trace: Trace = field(repr=False, compare=False)
+    seconds: float = field(default=0.0, kw_only=True, compare=False)
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 from .. import printed
@@ -15,7 +16,7 @@ from .claims.claims import judge
 from .importing.fmus import FLAVOURS, Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
-from .planning.plan import Plan, channels, ended_text, explained, in_memory, record
+from .planning.plan import Plan, build_needed, channels, ended_text, explained, in_memory, record
 from .planning.pruning import prune
 from .planning.requested import checked_claims, judged_by, output_port, recorded, shaft_angle, with_rates
 from .planning.windows import window_grid
@@ -37,7 +38,7 @@ def run(
     set: dict[str, Any] | None = None,  # the command's own word
     output: str | Path | None = None,
     progress: bool = False,
-    flavour: Flavour = "live",
+    flavour: Flavour = "native",
     overwrite: bool = False,
 ) -> Result:
     """Co-simulate a scene, record it to HDF5 and judge its claims.
@@ -48,7 +49,7 @@ def run(
         output: path of the trace; `results/<scene>.h5` below the current directory by default
         progress: report the size of a large trace beforehand and show a progress bar for a long run, if
             standard error is a terminal
-        flavour: "live" or "native" FMUs
+        flavour: "native" or "live" FMUs; live ones also where no native one is available, with a warning
         overwrite: replace a file at `output` that is not a trace
 
     Raises:
@@ -58,14 +59,18 @@ def run(
     scene = checked(scene, set, flavour)
     path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
     signals = recorded(scene)
-    plan = Plan(scene, prune(scene, signals), _grid(scene, signals))
+    pruned = prune(scene, signals)
+    build_needed(pruned.scene, report=progress)
+    plan = Plan(scene, pruned, _grid(scene, signals))
     target = _target(plan, path, overwrite, progress)
     with plan.stepped() as master:
         if master.interrupted.value:
             raise KeyboardInterrupt("interrupted before the first step")
         writer = _writer(plan, master, path, target, flavour)
         with _kept(writer, path), _bar(plan, progress) as advance:
+            begun = perf_counter()
             record(master, writer, advance)
+            seconds = perf_counter() - begun
             if master.interrupted.value:
                 raise Interrupted
         # while the instances are still there: one that crashes when it is freed takes nothing with it
@@ -73,7 +78,7 @@ def run(
         warnings = (*scene.notes, *master.warnings())
     return Result(
         scene, verdicts, warnings, explained(plan), master.steps, path, trace,
-        ended=ended_text(master.ended),
+        ended=ended_text(master.ended), seconds=seconds,
     )  # fmt: skip
 
 
@@ -81,7 +86,7 @@ def evaluate(
     scene: str | Path | Scene,
     *,
     set: dict[str, Any] | None = None,
-    flavour: Flavour = "live",
+    flavour: Flavour = "native",
     values: Sequence[str] = (),
 ) -> Evaluation:
     """Co-simulate what the claims of a scene need, and judge them; nothing is written.
@@ -152,10 +157,11 @@ def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
 
 
 def _in_flavour(scene: Scene, flavour: str) -> Scene:
-    """The scene with all FMUs that it does not bring itself of that flavour: they have the same variables."""
-    if flavour == "live":
-        return scene
-    if scene.package is not None:
+    """The scene with all FMUs that it does not bring itself of that flavour: they have the same variables.
+
+    Where no native one is available it is a live one, and a note says so.
+    """
+    if scene.package is not None and flavour == "live":
         raise LoomfmuError(
             f"{scene.package}: a system package brings its own FMUs, so no flavour can be chosen"
         )
@@ -163,7 +169,20 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
         name: replace(instance, fmu=instance.fmu.in_flavour(flavour))
         for name, instance in scene.instances.items()
     }
-    return replace(scene, instances=instances)
+    if flavour == "live":
+        return replace(scene, instances=instances)
+    return replace(scene, instances=instances, notes=(*scene.notes, *_fallbacks(scene)))
+
+
+def _fallbacks(scene: Scene) -> list[str]:
+    """One line for each reason why FMUs of a scene are live ones."""
+    found: dict[str, dict[str, None]] = {}
+    for instance in scene.instances.values():
+        if reason := instance.fmu.no_native:
+            found.setdefault(reason, {})[instance.fmu.name] = None
+    return [
+        f"running live FMUs of {', '.join(names)}, not native ones: {why}" for why, names in found.items()
+    ]
 
 
 @contextmanager

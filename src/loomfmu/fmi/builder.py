@@ -18,6 +18,7 @@ from .. import units
 from ..components import COMPONENTS
 from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
+from ..version import __version__
 from .description import documentation
 from .description.model_description import FIRST_REFERENCE, FMI_TYPES, model_description
 from .description.parameter_sets import parameter_files, parameter_note
@@ -31,11 +32,6 @@ HEADERS = Path(fmpy.__file__).with_name("c-code")  # those of the standard
 LIVE = (live_slave, live_state, live_wrapper)  # what is copied into each live FMU
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date a zip can hold: builds repeat
 NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
-
-
-def version() -> str:
-    """The version of this package."""
-    return metadata.version("loomfmu")
 
 
 def folder(component: type[Component]) -> Path:
@@ -86,7 +82,7 @@ def zipped(contents: dict[str, bytes]) -> bytes:
 
 def guid(component: type[Component]) -> str:
     """Identity of an FMU: of all that is said of its variables, its source and the slave that runs it."""
-    digest = hashlib.sha256(model_description(component, "", version()))
+    digest = hashlib.sha256(model_description(component, "", __version__))
     for content in _told(component).values():
         digest.update(content)
     for part in (_rows(component), flatten(component), *map(_source, LIVE)):
@@ -115,7 +111,7 @@ def beside(component: type[Component], names: dict[str, str]) -> dict[str, bytes
 
 def _told(component: type[Component]) -> dict[str, bytes]:
     """What is said of the variables beside the model description."""
-    return terminal_files(component) | parameter_files(component, version())
+    return terminal_files(component) | parameter_files(component, __version__)
 
 
 def _contents(component: type[Component]) -> dict[str, bytes]:
@@ -126,7 +122,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
     # every FMU of a process shares one set of Python modules: the name must belong to this content alone
     package = f"loomfmu_{name.lower()}_{identity.replace('-', '')[:16]}"
     files = {
-        "modelDescription.xml": model_description(component, identity, version()),
+        "modelDescription.xml": model_description(component, identity, __version__),
         **beside(component, {"icon.png": "model.png"}),
         **described(component),
         "documentation/externalDependencies.html": documentation.external_dependencies(name),

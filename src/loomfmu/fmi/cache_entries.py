@@ -29,7 +29,9 @@ try:
 except ImportError:  # Windows deletes no file that is in use
     fcntl = None
 
-FMUS, UNPACKED, PACKAGES, STEPPER = KINDS = ("fmus", "unpacked", "packages", "stepper")
+FMUS, UNPACKED, PACKAGES, STEPPER, IDENTITIES = KINDS = (
+    "fmus", "unpacked", "packages", "stepper", "identities",
+)  # fmt: skip
 PARTIAL = "partial"  # files that are being written, each with a name of its own
 KEY = re.compile("[0-9a-f]{8}[0-9a-f-]{28}")  # how the names of entries begin; nothing else is ever deleted
 CHECKSUM = "sha256"  # what the file beside a made one is called
@@ -71,6 +73,11 @@ def made_file(kind: str, key: str, name: str, make: Callable[[], bytes]) -> Path
         kept = make()
     files = {name: kept, CHECKSUM: _checksum(kept)}
     return folder(kind, key, names, files.__getitem__) / name
+
+
+def has_file(kind: str, key: str, name: str) -> bool:
+    """Whether a file was made; it may be damaged."""
+    return (cache_directory() / kind / key / name).is_file()
 
 
 def _checksum(content: bytes) -> bytes:

@@ -115,7 +115,7 @@ def _parse(text: str, path: Path) -> SweepPlan:
             raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
     if not isinstance(tables.get("scene"), str):
         raise LoomfmuError('a sweep must name its scene: scene = "loom.toml", relative to the sweep file')
-    flavour = tables.get("flavour", "live")
+    flavour = tables.get("flavour", "native")
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(str(flavour), FLAVOURS)}")
     scene_path = (path.parent / tables["scene"]).resolve()

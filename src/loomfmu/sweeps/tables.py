@@ -8,13 +8,13 @@ fails, warnings, and why a row could not be run. All in SI; a column's metadata 
 
 import json
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from ..cosim.importing.fmus import Port
+from ..version import __version__
 from .axes import Axis
 from .plan import SweepPlan
 from .worker import Batch, Label
@@ -70,7 +70,7 @@ def schema_of(plan: SweepPlan, labels: tuple[Label, ...]) -> Any:
         "sweep": plan.text,
         "scene": plan.scene.text,
         "flavour": plan.flavour,
-        "software": f"loomfmu {version('loomfmu')}",
+        "software": f"loomfmu {__version__}",
         "claims": json.dumps([asdict(label) for label in labels]),
         "pandas": json.dumps(_for_pandas(fields)),
     }

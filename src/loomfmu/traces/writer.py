@@ -9,7 +9,6 @@ import contextlib
 import json
 import secrets
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ import h5py
 import numpy as np
 
 from .. import units
+from ..version import __version__
 from .chunks import LEVEL, ROWS, Columns
 from .disk import reserve
 from .edit import edited
@@ -24,7 +24,7 @@ from .places import replace
 from .reader import Trace
 from .signals import Channel, Floats, Integers
 
-SOFTWARE = f"loomfmu {version('loomfmu')}"
+SOFTWARE = f"loomfmu {__version__}"
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
 PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block

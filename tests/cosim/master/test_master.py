@@ -341,7 +341,7 @@ def test_instances_are_given_back_when_one_cannot_be_made(
 
 @pytest.mark.usefixtures("odd")
 def test_an_fmu_that_cannot_be_instantiated_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(builder, "version", lambda: "0.0.broken")  # an identity of its own
+    monkeypatch.setattr(builder, "__version__", "0.0.broken")  # an identity of its own
     monkeypatch.setattr(builder, "_entry", lambda *_arguments: "raise ValueError('no entry')")
     fmu = fmus.of_component("Complaining")
     with pytest.raises(LoomfmuError) as raised:

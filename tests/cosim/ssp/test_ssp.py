@@ -333,7 +333,7 @@ def test_what_others_cannot_set_is_told(demo: Path, tmp_path: Path) -> None:
     with pytest.raises(
         LoomfmuError, match=r"a system package brings its own FMUs, so no flavour can be chosen$"
     ):
-        run(demo, flavour="native", output=tmp_path / "x.h5")
+        run(demo, flavour="live", output=tmp_path / "x.h5")
 
 
 CASES = {

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.native import compiler, platforms
 
 pytestmark = pytest.mark.skipif(
     find_spec("ziglang") is None or not sys.platform.startswith("linux"),
@@ -82,7 +82,7 @@ def witness(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The library that looks on."""
     source = tmp_path_factory.mktemp("witness") / "witness.c"
     source.write_text(WITNESS)
-    native_builder.build_library(source, source.with_suffix(".so"), native_builder.host_platform())
+    compiler.build_library(source, source.with_suffix(".so"), platforms.host())
     return source.with_suffix(".so")
 
 

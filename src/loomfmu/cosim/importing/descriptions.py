@@ -7,7 +7,8 @@ from typing import Any
 
 from ... import units
 from ...errors import LONGEST_NAME, check_text, shown
-from ...variables import Component, variables_of
+from ...fmi.description.model_description import FIRST_REFERENCE, FMI_TYPES
+from ...variables import Component, Variable, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
@@ -43,6 +44,40 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
     return {port.name: port for port in ports}
+
+
+def declared_ports(component: type[Component]) -> dict[str, Port]:
+    """The variables of a component as `ports_of` would read them in the model description made of it."""
+    numbered = enumerate(variables_of(component), start=FIRST_REFERENCE)
+    return {variable.name: _declared(variable, reference) for reference, variable in numbered}
+
+
+def _declared(variable: Variable, reference: int) -> Port:
+    real, number = variable.type is float, variable.type is not bool
+    limits = (variable.minimum, variable.maximum) if number else (None, None)
+    minimum, maximum = (None if each is None else variable.type(each) for each in limits)
+    kind = FMI_TYPES[variable.type]
+    unit = variable.unit if real else "1"
+    return Port(
+        name=variable.name,
+        kind=kind,
+        reference=reference,
+        causality=variable.causality,
+        unit=unit,
+        display=shown_in(unit, variable.display if real else ""),
+        minimum=minimum,
+        maximum=maximum,
+        start=variable.start if variable.settable else None,
+        description=variable.description,
+        choices=variable.choices,
+        numbers=tuple(range(1, len(variable.choices) + 1)),
+        rate=variable.rate,
+        own=variable.structured,
+        base_type="Enumeration" if variable.choices else kind,
+        discrete=variable.variability == "discrete",
+        definition=own_definition(unit),
+        nominal=variable.nominal if real else None,
+    )
 
 
 def unsupported_outputs(description: Any) -> tuple[str, ...]:

@@ -1,10 +1,12 @@
 """FMUs: what is known of one, and its file, built and unpacked when it is first needed."""
 
 import hashlib
+import os
 import zipfile
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from io import BytesIO
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal, get_args
 
@@ -13,12 +15,12 @@ import fmpy
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, suggestion
 from ...files import check_archive, source
-from ...fmi import builder
-from ...fmi.cache_entries import FMUS, UNPACKED, folder, made_file
-from ...fmi.description.model_description import model_description
-from ...fmi.native import builder as native_builder
+from ...fmi import identities
+from ...fmi.cache_entries import FMUS, UNPACKED, folder, has_file, made_file
+from ...fmi.native import platforms
 from ...variables import MOTION, Component
-from .descriptions import is_ours, ports_of, unsupported_outputs
+from ...version import __version__
+from .descriptions import declared_ports, is_ours, ports_of, unsupported_outputs
 from .ports import Port, Value
 
 Flavour = Literal["live", "native"]
@@ -78,11 +80,30 @@ class Fmu:
         if self.given is not None:
             return self.given
         assert self.component is not None, "what is built is built of a component"
-        return load(file_of(self.component, self.flavour, (native_builder.host_platform(),))).file
+        path = _file_here(self.component, self.flavour)
+        sha256, directory = _unpacked(path)
+        guid = identities.identity(self.component)["guid"]
+        return Unpacked(path, sha256, directory, guid, self.name, __version__)
 
     def in_flavour(self, flavour: str) -> "Fmu":
-        """This FMU as it is built in a flavour; one that was given as a file stays as it is."""
-        return self if self.component is None or not self.built else of_class(self.component, flavour)
+        """This FMU as it is built in a flavour; one that was given as a file stays as it is.
+
+        Where no native one can be had it is a live one: see `no_native`.
+        """
+        if self.component is None or not self.built:
+            return self
+        return of_class(self.component, "live" if flavour == "native" and self.no_native else flavour)
+
+    @property
+    def no_native(self) -> str:
+        """Why there is no native one of it for this machine; empty if there is, or for a file."""
+        if self.component is None or not self.built:
+            return ""
+        if not platforms.host():
+            return f"none are built for {platforms.MACHINE}"
+        if identities.shipped(self.component) or platforms.compiler():
+            return ""
+        return "the compiler that builds it is not installed: pip install 'loomfmu[native]'"
 
     @property
     def path(self) -> Path:
@@ -158,16 +179,10 @@ def of_class(component: type[Component], flavour: str = "live") -> Fmu:
     """The FMU of a component, live or native. It is built only when its file is needed."""
     _check(flavour)
     if (component, flavour) not in _known:
-        _known[component, flavour] = _described(component, flavour)
+        same = _known.get((component, "live" if flavour == "native" else "native"))
+        ports = same.ports if same else declared_ports(component)
+        _known[component, flavour] = Fmu(component.__name__, ports, flavour=flavour, component=component)
     return _known[component, flavour]
-
-
-def _described(component: type[Component], flavour: str) -> Fmu:
-    description = BytesIO()
-    with zipfile.ZipFile(description, "w") as archive:
-        archive.writestr("modelDescription.xml", model_description(component, guid="", version=""))
-    read = fmpy.read_model_description(description, validate=False)
-    return Fmu(name=component.__name__, ports=ports_of(read, component), flavour=flavour, component=component)
 
 
 def _check(flavour: str) -> None:
@@ -175,21 +190,65 @@ def _check(flavour: str) -> None:
         raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
 
 
-def file_of(component: type[Component], flavour: str, platforms: tuple[str, ...]) -> Path:
+def file_of(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> Path:
     """The file of a component, built unless the same one was; a live one is for all platforms."""
     _check(flavour)
+    return made_file(
+        FMUS, _key(component, flavour, chosen), f"{component.__name__}.fmu",
+        partial(_archive, component, flavour, chosen),
+    )  # fmt: skip
+
+
+def _key(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> str:
+    key = identities.identity(component)[flavour]
+    return key if flavour == "live" else "-".join((key, *chosen))
+
+
+def _archive(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> bytes:
+    from ...fmi import builder
+    from ...fmi.native import builder as native_builder
+
     if flavour == "live":
-        identity, make = builder.guid(component), partial(builder.archive, component)
-    else:
-        identity = native_builder.identity(component, platforms)
-        make = partial(native_builder.archive, component, platforms)
-    texts = sorted(builder.beside(component, builder.TEXTS).items())
-    identity += f"-{hashlib.sha256(repr(texts).encode()).hexdigest()[:8]}"
-    return made_file(FMUS, identity, f"{component.__name__}.fmu", make)
+        return builder.archive(component)
+    return native_builder.archive(component, chosen)
+
+
+def _file_here(component: type[Component], flavour: str) -> Path:
+    """The file of a component to run on this machine: the package brings it, or it is built."""
+    shipped = identities.shipped(component) if flavour == "native" else None
+    return shipped or file_of(component, flavour, (platforms.host(),))
+
+
+def unbuilt(chosen: Iterable[Fmu]) -> list[Fmu]:
+    """Those of some FMUs that have yet to be built, each once."""
+    found: dict[tuple[type[Component], str], Fmu] = {}
+    for fmu in chosen:
+        used = "file" in vars(fmu)  # it is known by now
+        if fmu.component and fmu.built and not used and not _is_there(fmu.component, fmu.flavour):
+            found.setdefault((fmu.component, fmu.flavour), fmu)
+    return list(found.values())
+
+
+def _is_there(component: type[Component], flavour: str) -> bool:
+    if flavour == "native" and identities.shipped(component):
+        return True
+    return has_file(FMUS, _key(component, flavour, (platforms.host(),)), f"{component.__name__}.fmu")
+
+
+def build(chosen: Iterable[Fmu]) -> None:
+    """Build FMUs side by side. Raises LoomfmuError as `file_of`."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda fmu: fmu.component and _file_here(fmu.component, fmu.flavour), chosen))
 
 
 def load(path: Path) -> Fmu:
     """Read any FMU. Raises LoomfmuError for a file that is not one, or not one that can be run."""
+    sha256, directory = _unpacked(path)
+    return _read(path, sha256, directory)
+
+
+def _unpacked(path: Path) -> tuple[str, Path]:
+    """The SHA-256 of an FMU, and where its content lies."""
     try:
         with source(path).open("rb") as file:
             sha256 = hashlib.file_digest(file, "sha256").hexdigest()
@@ -207,6 +266,10 @@ def load(path: Path) -> Fmu:
         raise LoomfmuError(f"{path}: not a readable FMU ({_first_line(error)})") from None
     if not found:
         raise LoomfmuError(f"{path}: not a readable FMU (it has no modelDescription.xml)")
+    return sha256, directory
+
+
+def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     try:
         description = fmpy.read_model_description(str(directory), validate=False)
         component = COMPONENTS.get(description.modelName) if is_ours(description) else None

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
 from ...fmi.cache_entries import STEPPER, made_file
-from ...fmi.native import builder as native_builder
+from ...fmi.native import platforms
 from ..importing.calls import OK, REFUSED, WARNING, Call, Compiled
 from ..importing.slave import Ended, Slave
 from .grid import Span
@@ -257,24 +257,30 @@ def stepper(
 @cache
 def _library() -> Path | None:
     """The compiled stepper: it comes with the package, or is built once where a compiler is installed."""
-    platform = native_builder.host_platform()
+    platform = platforms.host()
+    if not platform:
+        return None
     shipped = _shipped(platform)
     if shipped.exists():
         return shipped
+    from ...fmi.native import compiler
+
     try:
-        identity = native_builder.library_identity(SOURCE)
-        return made_file(STEPPER, identity, shipped.name, lambda: native_builder.library(SOURCE, platform))
+        identity = compiler.library_identity(SOURCE)
+        return made_file(STEPPER, identity, shipped.name, lambda: compiler.library(SOURCE, platform))
     except LoomfmuError:  # no compiler, or no place to keep what it makes
         return None
 
 
 def _shipped(platform: str) -> Path:
     """Where the compiled stepper of a platform lies in a package that brings it."""
-    return SOURCE.with_name(platform) / f"stepper{native_builder.PLATFORMS[platform].suffix}"
+    return SOURCE.with_name(platform) / f"stepper{platforms.PLATFORMS[platform].suffix}"
 
 
 def build_all() -> list[Path]:
     """Build the stepper for all platforms, for a package that brings it. Raises LoomfmuError, OSError."""
-    for platform in native_builder.PLATFORMS:
-        native_builder.build_library(SOURCE, _shipped(platform), platform)
-    return [_shipped(platform) for platform in native_builder.PLATFORMS]
+    from ...fmi.native.compiler import build_library
+
+    for platform in platforms.PLATFORMS:
+        build_library(SOURCE, _shipped(platform), platform)
+    return [_shipped(platform) for platform in platforms.PLATFORMS]

@@ -1,5 +1,6 @@
 """Stepping a scene with only what some signals need, and keeping these signals."""
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -7,7 +8,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from ... import printed
 from ...traces import ROWS, Channel, Recording
+from ..importing import fmus
 from ..importing.slave import Ended
 from ..master.grid import Grid
 from ..master.master import Integers, Interrupted, Master, Reals
@@ -39,9 +42,19 @@ class Plan:
     @contextmanager
     def stepped(self) -> Iterator[Master]:
         """The master of the run, initialized."""
+        build_needed(self.pruned.scene)
         with Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts) as master:
             master.initialize()
             yield master
+
+
+def build_needed(scene: Scene, *, report: bool = False) -> None:
+    """Build the FMUs of a scene that have yet to be built, side by side. Raises LoomfmuError."""
+    missing = fmus.unbuilt(instance.fmu for instance in scene.instances.values())
+    if missing and report and sys.stderr.isatty():
+        names = ", ".join(fmu.name for fmu in missing)
+        printed.complain(f"building {len(missing)} FMUs (once): {names}")
+    fmus.build(missing)
 
 
 def channels(plan: Plan, master: Master) -> list[Channel]:

@@ -7,7 +7,6 @@ annotation stands where it passes over the ones of others.
 """
 
 import math
-from importlib.util import find_spec
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
@@ -16,8 +15,9 @@ from ...files import check_target, write_file, zip_with
 from ...fmi import builder
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
 from ...fmi.description.xml_text import text_of
-from ...fmi.native import builder as native_builder
+from ...fmi.native import platforms as native
 from ...variables import AT_STEP_END
+from ...version import __version__
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from ..importing.ports import Definition
@@ -53,7 +53,7 @@ def export(
         raise LoomfmuError(f"{scene.package} is already a system package")
     inputs = files_of(scene)
     check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
-    content = builder.zipped(contents(scene, flavour or default_flavour(), platforms))
+    content = builder.zipped(contents(scene, flavour or default_flavour(scene), platforms))
     write_file(path, content, PACKAGE, inputs, overwrite)
     return [*scene.notes, *_driven(scene), *_enumerated(scene)]
 
@@ -77,9 +77,10 @@ def _enumerated(scene: Scene) -> list[str]:
     ]
 
 
-def default_flavour() -> str:
-    """Native where the compiler that builds such FMUs is installed."""
-    return "native" if find_spec("ziglang") else "live"
+def default_flavour(scene: Scene) -> str:
+    """Native where such FMUs can be built, or come with the package."""
+    lacking = any(instance.fmu.no_native for instance in scene.instances.values())
+    return "live" if lacking else "native"
 
 
 def contents(scene: Scene, flavour: str, platforms: tuple[str, ...] | None = None) -> Files:
@@ -87,7 +88,7 @@ def contents(scene: Scene, flavour: str, platforms: tuple[str, ...] | None = Non
     files: Files = {}
     sources: dict[str, str] = {}
     for name, instance in scene.instances.items():
-        file = _file(instance.fmu, flavour, platforms or tuple(native_builder.PLATFORMS))
+        file = _file(instance.fmu, flavour, platforms or tuple(native.PLATFORMS))
         sources[name] = _place(files, file)
         values = _values(scene, instance)
         if values:
@@ -137,7 +138,7 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
     """The values of an instance, those of an enumeration as the names of its items."""
     document = root(
         "ssv:ParameterSet", "ssv", "ssc", version="1.0", name=SET_NAME,
-        generationTool=f"loomfmu {builder.version()}",
+        generationTool=f"loomfmu {__version__}",
     )  # fmt: skip
     listed = SubElement(document, "ssv:Parameters")
     units: dict[str, Definition] = {}
@@ -163,7 +164,7 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
     prefixes = ("ssd", "ssc", "osp", "oms", "loomfmu")
     document = root(
         "ssd:SystemStructureDescription", *prefixes, version="1.0", name=scene.name,
-        description=scene.title, generationTool=f"loomfmu {builder.version()}",
+        description=scene.title, generationTool=f"loomfmu {__version__}",
     )  # fmt: skip
     system = SubElement(document, "ssd:System", name=scene.name, description=scene.title)
     ports = _connectors(scene)

@@ -1,21 +1,14 @@
-"""Builds native FMUs: a component translated to C, in a C shell, compiled for all platforms from any."""
+"""Builds native FMUs: a component translated to C, in a C shell, compiled for all platforms."""
 
 import hashlib
-import shutil
-import subprocess
-import sys
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import cache
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, suggestion
-from ...files import ANY, write_file
+from ...files import write_file
 from ...variables import Component
+from ...version import __version__
 from ..builder import (
     FMU,
     HEADERS,
@@ -25,48 +18,19 @@ from ..builder import (
     guid,
     license_of,
     license_of_headers,
-    version,
     zipped,
 )
-from ..cache import compiler_environment
 from ..description.model_description import model_description, output_order
 from ..description.model_description3 import model_description3
-from .fat_binary import fat_binary
+from .compiler import ARITHMETIC, MINGW, binaries, mingw_licence
+from .platforms import PLATFORMS
 from .tables import tables
 from .translate import Translation, translate
 
 SHELL = Path(__file__).with_name("shell")
 
 
-@dataclass(frozen=True)
-class Platform:
-    """What a shared library is called on a platform, and how it is compiled and linked.
-
-    `targets` has the compiler's name for each processor, with the name of its folder in FMI 3.
-    """
-
-    suffix: str
-    targets: dict[str, str]
-    options: tuple[str, ...]
-
-
-PLATFORMS = {
-    "linux64": Platform(
-        ".so",
-        {"x86_64-linux-gnu.2.17": "x86_64-linux"},
-        ("-fPIC", "-Wl,--build-id=none", "-Wl,-rpath,$ORIGIN", "-lm"),
-    ),
-    "win64": Platform(".dll", {"x86_64-windows-gnu": "x86_64-windows"}, ()),
-    "darwin64": Platform(
-        ".dylib",
-        {"x86_64-macos.11.0": "x86_64-darwin", "aarch64-macos.11.0": "aarch64-darwin"},
-        ("-fPIC", "-Wl,-install_name,@rpath/{name}.dylib"),
-    ),
-}
-# no fused multiply-add, as in Python; integers wrap alike in every build
-ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
 OPTIONS = " ".join(ARITHMETIC)
-FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 COMMON_FILES = (
     "tables.h", "python_arithmetic.h", "grid.h", "instance.h", "messages.c", "instance.c", "values.c",
     "states.c", "solver.c",
@@ -158,13 +122,13 @@ def assembled(
 
 def _description(component: type[Component], token: str, fmi: int, capabilities: dict[str, str]) -> bytes:
     if fmi == 3:
-        return model_description3(component, token, version())
+        return model_description3(component, token, __version__)
     capabilities = {
         # of one without inputs too: PyFMI's master extrapolates a whole system or nothing of it
         "canInterpolateInputs": "true",
         "maxOutputDerivativeOrder": str(output_order(component)),
     } | capabilities
-    return model_description(component, token, version(), capabilities)
+    return model_description(component, token, __version__, capabilities)
 
 
 def sources(component: type[Component], fmi: int = 2) -> dict[str, str]:
@@ -181,27 +145,14 @@ def with_shell(translated: Translation, model: str, fmi: int) -> dict[str, str]:
     return files
 
 
-def identity(component: type[Component], platforms: tuple[str, ...]) -> str:
+def identity(component: type[Component]) -> str:
     """What a native FMU depends on, as a name for a cache: the component, the shell and the tools."""
-    digest = hashlib.sha256(repr((guid(component), platforms)).encode())
+    digest = hashlib.sha256(guid(component).encode())
     for file in (*sorted(SHELL.iterdir()), *sorted(Path(__file__).parents[1].rglob("*.py"))):
         digest.update(file.read_bytes())
     for tool in ("ziglang", "fmpy"):
         digest.update(metadata.version(tool).encode() if find_spec(tool) else b"")
     return f"{guid(component)}-native-{digest.hexdigest()[:16]}"
-
-
-def host_platform() -> str:
-    """The platform that this process runs on."""
-    return {"linux": "linux64", "win32": "win64", "darwin": "darwin64"}.get(sys.platform, "linux64")
-
-
-def check_platforms(platforms: tuple[str, ...]) -> tuple[str, ...]:
-    """The platforms, if they are known. Raises LoomfmuError for one that is not."""
-    for platform in platforms:
-        if platform not in PLATFORMS:
-            raise LoomfmuError(f"there is no platform {platform!r}{suggestion(platform, PLATFORMS)}")
-    return platforms
 
 
 def licenses(platforms: tuple[str, ...], code: dict[str, str]) -> dict[str, bytes]:
@@ -212,94 +163,5 @@ def licenses(platforms: tuple[str, ...], code: dict[str, str]) -> dict[str, byte
         "fmi_headers.txt": license_of_headers(header),
     }
     if "win64" in platforms:
-        # what the compiler links into a DLL beside our own
-        found["mingw-w64.txt"] = (_compiler() / "lib" / "libc" / "mingw" / "COPYING").read_bytes()
+        found[MINGW] = mingw_licence()
     return {f"documentation/licenses/{file}": content for file, content in found.items()}
-
-
-def binaries(
-    name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]
-) -> dict[str, bytes]:  # fmt: skip
-    """The shared libraries by their places; in FMI 2 that of darwin64 holds both of its processors."""
-    _compiler()
-    targets = [target for platform in platforms for target in PLATFORMS[platform].targets]
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
-        for file, text in code.items():
-            (Path(directory) / file).write_text(text, encoding="utf-8")
-        with ThreadPoolExecutor() as pool:
-            compiled = pool.map(lambda target: _compiled(name, fmi, target, Path(directory)), targets)
-            libraries = dict(zip(targets, compiled, strict=True))
-    found = {}
-    for platform in platforms:
-        suffix, places = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
-        parts = [libraries[target] for target in places]
-        if fmi == 2:
-            found[f"{platform}/{name}{suffix}"] = parts[0] if len(parts) == 1 else fat_binary(parts)
-        else:
-            for place, part in zip(places.values(), parts, strict=True):
-                found[f"{place}/{name}{suffix}"] = part
-    return found
-
-
-def _compiled(name: str, fmi: int, target: str, directory: Path) -> bytes:
-    """One shared library of an FMU."""
-    platform = next(each for each in PLATFORMS.values() if target in each.targets)
-    output = Path(target) / f"{name}{platform.suffix}"
-    (directory / target).mkdir()
-    _compile(f"fmi{fmi}.c", output, target, directory)
-    return (directory / output).read_bytes()
-
-
-def _compile(source: str, output: Path, target: str, directory: Path) -> None:
-    """Compile a file into a shared library. Paths are relative, so that none gets into it."""
-    platform = next(each for each in PLATFORMS.values() if target in each.targets)
-    options = [option.format(name=output.stem) for option in platform.options]
-    call = [sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-o", str(output), source]
-    run = subprocess.run(
-        [*call, *options],
-        cwd=directory,
-        env=compiler_environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if run.returncode != 0:
-        reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
-        raise LoomfmuError(f"{output.stem} cannot be compiled for {target}: {reason}")
-
-
-def library_identity(source: Path) -> str:
-    """What a shared library of this source depends on, as a name for a cache. Raises as `build_library`."""
-    _compiler()
-    return hashlib.sha256(source.read_bytes() + metadata.version("ziglang").encode()).hexdigest()
-
-
-def build_library(source: Path, output: Path, platform: str) -> None:
-    """Compile one C file into a shared library file. Raises LoomfmuError as `library`, or naming the file."""
-    write_file(output, library(source, platform), ANY)
-
-
-def library(source: Path, platform: str) -> bytes:
-    """One C file as a shared library for all processors of a platform.
-
-    Raises LoomfmuError where there is no compiler, or it does not compile.
-    """
-    _compiler()
-    suffix, targets = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
-    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
-        directory, output = Path(name), Path(f"{source.stem}{suffix}")
-        shutil.copy(source, directory)
-        parts = []
-        for target in targets:
-            _compile(source.name, output, target, directory)
-            parts.append((directory / output).read_bytes())
-    return parts[0] if len(parts) == 1 else fat_binary(parts)
-
-
-@cache
-def _compiler() -> Path:
-    """Where the compiler is installed. Raises LoomfmuError if it is not."""
-    found = find_spec("ziglang")
-    if found is None or found.origin is None:
-        raise LoomfmuError("native FMUs are compiled by ziglang: pip install 'loomfmu[native]'")
-    return Path(found.origin).parent

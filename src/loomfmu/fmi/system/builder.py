@@ -5,7 +5,8 @@ import uuid
 from pathlib import Path
 
 from ...variables import Component
-from ..builder import NAMESPACE, version
+from ...version import __version__
+from ..builder import NAMESPACE
 from ..description import documentation
 from ..description.model_description import model_description
 from ..description.terminals import terminal_files
@@ -65,7 +66,7 @@ def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, 
 
 def _token(component: type[Component], code: str) -> str:
     """Identity of the FMU: of its variables and all that is computed."""
-    digest = hashlib.sha256(model_description(component, "", version()) + code.encode())
+    digest = hashlib.sha256(model_description(component, "", __version__) + code.encode())
     return str(uuid.uuid5(NAMESPACE, digest.hexdigest()))
 
 

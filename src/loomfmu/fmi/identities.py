@@ -1,0 +1,116 @@
+"""What tells one build of our own FMUs from another, computed once for a state of their sources.
+
+Flattening and describing all components takes a third of a second; reading the files that it depends on takes
+a few milliseconds. So what was computed is kept under a digest of these files: in the package, if it brings
+its FMUs, or in the cache.
+"""
+
+import hashlib
+import json
+from functools import cache
+from pathlib import Path
+
+from .. import components
+from ..variables import Component
+from .cache_entries import IDENTITIES, made_file
+from .native.platforms import SHIPPED, stamp
+
+PACKAGE = Path(__file__).parents[1]
+PARTS = ("components", "fmi", "machines", "physics", "arrays.py", "units.py", "variables.py", "version.py")
+KINDS = (
+    ".py",
+    ".c",
+    ".h",
+    ".csv",
+    ".txt",
+)  # of files: others, such as bytecode and binaries, are made of them
+TOOLS = ("ziglang", "fmpy", "pythonfmu")
+
+Identity = dict[str, str]  # "guid", and a name in the cache for each flavour
+
+
+def is_own(component: type[Component]) -> bool:
+    """Whether a component is one of this package, and not of a user's file."""
+    return component.__module__.startswith(f"{components.__name__}.")
+
+
+def identity(component: type[Component]) -> Identity:
+    """GUID and names in the cache of a component's FMUs.
+
+    Raises LoomfmuError for one that cannot be carried into an FMU.
+    """
+    return _all()[component.__name__] if is_own(component) else _computed(component)
+
+
+def shipped(component: type[Component], fmi: int = 2) -> Path | None:
+    """The native FMU for all platforms that the package brings, if it was built from these very sources."""
+    path = SHIPPED / f"fmi{fmi}" / f"{component.__name__}.fmu"
+    return path if is_own(component) and _shipped() is not None and path.is_file() else None
+
+
+@cache
+def sources() -> str:
+    """A digest of all files that an FMU of ours depends on, and of their names."""
+    home = documents()
+    files = [file for part in PARTS for file in _files(PACKAGE / part)]
+    files += [file for file in sorted(home.glob("*/*")) if file.is_file()]
+    digest = hashlib.sha256()
+    for file in files:
+        content = file.read_bytes()
+        digest.update(f"{file.parent.name}/{file.name} {len(content)}\n".encode() + content)
+    return digest.hexdigest()
+
+
+def documents() -> Path:
+    """The folder with README, drawing, icon and reference of each FMU: in the package, or beside it."""
+    installed = PACKAGE / "fmus"
+    return installed if installed.is_dir() else PACKAGE.parents[1] / "fmus"
+
+
+def write(directory: Path) -> None:
+    """Keep the identities in a package that brings its FMUs."""
+    (directory / "identities.json").write_bytes(_everything())
+
+
+def _files(part: Path) -> list[Path]:
+    if part.is_file():
+        return [part]
+    return sorted(file for file in part.rglob("*") if file.suffix in KINDS)
+
+
+@cache
+def _all() -> dict[str, Identity]:
+    found = _shipped()
+    if found is None:
+        key = hashlib.sha256("\n".join([sources(), *map(stamp, TOOLS)]).encode()).hexdigest()
+        found = json.loads(made_file(IDENTITIES, key, "identities.json", _everything).read_bytes())["fmus"]
+    return found
+
+
+@cache
+def _shipped() -> dict[str, Identity] | None:
+    """The identities in the package, unless its sources have been changed since."""
+    try:
+        kept = json.loads((SHIPPED / "identities.json").read_bytes())
+    except FileNotFoundError:
+        return None
+    return kept["fmus"] if kept["sources"] == sources() else None
+
+
+def _everything() -> bytes:
+    fmus = {name: _computed(component) for name, component in components.COMPONENTS.items()}
+    return json.dumps({"sources": sources(), "fmus": fmus}, indent=1).encode()
+
+
+def _computed(component: type[Component]) -> Identity:
+    from . import builder
+    from .native import builder as native_builder
+
+    texts = sorted(builder.beside(component, builder.TEXTS).items())
+    suffix = hashlib.sha256(repr(texts).encode()).hexdigest()[:8]
+    guid = builder.guid(component)
+    return {
+        "guid": guid,
+        "live": f"{guid}-{suffix}",
+        "native": f"{native_builder.identity(component)}-{suffix}",
+    }

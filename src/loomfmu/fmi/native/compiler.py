@@ -1,0 +1,145 @@
+"""Compiles C to shared libraries for all platforms from any, or takes those that the package brings."""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import BoundedSemaphore
+
+from ...errors import LoomfmuError
+from ...files import ANY, write_file
+from ..cache import compiler_environment
+from .fat_binary import fat_binary
+from .platforms import COMPILER, PLATFORMS, SHIPPED, compiler, platform_of, stamp
+
+# no fused multiply-add, as in Python; integers wrap alike in every build
+ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
+FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
+MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL beside our own
+
+# two more than cores: some wait for one that makes the system's libraries for the first time
+_turns = BoundedSemaphore((os.cpu_count() or 1) + 2)
+
+
+def binaries(
+    name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]
+) -> dict[str, bytes]:  # fmt: skip
+    """The shared libraries by their places; in FMI 2 that of darwin64 holds both of its processors.
+
+    Those that the package brings are taken if they were made of this very code.
+    """
+    found = _shipped(name, fmi, code)
+    places = [f"{place}/{name}{PLATFORMS[each].suffix}" for each in platforms for place in _places(each, fmi)]
+    if found is None:
+        found = _compiled(name, fmi, code, platforms)
+    return {place: found[place] for place in places}
+
+
+def mingw_licence() -> bytes:
+    """The licence of what is linked into a library for Windows. Raises LoomfmuError without a compiler."""
+    shipped = SHIPPED / MINGW
+    if shipped.is_file():
+        return shipped.read_bytes()
+    return (_required() / "lib" / "libc" / "mingw" / "COPYING").read_bytes()
+
+
+def library_identity(source: Path) -> str:
+    """What a shared library of this source depends on, as a name for a cache. Raises as `library`."""
+    _required()
+    return hashlib.sha256(source.read_bytes() + stamp(COMPILER).encode()).hexdigest()
+
+
+def build_library(source: Path, output: Path, platform: str) -> None:
+    """Compile one C file into a shared library file. Raises LoomfmuError as `library`, or naming the file."""
+    write_file(output, library(source, platform), ANY)
+
+
+def library(source: Path, platform: str) -> bytes:
+    """One C file as a shared library for all processors of a platform.
+
+    Raises LoomfmuError where there is no compiler, or it does not compile.
+    """
+    suffix, targets = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
+        directory, output = Path(name), Path(f"{source.stem}{suffix}")
+        shutil.copy(source, directory)
+        parts = []
+        for target in targets:
+            _compile(source.name, output, target, directory)
+            parts.append((directory / output).read_bytes())
+    return parts[0] if len(parts) == 1 else fat_binary(parts)
+
+
+def _places(platform: str, fmi: int) -> list[str]:
+    """The folders below `binaries` that hold the libraries of a platform."""
+    return [platform] if fmi == 2 else list(PLATFORMS[platform].targets.values())
+
+
+def _shipped(name: str, fmi: int, code: dict[str, str]) -> dict[str, bytes] | None:
+    """The libraries of the FMU that the package brings, if it was compiled from this code."""
+    path = SHIPPED / f"fmi{fmi}" / f"{name}.fmu"
+    if not path.is_file():
+        return None
+    with zipfile.ZipFile(path) as archive:
+        if any(archive.read(f"sources/{file}") != text.encode() for file, text in code.items()):
+            return None
+        libraries = [member for member in archive.namelist() if member.startswith("binaries/")]
+        return {member.removeprefix("binaries/"): archive.read(member) for member in libraries}
+
+
+def _compiled(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]) -> dict[str, bytes]:
+    targets = [target for platform in platforms for target in PLATFORMS[platform].targets]
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
+        for file, text in code.items():
+            (Path(directory) / file).write_text(text, encoding="utf-8")
+        with ThreadPoolExecutor() as pool:
+            made = pool.map(lambda target: _library_of(name, fmi, target, Path(directory)), targets)
+            libraries = dict(zip(targets, made, strict=True))
+    found = {}
+    for platform in platforms:
+        parts = [libraries[target] for target in PLATFORMS[platform].targets]
+        if fmi == 2 and len(parts) > 1:
+            parts = [fat_binary(parts)]
+        for place, part in zip(_places(platform, fmi), parts, strict=True):
+            found[f"{place}/{name}{PLATFORMS[platform].suffix}"] = part
+    return found
+
+
+def _library_of(name: str, fmi: int, target: str, directory: Path) -> bytes:
+    """One shared library of an FMU."""
+    output = Path(target) / f"{name}{platform_of(target).suffix}"
+    (directory / target).mkdir()
+    _compile(f"fmi{fmi}.c", output, target, directory)
+    return (directory / output).read_bytes()
+
+
+def _compile(source: str, output: Path, target: str, directory: Path) -> None:
+    """Compile a file into a shared library. Paths are relative, so that none gets into it."""
+    _required()
+    options = [option.format(name=output.stem) for option in platform_of(target).options]
+    call = [sys.executable, "-m", COMPILER, "cc", "-target", target, *FLAGS, "-o", str(output), source]
+    with _turns:
+        run = subprocess.run(
+            [*call, *options],
+            cwd=directory,
+            env=compiler_environment(),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    if run.returncode != 0:
+        reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
+        raise LoomfmuError(f"{output.stem} cannot be compiled for {target}: {reason}")
+
+
+def _required() -> Path:
+    """Where the compiler is installed. Raises LoomfmuError if it is not."""
+    found = compiler()
+    if found is None:
+        raise LoomfmuError("native FMUs are compiled by ziglang: pip install 'loomfmu[native]'")
+    return found

@@ -1,0 +1,78 @@
+"""The platforms that native FMUs are built for, and what this machine has of them."""
+
+import platform
+import sys
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from ...errors import LoomfmuError, suggestion
+
+SHIPPED = Path(__file__).with_name("shipped")  # what a package brings that needs no compiler
+COMPILER = "ziglang"
+
+
+@dataclass(frozen=True)
+class Platform:
+    """What a shared library is called on a platform, and how it is compiled and linked.
+
+    `targets` has the compiler's name for each processor, with the name of its folder in FMI 3.
+    """
+
+    suffix: str
+    targets: dict[str, str]
+    options: tuple[str, ...]
+
+
+PLATFORMS = {
+    "linux64": Platform(
+        ".so",
+        {"x86_64-linux-gnu.2.17": "x86_64-linux"},
+        ("-fPIC", "-Wl,--build-id=none", "-Wl,-rpath,$ORIGIN", "-lm"),
+    ),
+    "win64": Platform(".dll", {"x86_64-windows-gnu": "x86_64-windows"}, ()),
+    "darwin64": Platform(
+        ".dylib",
+        {"x86_64-macos.11.0": "x86_64-darwin", "aarch64-macos.11.0": "aarch64-darwin"},
+        ("-fPIC", "-Wl,-install_name,@rpath/{name}.dylib"),
+    ),
+}
+SYSTEMS = {"linux": ("linux64", ("x86_64",)), "win32": ("win64", ("AMD64",)), "darwin": ("darwin64", ())}
+MACHINE = f"{sys.platform} on {platform.machine()}"
+
+
+def host() -> str:
+    """The platform that this process runs on; empty if no native FMUs are built for it."""
+    name, machines = SYSTEMS.get(sys.platform, ("", ()))
+    fits = sys.maxsize > 2**32 and (not machines or platform.machine() in machines)
+    return name if fits else ""
+
+
+def check_platforms(platforms: tuple[str, ...]) -> tuple[str, ...]:
+    """The platforms, if they are known. Raises LoomfmuError for one that is not."""
+    for each in platforms:
+        if each not in PLATFORMS:
+            raise LoomfmuError(f"there is no platform {each!r}{suggestion(each, PLATFORMS)}")
+    return platforms
+
+
+def platform_of(target: str) -> Platform:
+    """The platform that a target of the compiler belongs to."""
+    return next(each for each in PLATFORMS.values() if target in each.targets)
+
+
+@cache
+def compiler() -> Path | None:
+    """Where the compiler is installed, if it is."""
+    found = find_spec(COMPILER)
+    return None if found is None or found.origin is None else Path(found.origin).parent
+
+
+def stamp(package: str) -> str:
+    """What changes when an installed package is installed anew; asking for its version takes far longer."""
+    found = find_spec(package)
+    if found is None or found.origin is None:
+        return ""
+    status = Path(found.origin).stat()
+    return f"{package} {status.st_size} {status.st_mtime_ns}"

@@ -1,0 +1,87 @@
+"""FMUs of our own: known from their declarations, built when they are needed, native where they can be."""
+
+import io
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+
+import loomfmu
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.fmi.description.model_description import model_description
+from loomfmu.fmi.native import platforms
+from loomfmu.sweeps.plan import load
+
+SCENE = "revolutions = 0.1\nsteps_per_revolution = 90\n[weft]\n[belt]\n"
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_declared_variables_are_those_that_the_description_has(name: str) -> None:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("modelDescription.xml", model_description(COMPONENTS[name], guid="", version=""))
+    read = ports_of(fmpy.read_model_description(packed, validate=False), COMPONENTS[name])
+    declared = declared_ports(COMPONENTS[name])
+    assert declared == read
+    assert repr(declared) == repr(read)  # types as well: 1 is not 1.0
+
+
+@pytest.mark.parametrize("flavour", fmus.FLAVOURS)
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_a_built_fmu_is_what_its_file_says(name: str, flavour: str) -> None:
+    fmu = fmus.of_component(name, flavour)
+    read = fmus.load(fmu.path)
+    assert fmu.file == read.file
+    assert (fmu.name, fmu.ports, fmu.fmi) == (read.name, read.ports, read.fmi)
+    assert (fmu.ours, fmu.single, fmu.fixed_step, fmu.needs_tool) == (
+        read.ours, read.single, read.fixed_step, read.needs_tool,
+    )  # fmt: skip
+
+
+def test_runs_are_native_by_default(tmp_path: Path) -> None:
+    result = loomfmu.run(scenes.parse(SCENE), output=tmp_path / "run.h5")
+    assert result.trace.attributes["flavour"] == "native"
+    assert result.warnings == ()
+    assert {each.fmu.flavour for each in loomfmu.evaluate(scenes.parse(SCENE)).scene.instances.values()} == {
+        "native"
+    }
+    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "sweep.toml").write_text('scene = "scene.toml"\n[grid]\n"shaft.speed" = [60, 70]\n')
+    assert load(tmp_path / "sweep.toml").flavour == "native"
+
+
+NO_COMPILER = "the compiler that builds it is not installed: pip install 'loomfmu[native]'"
+MISSING = {
+    "no compiler": ("compiler", None, NO_COMPILER),
+    "another machine": ("host", "", f"none are built for {platforms.MACHINE}"),
+}
+
+
+@pytest.mark.parametrize(("name", "value", "reason"), MISSING.values(), ids=MISSING)
+def test_without_a_native_fmu_a_run_is_live_and_warns(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, value: str | None, reason: str
+) -> None:
+    monkeypatch.setattr(platforms, name, lambda: value)
+    scene = scenes.parse(SCENE)
+    result = loomfmu.run(scene, output=tmp_path / "run.h5")
+    warning = f"running live FMUs of MainShaft, WeftInsertion, BeltMonitor, not native ones: {reason}"
+    assert result.warnings == (warning,)
+    assert result.trace.attributes["flavour"] == "live"
+    assert result.trace.attributes["notes"] == warning
+    assert loomfmu.evaluate(scene).warnings == (warning,)
+    assert loomfmu.evaluate(scene, flavour="live").warnings == ()
+
+
+def test_what_is_needed_is_built_at_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path))
+    names = ("MainShaft", "HealdFrame")
+    wanted = [fmus.Fmu(name, {}, flavour="live", component=COMPONENTS[name]) for name in (*names, *names)]
+    missing = fmus.unbuilt(wanted)
+    assert [each.name for each in missing] == list(names)
+    fmus.build(missing)
+    assert fmus.unbuilt(wanted) == []
+    assert {path.name for path in tmp_path.glob("fmus/*/*.fmu")} == {f"{name}.fmu" for name in names}

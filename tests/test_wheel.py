@@ -1,0 +1,117 @@
+"""The wheel: whoever installs it needs no compiler and no checkout."""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from loomfmu.fmi.native.platforms import host
+from loomfmu.traces import Trace
+
+ROOT = Path(__file__).parents[1]
+PARTS = ("src", "fmus", "sims", "pyproject.toml", "README.md", "LICENSE", "THIRD_PARTY.md")
+SCENE = """
+revolutions = 1
+steps_per_revolution = 90
+[loom]
+machine = "WL800-3600"
+head = "G6300 left"
+weave = "1100/0110/0011/1001"
+[shaft]
+speed = "450 rev/min"
+[[claims]]
+kind = "lowest_margin"
+bound = 0.05
+"""
+# for this platform alone: the others take a minute longer to compile, and are made by the same code
+BUILD = f"from loomfmu.fmi.shipping import build_all; build_all(({host()!r},))"
+COMMAND = "import sys; from loomfmu.cli import main; sys.exit(main())"
+
+pytestmark = pytest.mark.skipif(
+    find_spec("ziglang") is None or not host(), reason="no native FMU can be built"
+)
+
+
+def called(*words: str | Path, cwd: Path, **environment: str) -> str:
+    done = subprocess.run(
+        list(map(str, words)),
+        cwd=cwd,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A wheel, built as `make wheel` builds it, from a copy of the checkout."""
+    copy = tmp_path_factory.mktemp("checkout")
+    for part in PARTS:
+        if (ROOT / part).is_dir():
+            shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__", "shipped"))
+        else:
+            shutil.copy(ROOT / part, copy)
+    called(sys.executable, "-c", BUILD, cwd=copy, PYTHONPATH=str(copy / "src"))
+    flags = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", "dist", ".")
+    called(sys.executable, "-m", "pip", "wheel", *flags, cwd=copy)
+    (built,) = (copy / "dist").glob("*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new environment with the wheel, the packages that it needs, and no compiler."""
+    home = tmp_path_factory.mktemp("elsewhere")
+    called(sys.executable, "-m", "venv", "--without-pip", home, cwd=home)
+    own = home / Path(sysconfig.get_path("purelib")).relative_to(sys.prefix)
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(own)
+    (own / "others.pth").write_text(sysconfig.get_path("purelib"))
+    (own / "sitecustomize.py").write_text("import sys\nsys.modules['ziglang'] = None\n")
+    return home / Path(sys.executable).relative_to(sys.prefix)
+
+
+def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> None:
+    (tmp_path / "my_loom.toml").write_text(SCENE)
+    cache = {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
+    found = called(python, "-c", "import loomfmu; print(loomfmu.__file__)", cwd=tmp_path, **cache)
+    assert found.startswith(str(python.parents[1]))
+    said = called(python, "-c", COMMAND, "run", "my_loom.toml", cwd=tmp_path, **cache)
+    assert "90 steps with native FMUs, " in said
+    assert not (tmp_path / "cache/fmus").exists()  # nothing was built
+    assert not (tmp_path / "cache/stepper").exists()
+    with Trace(tmp_path / "results/my_loom.h5") as trace:
+        assert trace.attributes["flavour"] == "native"
+        assert "notes" not in trace.attributes
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_native_fmus_are_written_without_a_compiler(
+    python: Path, wheel: Path, tmp_path: Path, fmi: str
+) -> None:
+    call = ["build", "--native", "--fmi", fmi, "--platform", host(), "--output", "here", "MainShaft"]
+    called(python, "-c", COMMAND, *call, cwd=tmp_path, PYTHONPATH="")
+    with zipfile.ZipFile(wheel) as archive:
+        brought = archive.read(f"loomfmu/fmi/native/shipped/fmi{fmi}/MainShaft.fmu")
+    assert (tmp_path / "here/MainShaft.fmu").read_bytes() == brought
+
+
+def test_a_mechanism_of_ones_own_runs_live_and_the_command_says_so(python: Path, tmp_path: Path) -> None:
+    environment = {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
+    called(python, "-c", COMMAND, "new", "PickingCam", cwd=tmp_path, **environment)
+    call = [str(python), "-c", COMMAND, "run", "picking_cam/picking_cam.toml"]
+    done = subprocess.run(call, cwd=tmp_path, env=os.environ | environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == (
+        "warning: running live FMUs of PickingCam, not native ones: the compiler that builds it is not"
+        " installed: pip install 'loomfmu[native]'\n"
+    )
