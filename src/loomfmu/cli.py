@@ -9,8 +9,6 @@ import shutil
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from pathlib import Path
 from signal import SIG_IGN, SIGINT, signal
 from time import perf_counter
@@ -197,6 +195,9 @@ def _sweep(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
+    from concurrent.futures import ThreadPoolExecutor
+    from functools import partial
+
     from . import catalogue
     from .fmi import builder
     from .fmi.native.builder import build_native

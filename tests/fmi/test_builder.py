@@ -272,7 +272,7 @@ def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> No
         assert builder.guid(Original) != before
     monkeypatch.setattr(builder, "_source", source)
     assert builder.guid(Original) == before
-    monkeypatch.setattr(builder, "version", lambda: "99.0")
+    monkeypatch.setattr(builder, "__version__", "99.0")
     assert builder.guid(Original) != before
 
 

@@ -1,32 +1,60 @@
 """The components: one class for each FMU."""
 
-from .belt_monitor import BeltMonitor
-from .belt_wrap import BeltWrap
-from .detaching_roller import DetachingRoller
-from .dobby.drive import DobbyDrive
-from .driven_shaft import DrivenShaft
-from .heald_damper import HealdDamper
-from .heald_frame import HealdFrame
-from .main_shaft import MainShaft
-from .pattern_lock import PatternLock
-from .reed_beat_up import ReedBeatUp
-from .warp_tension import WarpTension
-from .weft_insertion import WeftInsertion
+from collections.abc import Iterator, MutableMapping
+from importlib import import_module
+from typing import Any
 
-COMPONENTS = {
-    component.__name__: component
-    for component in (
-        MainShaft,
-        DrivenShaft,
-        WeftInsertion,
-        BeltMonitor,
-        DobbyDrive,
-        HealdFrame,
-        HealdDamper,
-        WarpTension,
-        PatternLock,
-        ReedBeatUp,
-        BeltWrap,
-        DetachingRoller,
-    )
+from ..variables import Component
+
+MODULES = {
+    "MainShaft": "main_shaft",
+    "DrivenShaft": "driven_shaft",
+    "WeftInsertion": "weft_insertion",
+    "BeltMonitor": "belt_monitor",
+    "DobbyDrive": "dobby.drive",
+    "HealdFrame": "heald_frame",
+    "HealdDamper": "heald_damper",
+    "WarpTension": "warp_tension",
+    "PatternLock": "pattern_lock",
+    "ReedBeatUp": "reed_beat_up",
+    "BeltWrap": "belt_wrap",
+    "DetachingRoller": "detaching_roller",
 }
+
+
+class Components(MutableMapping[str, type[Component]]):
+    """Classes by their names. Each is imported when it is first needed: a loom has half of them."""
+
+    def __init__(self, modules: dict[str, str]):
+        self._classes: dict[str, type[Component] | None] = dict.fromkeys(modules)
+
+    def __getitem__(self, name: str) -> type[Component]:
+        found = self._classes[name]
+        if found is None:
+            found = self._classes[name] = getattr(import_module(f".{MODULES[name]}", __name__), name)
+        return found
+
+    def __setitem__(self, name: str, component: type[Component]) -> None:
+        self._classes[name] = component
+
+    def __delitem__(self, name: str) -> None:
+        del self._classes[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._classes)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._classes
+
+    def __len__(self) -> int:
+        return len(self._classes)
+
+
+COMPONENTS = Components(MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    """A class by its name."""
+    if name not in MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return COMPONENTS[name]

@@ -25,7 +25,6 @@ from .results import Evaluation, Result
 from .scenes import scene as scenes
 from .scenes.scene import WINDOWS, Scene
 from .scenes.scene_files import files_of
-from .ssp import read as ssp_read
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
 SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: any other belongs to other kinds of files
@@ -152,6 +151,8 @@ def _read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
             return replace(made, file=scene.file)
         scene = scene.package
     if Path(scene).suffix.lower() == ".ssp":
+        from .ssp import read as ssp_read
+
         return ssp_read.load(scene, overrides)
     return scenes.load(scene, overrides)
 
@@ -206,6 +207,7 @@ def _finish(scene: Scene, writer: TraceWriter, path: Path, ended: str) -> tuple[
     try:
         writer.seal()
         with Trace(writer.partial) as trace:
+            trace.rows = writer.rows  # asking every signal of the file takes its time
             verdicts = tuple(judge(trace, **claim) for claim in scene.claims)
         return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], ended)
     except OSError as error:

@@ -20,8 +20,9 @@ from ..files import check_target, write_file, zip_with
 from ..variables import Component, variables_of
 from ..version import __version__
 from .description import documentation
-from .description.model_description import FIRST_REFERENCE, FMI_TYPES, model_description
+from .description.model_description import model_description
 from .description.parameter_sets import parameter_files, parameter_note
+from .description.references import FIRST_REFERENCE, FMI_TYPES
 from .description.terminals import terminal_files
 from .live import live_slave, live_state, live_wrapper
 from .source import flatten

@@ -17,7 +17,6 @@ from types import ModuleType
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, described, suggestion
 from ..files import text_of
-from ..fmi.native.translate import translate
 from ..variables import Component
 from . import declared
 
@@ -181,6 +180,8 @@ def _check(chosen: type[Component], shown: Path, text: str) -> None:
     fault = declared.fault(chosen, set(COMPONENTS))
     if fault is not None:
         raise LoomfmuError(f"{shown}, line {_line(text, chosen.__name__, fault.field)}: {fault.text}")
+    from ..fmi.native.translate import translate
+
     try:
         translate(chosen)
     except LoomfmuError as error:

@@ -7,7 +7,7 @@ from typing import Any
 
 from ... import units
 from ...errors import LONGEST_NAME, check_text, shown
-from ...fmi.description.model_description import FIRST_REFERENCE, FMI_TYPES
+from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
 from ...variables import Component, Variable, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 

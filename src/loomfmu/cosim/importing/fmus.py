@@ -4,7 +4,6 @@ import hashlib
 import os
 import zipfile
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path, PurePosixPath
@@ -237,6 +236,8 @@ def _is_there(component: type[Component], flavour: str) -> bool:
 
 def build(chosen: Iterable[Fmu]) -> None:
     """Build FMUs side by side. Raises LoomfmuError as `file_of`."""
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(lambda fmu: fmu.component and _file_here(fmu.component, fmu.flavour), chosen))
 

@@ -10,7 +10,7 @@ import logging
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 from urllib.parse import unquote
 
 from fmpy import calloc, free
@@ -52,6 +52,21 @@ class Ended(LoomfmuError):
         return Ended, (self.name, self.time)
 
 
+class FMU2Ours(FMU2Slave):  # type: ignore[misc]
+    """fmpy's slave; the signatures of its functions are inspected once, not for each instance."""
+
+    _signatures: ClassVar[dict[str, tuple[Any, Any, Any]]] = {}
+
+    def _loadFunctions(self) -> None:
+        if not self._signatures:
+            super()._loadFunctions()
+            for name, found in self._functions.items():
+                self._signatures[name] = found.argnames, found.argtypes, found.restype
+        for name, (names, types, result) in self._signatures.items():
+            function = self._functions[name] = getattr(self.dll, name)
+            function.argnames, function.argtypes, function.restype = names, types, result
+
+
 class Slave:
     """One instance of an FMU. `messages` holds what it logged as (status, text)."""
 
@@ -87,7 +102,7 @@ class Slave:
         """fmpy's slave, instantiated."""
         # live FMUs say there why they fail, for hosts without FMI's logging: here it is in `messages`
         logging.getLogger("loomfmu.live").addHandler(_unheard)
-        slave = FMU2Slave(
+        slave = FMU2Ours(
             guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
         )  # fmt: skip

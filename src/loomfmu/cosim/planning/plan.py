@@ -51,7 +51,9 @@ class Plan:
 def build_needed(scene: Scene, *, report: bool = False) -> None:
     """Build the FMUs of a scene that have yet to be built, side by side. Raises LoomfmuError."""
     missing = fmus.unbuilt(instance.fmu for instance in scene.instances.values())
-    if missing and report and sys.stderr.isatty():
+    if not missing:
+        return
+    if report and sys.stderr.isatty():
         names = ", ".join(fmu.name for fmu in missing)
         printed.complain(f"building {len(missing)} FMUs (once): {names}")
     fmus.build(missing)

@@ -5,13 +5,12 @@ from xml.etree.ElementTree import Element, SubElement
 from ... import units
 from ...variables import NOTHING, Component, Variable, variables_of
 from ..live.live_slave import CATEGORIES
+from .references import FIRST_REFERENCE, FMI_TYPES
 from .xml_text import text_of
 
 AUTHOR = "the loomfmu authors"
 COPYRIGHT = f"Copyright (c) 2026 {AUTHOR}"
 RELEASED = "2026-11-21T00:00:00Z"  # the day of this version, not of the build: builds repeat
-FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
-FIRST_REFERENCE = 1  # not 0: then a value reference is a variable's place too, for which OMSimulator takes it
 DEFAULT_TOLERANCE = 1e-6  # for hosts that ask for one; nothing here is solved to a tolerance
 
 

@@ -4,7 +4,6 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ...variables import NOTHING, Component, Variable, variables_of
 from .model_description import (
-    FIRST_REFERENCE,
     about,
     attributes_of,
     log_and_experiment,
@@ -12,6 +11,7 @@ from .model_description import (
     type_definitions,
     unit_definitions,
 )
+from .references import FIRST_REFERENCE
 from .xml_text import text_of
 
 FMI3_TYPES = {float: "Float64", int: "Int64", bool: "Boolean"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ... import units
 from ...variables import AT_STEP_END, NOTHING, Component, Variable, variables_of
-from ..description.model_description import FIRST_REFERENCE
+from ..description.references import FIRST_REFERENCE
 from ..live.live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .c_code import c_name
 
