@@ -32,7 +32,7 @@ def _python(code: str, *arguments: str) -> Command:
 
 def _run(native: bool, cold: bool) -> Command:
     def command(directory: Path, turn: int) -> tuple[list[str], dict[str, str]]:
-        words = ["run", str(DEMO), "--output", str(directory / "trace.h5"), *(["--native"] if native else [])]
+        words = ["run", str(DEMO), "--output", str(directory / "trace.h5"), *([] if native else ["--live"])]
         cache = {"LOOMFMU_CACHE": str(directory / f"cache {native} {turn}")} if cold else {}
         return [sys.executable, "-c", MAIN, *words], cache
 
@@ -42,6 +42,7 @@ def _run(native: bool, cold: bool) -> Command:
 COMMANDS: dict[str, Command] = {
     "python, doing nothing": _python("pass"),
     "import loomfmu": _python("import loomfmu"),
+    "import of numpy, h5py and fmpy": _python("import numpy, h5py, fmpy"),
     "import of all that a run needs": _python(IMPORT),
     "loomfmu --help": _python(MAIN, "--help"),
     "loomfmu run, live FMUs in the cache": _run(native=False, cold=False),
