@@ -172,7 +172,8 @@ def _in_flavour(scene: Scene, flavour: str) -> Scene:
     }
     if flavour == "live":
         return replace(scene, instances=instances)
-    return replace(scene, instances=instances, notes=(*scene.notes, *_fallbacks(scene)))
+    notes = dict.fromkeys((*scene.notes, *_fallbacks(scene)))  # a scene may come here twice
+    return replace(scene, instances=instances, notes=tuple(notes))
 
 
 def _fallbacks(scene: Scene) -> list[str]:
