@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from loomfmu.cosim import whole
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.fmi.native.builder import host_platform
+from loomfmu.fmi.native.platforms import host
 
 Signals = dict[str, NDArray[np.float64]]
 GETTERS = {
@@ -24,7 +24,7 @@ GETTERS = {
 def exported(scene: Scene, directory: Path, fmi: int = 2) -> Path:
     """The scene as one FMU for this platform."""
     path = directory / f"{scene.name}.fmu"
-    whole.export(scene, path, (host_platform(),), fmi)
+    whole.export(scene, path, (host(),), fmi)
     return path
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from ..errors import LoomfmuError
 from ..files import check_target, write_file
 from ..fmi.builder import FMU, zipped
-from ..fmi.native.builder import PLATFORMS
 from ..fmi.native.c_code import KEYWORDS
+from ..fmi.native.platforms import PLATFORMS
 from ..fmi.system.builder import contents
 from ..fmi.system.system import Drive, Part, System
 from .planning.pruning import prune
