@@ -1,6 +1,7 @@
 """The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
 
-`run` co-simulates a scene and records it, `evaluate` does so in memory, `sweep` runs it with many values;
+`run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
+runs, `sweep` runs it with many values;
 `Trace` reads a recorded run, `judge` judges a claim on it. `design` solves the same physics for a design.
 """
 
@@ -11,9 +12,11 @@ from .version import __version__ as __version__
 if TYPE_CHECKING:
     from . import design as design
     from .cosim.claims.claims import judge as judge
+    from .cosim.prepared import Prepared as Prepared
     from .cosim.results import Evaluation as Evaluation
     from .cosim.results import Result as Result
     from .cosim.run import evaluate as evaluate
+    from .cosim.run import prepare as prepare
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
     from .sweeps.run import Sweep as Sweep
@@ -25,12 +28,14 @@ if TYPE_CHECKING:
 _HOMES = {
     "Evaluation": "cosim.results",
     "LoomfmuError": "errors",
+    "Prepared": "cosim.prepared",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
     "Trace": "traces",
     "Verdict": "traces",
     "design": "",
     "evaluate": "cosim.run",
+    "prepare": "cosim.run",
     "judge": "cosim.claims.claims",
     "run": "cosim.run",
     "sweep": "sweeps.run",

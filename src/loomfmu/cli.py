@@ -122,7 +122,7 @@ def _export(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from .cosim.master.guards import supervised
-    from .cosim.run import checked
+    from .cosim.reading import checked
 
     if options.report:
         from . import report

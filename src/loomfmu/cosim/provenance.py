@@ -6,7 +6,6 @@ from typing import Any
 
 from .importing.fmus import Fmu
 from .planning.plan import Plan
-from .planning.pruning import effective
 from .scenes.instances import Instance
 from .scenes.scene import Scene
 
@@ -44,7 +43,7 @@ def groups(plan: Plan) -> dict[str, dict[str, Any]]:
     instances = plan.scene.instances
     return {
         name: _described(instances[name], list(values)) | values
-        for name, values in effective(plan.scene, plan.pruned).items()
+        for name, values in plan.effective.groups().items()
     }
 
 

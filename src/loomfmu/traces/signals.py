@@ -1,7 +1,7 @@
 """Signals of a run, however they are kept; kept in memory."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -31,6 +31,11 @@ class Channel:
     meanings: tuple[str, ...] = ()
     first_flag: int = 0
     boolean: bool = False
+
+    @cached_property
+    def signal(self) -> str:
+        """Its name, such as `belt.margin`."""
+        return f"{self.instance}.{self.variable}"
 
 
 class Signals(ABC):
@@ -80,14 +85,21 @@ class Signals(ABC):
 
 
 class Recording(Signals):
-    """A run that is kept in memory. Takes blocks as a `TraceWriter` does."""
+    """A run that is kept in memory.
+
+    It takes blocks as a `TraceWriter` does, and keeps their arrays. `parameter` gives a parameter of an
+    instance as it was set, or None.
+    """
 
     def __init__(
-        self, name: str, channels: Sequence[Channel], parameters: dict[str, dict[str, float | int | bool]]
+        self,
+        name: str,
+        channels: Sequence[Channel],
+        parameter: Callable[[str, str], float | int | bool | None],
     ):
         self.name = name
-        self._channels = {f"{channel.instance}.{channel.variable}": channel for channel in channels}
-        self._parameters = parameters
+        self._channels = {channel.signal: channel for channel in channels}
+        self._parameter = parameter
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
 
     def __repr__(self) -> str:
@@ -95,12 +107,14 @@ class Recording(Signals):
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Keep a block: values along the rows, signals along the columns."""
-        self._blocks.append((time.copy(), angle.copy(), reals.copy(), integers.copy()))
+        self._blocks.append((time, angle, reals, integers))
         for kept in ("_joined", "time", "shaft_angle"):
             self.__dict__.pop(kept, None)
 
     @cached_property
     def _joined(self) -> list[NDArray[Any]]:
+        if len(self._blocks) == 1:
+            return list(self._blocks[0])
         return [np.concatenate(parts) for parts in zip(*self._blocks, strict=True)]
 
     @cached_property
@@ -145,6 +159,7 @@ class Recording(Signals):
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
         instance, _, name = signal.partition(".")
-        if name not in self._parameters.get(instance, {}):
+        value = self._parameter(instance, name)
+        if value is None:
             raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
-        return float(self._parameters[instance][name])
+        return float(value)

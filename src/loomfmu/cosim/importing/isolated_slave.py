@@ -27,6 +27,8 @@ ACTIONS = {"start": "initialization", "finish_initialization": "initialization"}
 class IsolatedSlave(Slave):
     """One instance of an FMU in a process of its own, which later runs use again."""
 
+    keeps_calls = False
+
     def __init__(self, fmu: "Fmu", name: str, limits: Limits):
         self.limits = limits
         super().__init__(fmu, name)

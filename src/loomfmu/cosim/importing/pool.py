@@ -2,6 +2,7 @@
 
 import atexit
 import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from .fmi3_slave import Fmi3Slave
@@ -48,6 +49,14 @@ def give_back(slave: Slave) -> None:
         _resting.setdefault(key, []).append(slave)
     else:
         slave.free()
+
+
+def free(instances: Iterable[tuple["Fmu", str]]) -> None:
+    """Free what rests of these instances, each an FMU and a name."""
+    for fmu, name in instances:
+        for isolated in (False, True):
+            for slave in _resting.pop((fmu.sha256, name, isolated), ()):
+                slave.free()
 
 
 @atexit.register

@@ -9,6 +9,7 @@ import ctypes
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
@@ -41,6 +42,16 @@ class Interrupted(Exception):
     """The user has interrupted the run."""
 
 
+@dataclass
+class _Calls:
+    """Prepared calls of some instances, and what takes steps with them."""
+
+    slaves: list[Slave]
+    inputs: dict[str, list[Action]]
+    outputs: dict[str, list[Action]]
+    stepper: Stepper | None = None
+
+
 class Master:
     """The instances of a scene, coupled. Use it in a `with` statement: it gives them back.
 
@@ -65,18 +76,27 @@ class Master:
         self._signals = Signals(scene, self.order, fetched, dict(shafts or {}))
         self.slots = self._signals.slots
         self.slaves: dict[str, Slave] = {}
+        self._ours = all(instance.fmu.ours for instance in scene.instances.values())
         self.interrupted = ctypes.c_int32(0)
         self._compiled = compiled
         self.steps = 0
         self.ended: Ended | None = None
         self._start_warnings: list[str] = []
         self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
-        self._growth = Growth(self.lagged, self._signals.real_slots(self.lagged))
+        self._part = 1  # steps between looks for Ctrl-C
+        self._calls: _Calls | None = None  # as they were prepared for the last run
 
     # ---- life cycle
 
+    def loaded(self, scene: Scene, grid: Grid, shafts: Mapping[str, ConstantShaft]) -> "Master":
+        """For the next run: the same scene with other values, and another grid."""
+        self.scene, self.grid = scene, grid
+        self._signals.shafts = shafts
+        return self
+
     def __enter__(self) -> "Master":
         self._guards = ExitStack()
+        self.interrupted.value, self.steps, self.ended = 0, 0, None
         self._guards.enter_context(interrupt_fills(self.interrupted))
         try:
             scene = self.scene
@@ -84,16 +104,16 @@ class Master:
             inside = [name for name in self.order if not scene.isolates(name)]
             self._guards.enter_context(exit_named(inside))
             for name in self.order:
-                limits = None if name in inside else self._limits
-                with directory_kept():
-                    self.slaves[name] = borrow(scene.instances[name].fmu, name, limits)
+                limits, fmu = None if name in inside else self._limits, scene.instances[name].fmu
+                with directory_kept(fmu.ours):
+                    self.slaves[name] = borrow(fmu, name, limits)
         except BaseException as error:
             self.__exit__(type(error))
             raise
         return self
 
     def __exit__(self, kind: type[BaseException] | None = None, *_: Any) -> None:
-        with directory_kept():
+        with directory_kept(self._ours):
             for slave in self.slaves.values():
                 give_back(slave)
         self.slaves.clear()
@@ -109,7 +129,7 @@ class Master:
             KeyboardInterrupt: Ctrl-C while an isolated FMU did not answer
         """
         try:
-            with directory_kept():
+            with directory_kept(self._ours):
                 self._initialize()
         except LoomfmuError:
             if self.interrupted.value:
@@ -120,27 +140,44 @@ class Master:
         signals = self._signals
         for name, slave in self.slaves.items():
             slave.start(self.scene.instances[name].values, self.grid.stop_time)
-        driven = signals.driven(np.zeros(1))
-        signals.reals[signals.driven_slots(real=True)] = driven.reals[0]
-        signals.integers[signals.driven_slots(real=False)] = driven.integers[0]
-        signals.turn_shafts(np.zeros(1), signals.reals[np.newaxis, :])
-        inputs = {name: signals.inputs(name, slave) for name, slave in self.slaves.items()}
-        outputs = {name: signals.outputs(name, slave) for name, slave in self.slaves.items()}
+        signals.begin()
+        calls = self._prepared()
         start = Start(
-            self.slaves, inputs, outputs, self.scene.wires, self.lagged, self.slots, signals.reals,
-            signals.integers,
+            self.slaves, calls.inputs, calls.outputs, self.scene.wires, self.lagged, self.slots,
+            signals.reals, signals.integers,
         )  # fmt: skip
         start.make()
         self._start_warnings = start.warnings
-        actions = {
-            name: [*inputs[name], Action(slave, slave.step_call(self._time, self._size)), *outputs[name]]
-            for name, slave in self.slaves.items()
-        }
-        self._stepper = self._make_stepper(actions)
+        self._growth = Growth(self.lagged, signals.real_slots(self.lagged))
+        if calls.stepper is None:
+            calls.stepper = self._make_stepper(calls)
+        self._stepper = calls.stepper
+        # a loop has learnt from this run, and the calls of some instances serve one run alone
+        lasts = all(slave.pooled and slave.keeps_calls for slave in self.slaves.values())
+        self._calls = calls if lasts and not self.lagged else None
 
-    def _make_stepper(self, actions: Mapping[str, Sequence[Action]]) -> Stepper:
+    def _prepared(self) -> "_Calls":
+        """The calls that hand over inputs and outputs: those of the run before for the same instances."""
+        slaves, signals = list(self.slaves.values()), self._signals
+        if self._calls and all(a is b for a, b in zip(self._calls.slaves, slaves, strict=True)):
+            return self._calls
+        return _Calls(
+            slaves,
+            {name: signals.inputs(name, slave) for name, slave in self.slaves.items()},
+            {name: signals.outputs(name, slave) for name, slave in self.slaves.items()},
+        )
+
+    def _make_stepper(self, calls: "_Calls") -> Stepper:
         """What takes the steps: the calls of all instances in their order."""
         signals = self._signals
+        actions = {
+            name: [
+                *calls.inputs[name],
+                Action(slave, slave.step_call(self._time, self._size)),
+                *calls.outputs[name],
+            ]
+            for name, slave in self.slaves.items()
+        }
         memory = Memory(
             signals.reals, signals.integers, signals.driven_slots(real=True),
             signals.driven_slots(real=False), self.interrupted,
@@ -166,7 +203,7 @@ class Master:
         reals = np.empty((rows, len(self._signals.reals)))
         integers = np.empty((rows, len(self._signals.integers)), dtype=np.int32)
         times[0], reals[0], integers[0] = 0.0, self._signals.reals, self._signals.integers
-        handed, filled, step, part = 0, 1, 0, 1
+        handed, filled, step = 0, 1, 0
         due = perf_counter() + HOLD
         failure: LoomfmuError | None = None
         try:
@@ -177,11 +214,11 @@ class Master:
                     self._hand_over(times[block], reals[block], integers[block], write)
                     progress(step)
                     due = perf_counter() + HOLD
-                span = self.grid.span(step, min(rows - filled, self.grid.steps - step, part))
+                span = self.grid.span(step, min(rows - filled, self.grid.steps - step, self._part))
                 before = perf_counter()
                 taken, failure = self._advance(span, reals[filled:], integers[filled:])
-                grown = part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))
-                part = max(1, min(rows, int(grown)))
+                grown = self._part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))
+                self._part = max(1, min(rows, int(grown)))
                 times[filled : filled + taken] = span.ends[:taken]
                 filled += taken
                 step += taken
@@ -201,7 +238,7 @@ class Master:
     def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
         driven = self._signals.driven(span.turns)
-        with directory_kept():
+        with directory_kept(self._ours):
             taken, failure = self._stepper.advance(span, driven, reals, integers)
         if failure is None and taken and (reason := self._limits.passed):
             failure = LoomfmuError(f"{self.scene.name} at {span.ends[taken - 1]:.9g} s: {reason}")

@@ -29,7 +29,7 @@ class Signals:
         fetched: Collection[tuple[str, str]] | None,
         shafts: Mapping[str, ConstantShaft],
     ):
-        self._scene, self._order, self._shafts = scene, order, shafts
+        self._scene, self._order, self.shafts = scene, order, shafts
         self.slots = self._slots(fetched)
         reals = sum(kind == "Real" for kind, _ in self.slots.values())
         self.reals = np.zeros(max(1, reals))
@@ -57,7 +57,7 @@ class Signals:
                         take(name, port.name, kind)
         for drive in self._scene.drives:
             take(drive.instance, drive.variable, drive.kind)
-        for name in self._shafts:
+        for name in self.shafts:
             for variable in ("angle", "velocity", "acceleration"):
                 take(name, variable, "Real")
         return slots
@@ -72,6 +72,14 @@ class Signals:
         slots = [self.slots[drive.instance, drive.variable] for drive in self._scene.drives]
         return [slot for kind, slot in slots if (kind == "Real") is real]
 
+    def begin(self) -> None:
+        """The values before the first exchange: zeros, and those of driven inputs and shafts."""
+        self.reals[:], self.integers[:] = 0.0, 0
+        driven = self.driven(np.zeros(1))
+        self.reals[self.driven_slots(real=True)] = driven.reals[0]
+        self.integers[self.driven_slots(real=False)] = driven.integers[0]
+        self.turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
+
     def driven(self, turns: Floats) -> Driven:
         """The driven inputs at numbers of revolutions, along the columns those of `_driven_slots`."""
         reals = [drive.along(turns) for drive in self._scene.drives if drive.kind == "Real"]
@@ -83,7 +91,7 @@ class Signals:
 
     def turn_shafts(self, times: Floats, rows: Floats) -> None:
         """Write the values of the shafts that need no FMU at these times."""
-        for name, shaft in self._shafts.items():
+        for name, shaft in self.shafts.items():
             for variable in ("angle", "velocity", "acceleration"):
                 rows[:, self.slots[name, variable][1]] = shaft.values(variable, times)
 

@@ -43,7 +43,8 @@ class Start:
         first = next((place for place, name in enumerate(order) if name in closing), len(order))
         for name in order[:first]:
             perform(self.inputs[name], 0.0)
-            self._leave(name)
+            self.slaves[name].finish_initialization()
+            perform(self.outputs[name], 0.0)
         self._leave_loops(order[first:])
 
     def _leave_loops(self, names: Sequence[str]) -> None:

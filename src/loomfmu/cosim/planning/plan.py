@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -12,10 +13,10 @@ from ... import printed
 from ...traces import ROWS, Channel, Recording
 from ..importing import fmus
 from ..importing.slave import Ended
-from ..master.grid import Grid
+from ..master.grid import Grid, uniform
 from ..master.master import Integers, Interrupted, Master, Reals
 from ..scenes.scene import Scene
-from .pruning import Pruned, effective, prune
+from .pruning import Effective, Pruned, prune
 from .requested import output_port
 
 
@@ -33,19 +34,54 @@ class Plan:
     scene: Scene
     pruned: Pruned
     grid: Grid
+    effective: Effective
 
     @property
     def signals(self) -> tuple[str, ...]:
         """What is kept."""
         return self.pruned.signals
 
+
+class Stepping:
+    """Runs a scene with only what some signals need, as often as wanted.
+
+    What does not depend on values is done once: what is left out, the order, where values are, the calls.
+    """
+
+    def __init__(self, scene: Scene, signals: Sequence[str]):
+        self._pruned = pruned = prune(scene, signals)
+        self._effective = Effective(scene, pruned)
+        self._master = Master(pruned.scene, uniform(scene), pruned.fetched, pruned.shafts)
+        self._scene = scene
+
+    @cached_property
+    def channels(self) -> list[Channel]:
+        """What is kept: where the master has it, and how a trace describes it."""
+        return _channels(self._scene, self._pruned.signals, self._master)
+
+    def plan(self, scene: Scene, grid: Grid) -> Plan:
+        """The plan for this scene, which differs in values alone, on a grid."""
+        pruned = self._pruned if scene is self._scene else self._pruned.of(scene)
+        return Plan(scene, pruned, grid, self._effective.of(scene, pruned))
+
     @contextmanager
-    def stepped(self) -> Iterator[Master]:
-        """The master of the run, initialized."""
-        build_needed(self.pruned.scene)
-        with Master(self.pruned.scene, self.grid, self.pruned.fetched, self.pruned.shafts) as master:
+    def stepped(self, plan: Plan) -> Iterator[Master]:
+        """The master of a run, initialized."""
+        build_needed(plan.pruned.scene)
+        with self._master.loaded(plan.pruned.scene, plan.grid, plan.pruned.shafts) as master:
             master.initialize()
             yield master
+
+    def in_memory(self, scene: Scene, grid: Grid) -> "InMemory":
+        """Run a scene, which differs in values alone, and keep the signals in memory."""
+        plan = self.plan(scene, grid)
+        with self.stepped(plan) as master:
+            recording = Recording(scene.name, self.channels, plan.effective.value)
+            try:
+                record(master, recording, lambda _step: None, grid.steps + 1)
+            except Interrupted:
+                raise KeyboardInterrupt("interrupted") from None
+            return InMemory(recording, plan, master.steps, master.ended, master.warnings())
 
 
 def build_needed(scene: Scene, *, report: bool = False) -> None:
@@ -59,11 +95,10 @@ def build_needed(scene: Scene, *, report: bool = False) -> None:
     fmus.build(missing)
 
 
-def channels(plan: Plan, master: Master) -> list[Channel]:
-    """What is kept: where the master has it, and how a trace describes it."""
+def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Channel]:
     found = []
-    for signal in plan.signals:
-        port = output_port(plan.scene, signal, "record")
+    for signal in signals:
+        port = output_port(scene, signal, "record")
         instance, variable = signal.split(".")
         kind, slot = master.slots[instance, variable]
         meanings = ("no", "yes") if kind == "Boolean" else port.meanings
@@ -85,15 +120,18 @@ def channels(plan: Plan, master: Master) -> list[Channel]:
     return found
 
 
-def record(master: Master, keeper: Keeper, progress: Callable[[int], None]) -> None:
-    """Step an initialized master to the end."""
+def record(master: Master, keeper: Keeper, progress: Callable[[int], None], rows: int = ROWS) -> None:
+    """Step an initialized master to the end, and hand over blocks of so many rows.
+
+    A block that holds the whole run belongs to the keeper; of others the memory is used again.
+    """
     _kind, column = master.slots.get(("shaft", "angle"), ("", -1))
 
     def write(times: Reals, reals: Reals, integers: Integers) -> None:
         angle = reals[:, column] if column >= 0 else np.zeros(len(times))  # a scene without shaft
         keeper.append(times, angle, reals, integers)
 
-    master.run(ROWS, write, progress)
+    master.run(rows, write, progress)
 
 
 class InMemory(NamedTuple):
@@ -104,18 +142,6 @@ class InMemory(NamedTuple):
     steps: int
     ended: Ended | None
     warnings: list[str]
-
-
-def in_memory(scene: Scene, signals: Sequence[str], grid: Grid) -> InMemory:
-    """Run a scene and keep these signals in memory."""
-    plan = Plan(scene, prune(scene, signals), grid)
-    with plan.stepped() as master:
-        recording = Recording(scene.name, channels(plan, master), effective(scene, plan.pruned))
-        try:
-            record(master, recording, lambda _step: None)
-        except Interrupted:
-            raise KeyboardInterrupt("interrupted") from None
-        return InMemory(recording, plan, master.steps, master.ended, master.warnings())
 
 
 def ended_text(ended: Ended | None) -> str:

@@ -6,6 +6,7 @@ Third-party FMUs always run: they may be there for what they do, such as to log 
 """
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass, replace
 
 from ..importing.fmus import Value
@@ -21,15 +22,26 @@ from .requested import claims_of
 class Pruned:
     """A scene with only what some signals need.
 
-    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need no FMU, `skipped` lines
-    on what was left out and why.
+    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need no FMU, `turning` the
+    shaft that an instance turns like without following it, `skipped` lines on what was left out and why.
     """
 
     scene: Scene
     signals: tuple[str, ...]
     fetched: frozenset[tuple[str, str]]
     shafts: dict[str, ConstantShaft]
+    turning: dict[str, str]
     skipped: tuple[str, ...]
+
+    def of(self, scene: Scene) -> "Pruned":
+        """The same of this scene, which differs in values alone."""
+        shafts = {name: _constant(scene.instances[name]) for name in self.shafts}
+        instances = {
+            name: _turning(scene.instances[name], shafts.get(self.turning.get(name, "")))
+            for name in self.scene.instances
+        }
+        left = replace(scene, instances=instances, wires=self.scene.wires, drives=self.scene.drives)
+        return replace(self, scene=left, shafts=shafts)
 
 
 def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pruned:
@@ -42,7 +54,12 @@ def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pr
     third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}
     needed = _upstream(requested | third_party, wires)
     wires = [wire for wire in wires if wire.sink[0] in needed]
-    instances = {name: _turning(scene, name, shafts) for name in scene.instances if name in needed}
+    like = {wire.sink[0]: wire.source[0] for wire in scene.wires if wire.source[0] in shafts}
+    instances = {
+        name: _turning(each, shafts.get(like.get(name, "")))
+        for name, each in scene.instances.items()
+        if name in needed
+    }
     fetched = {wire.source for wire in wires}
     for signal in signals:
         instance, _, variable = signal.partition(".")
@@ -54,23 +71,54 @@ def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pr
         signals=signals,
         fetched=frozenset(fetched),
         shafts=shafts,
+        turning=like,
         skipped=tuple(_skipped(scene, instances, fetched, shafts)),
     )
 
 
-def effective(scene: Scene, kept: Pruned) -> dict[str, dict[str, Value]]:
+class Effective:
     """The start values of every instance that runs, and of those whose parameters the claims need.
 
     What has no effect is left out: an instance's own speed if it follows a shaft, an input that is wired.
     """
-    read = {name for claim in claims_of(scene) for name in claim.parameter_owners()}
-    fed = {wire.sink for wire in scene.wires} | {(d.instance, d.variable) for d in scene.drives}
-    found = {}
-    for name, instance in scene.instances.items():
-        if name in kept.scene.instances or name in kept.shafts or name in read:
-            running = kept.scene.instances.get(name, instance)
-            found[name] = running.effective({variable for owner, variable in fed if owner == name})
+
+    def __init__(self, scene: Scene, kept: Pruned):
+        self._instances, self._running, self._shafts = scene.instances, kept.scene.instances, kept.shafts
+        self._fed, self._read = _fed(scene), _read(scene)
+
+    def of(self, scene: Scene, kept: Pruned) -> "Effective":
+        """The same of this scene, which differs in values alone."""
+        found = copy(self)
+        found._instances, found._running = scene.instances, kept.scene.instances
+        return found
+
+    def value(self, name: str, variable: str) -> Value | None:
+        """A start value; None where there is none that has an effect."""
+        each = self._instance(name)
+        return each.effect(variable, self._fed.get(name, ())) if each else None
+
+    def groups(self) -> dict[str, dict[str, Value]]:
+        """All of them, by their instances."""
+        found = {name: self._instance(name) for name in self._instances}
+        return {name: each.effective(self._fed.get(name, ())) for name, each in found.items() if each}
+
+    def _instance(self, name: str) -> Instance | None:
+        if name in self._running or name not in self._instances:
+            return self._running.get(name)
+        return self._instances[name] if name in self._shafts or name in self._read else None
+
+
+def _fed(scene: Scene) -> dict[str, set[str]]:
+    """The inputs of each instance that have a source."""
+    found: dict[str, set[str]] = {}
+    for name, variable in [*(wire.sink for wire in scene.wires), *((d.instance, d.variable) for d in scene.drives)]:
+        found.setdefault(name, set()).add(variable)
     return found
+
+
+def _read(scene: Scene) -> set[str]:
+    """The instances whose parameters the claims need."""
+    return {name for claim in claims_of(scene) for name in claim.parameter_owners()}
 
 
 def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
@@ -112,15 +160,11 @@ def _constant(shaft: Instance) -> ConstantShaft:
     return ConstantShaft(**{name: float(value or 0.0) for name, value in values.items()})
 
 
-def _turning(scene: Scene, name: str, shafts: dict[str, ConstantShaft]) -> Instance:
+def _turning(instance: Instance, shaft: ConstantShaft | None) -> Instance:
     """An instance; if it follows a shaft that is left out, it turns by itself instead."""
-    instance = scene.instances[name]
-    shaft = {wire.source[0] for wire in scene.wires if wire.sink[0] == name} & set(shafts)
-    if not shaft:
+    if shaft is None:
         return instance
-    constant = shafts[shaft.pop()]
-    own = turning(constant.speed, constant.start_angle)
-    return replace(instance, values=instance.values | own)
+    return replace(instance, values=instance.values | turning(shaft.speed, shaft.start_angle))
 
 
 def _skipped(

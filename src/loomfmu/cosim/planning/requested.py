@@ -1,6 +1,6 @@
 """The signals that a run must give: those recorded and those that claims need, checked first."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -50,13 +50,19 @@ def checked_claims(scene: Scene) -> Scene:
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, and the scene has no shaft")
         for signal in signals_of(scene, claim):
             output_port(scene, signal, where)
-        if isinstance(claim, Bounded) and isinstance(claim.bound, str):
-            _check_parameter(scene, claim.bound, claim.signal)
-        elif isinstance(claim, Bounded):
+        if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
+        check_bounds(scene, [claim])
         notes += doubts(table)
     return replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
+
+
+def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
+    """Refuse a parameter that cannot bound the signal of a claim."""
+    for claim in claims:
+        if isinstance(claim, Bounded) and isinstance(claim.bound, str):
+            _check_parameter(scene, claim.bound, claim.signal)
 
 
 def _unrecorded(scene: Scene) -> Iterator[str]:
@@ -75,13 +81,13 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
     if name not in known:
         raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
-    values = scene.instances[instance].effective()
-    if variable not in values:
+    value = scene.instances[instance].effect(variable)
+    if value is None:
         raise LoomfmuError(f"claim: bound = {name!r} has no effect in this scene: {instance} does not use it")
     wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
-    check_speed(name, float(values[variable]), wanted)
+    check_speed(name, float(value), wanted)
 
 
 def judged_by(scene: Scene) -> list[str]:

@@ -10,7 +10,7 @@ step, so it gets the scene's own steps and the landings.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -24,11 +24,12 @@ from ..master.grid import Grid, chosen, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import turns_others
-from .plan import in_memory
+from .plan import InMemory
 from .pruning import prune
 from .requested import claims_of, shaft_angle, signals_of, with_rates
 
 Floats = NDArray[np.float64]
+Scout = Callable[[Scene, Sequence[str], Grid], InMemory]
 
 SCOUTS = 2  # runs that look for the windows: the second one sees the lowest points
 MOST_STEPS = 10_000_000  # that are kept in memory, with the watched signals
@@ -57,8 +58,10 @@ class Places:
         self.about += [time - reach, time + reach]
 
 
-def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
+def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
     """The communication points of a scene whose `grid` is "windows" and that keeps these signals.
+
+    `in_memory` runs a scene on a grid and keeps some signals in memory.
 
     Raises:
         LoomfmuError: the scene has no shaft or no claims, or an FMU takes only equal steps
@@ -76,7 +79,7 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     for name, instance in needed.instances.items():
         if instance.fmu.keeps == MOTION and longest > fine:
             longest, why = fine, f"{name} integrates"
-    places, scouted = _scouted(scene, signals, coarse, longest)
+    places, scouted = _scouted(scene, signals, coarse, longest, in_memory)
     points = _merged(_equal(scene, places.most), places)
     notes = (
         f"steps: {period(scene) / places.most:.0f} per revolution{_because(why)}, plus steps that land"
@@ -85,7 +88,9 @@ def window_grid(scene: Scene, signals: Sequence[str]) -> Grid:
     return chosen(scene, points, notes, scouted)
 
 
-def _scouted(scene: Scene, signals: Sequence[str], coarse: float, longest: float) -> tuple[Places, int]:
+def _scouted(
+    scene: Scene, signals: Sequence[str], coarse: float, longest: float, in_memory: Scout
+) -> tuple[Places, int]:
     """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
     # an input that the scene drives has kinks
     kinks = [turn * period(scene) for drive in scene.drives for turn in drive.periods]

@@ -1,8 +1,9 @@
 """The instances of a scene: which FMU each is, and the values it starts with."""
 
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from ...components.shaft_driven import ShaftDriven
 from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
 from ...own import load
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
-from ...variables import AT_STEP_END, Variable, variables_of
+from ...variables import AT_STEP_END, Component, Variable, variables_of
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from . import standard_loom
@@ -116,24 +117,35 @@ class Instance:
             if switch in self.fmu.ports:
                 self.values.setdefault(switch, True)
 
-    def _declared(self) -> dict[str, Variable]:
+    def _declared(self) -> Mapping[str, Variable]:
         """The variables of our component; one that is not known here has those of its kind."""
-        component = self.fmu.component or ShaftDriven
-        return {each.name: each for each in variables_of(component)} if self.fmu.ours else {}
+        return _variables(self.fmu.component or ShaftDriven) if self.fmu.ours else {}
 
     def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
         """Its parameters and inputs at the start, without inputs that are fed and values without effect."""
-        values: dict[str, Value] = {}
-        for port in self.fmu.ports.values():
-            start = self.values.get(port.name, port.start)
-            if _can_be_set(port) and port.name not in fed and start is not None:
-                values[port.name] = TYPES[port.kind](start)
-        idle = [
-            name
-            for name, variable in self._declared().items()
-            if not values.get(variable.when or "", True) or values.get(variable.unless or "", False)
-        ]
-        return {name: value for name, value in values.items() if name not in idle}
+        found = {name: self.effect(name, fed) for name in self.fmu.ports}
+        return {name: value for name, value in found.items() if value is not None}
+
+    def effect(self, name: str, fed: Collection[str] = ()) -> Value | None:
+        """A parameter or an input at the start; None if it is fed, or has no effect."""
+        declared = self._declared().get(name)
+        if declared and declared.when and not self._start(declared.when, fed, True):
+            return None
+        if declared and declared.unless and self._start(declared.unless, fed, False):
+            return None
+        return self._start(name, fed)
+
+    def _start(self, name: str, fed: Collection[str], otherwise: bool | None = None) -> Value | None:
+        port = self.fmu.ports.get(name)
+        if port is None or not _can_be_set(port) or name in fed:
+            return otherwise
+        start = self.values.get(name, port.start)
+        return otherwise if start is None else TYPES[port.kind](start)
+
+
+@cache
+def _variables(component: type[Component]) -> Mapping[str, Variable]:
+    return {each.name: each for each in variables_of(component)}
 
 
 def truth(given: Any, where: str) -> bool:

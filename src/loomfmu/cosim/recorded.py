@@ -1,0 +1,98 @@
+"""The trace of a run: where it may be written, its blocks, its verdicts and its final name."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .. import printed
+from ..errors import LoomfmuError, why
+from ..files import cannot_write, check_target
+from ..traces import PARTIAL, TRACE, Channel, Trace, TraceWriter, Verdict, partial_of
+from ..traces.disk import check_room, largest, size_text
+from .claims.claim import Claim
+from .master.master import Interrupted
+from .planning.plan import Plan
+from .planning.requested import output_port
+from .provenance import attributes, groups
+from .scenes.scene_files import files_of
+
+LONG_RUN = 20_000  # steps from which a progress bar is shown
+SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: any other belongs to other kinds of files
+LARGE_TRACE = 300_000_000  # bytes from which its size is reported before the run
+
+
+@contextmanager
+def kept(writer: TraceWriter, path: Path) -> Iterator[None]:
+    """Whatever ends the run early: what was written stays readable, and the message says where it is."""
+    try:
+        yield
+    except Interrupted:
+        kept = path.with_name(writer.abandon("interrupted").name)
+        raise KeyboardInterrupt(f"interrupted; {writer.rows} samples are in {kept}") from None
+    except OSError as error:
+        kept = path.with_name(writer.abandon("failed").name)
+        raise LoomfmuError(f"{path}: cannot be written ({why(error)}); see {kept}") from None
+    except BaseException:
+        writer.abandon("failed")
+        raise
+
+
+def finish(
+    claims: Iterable[Claim], writer: TraceWriter, path: Path, ended: str
+) -> tuple[tuple[Verdict, ...], Trace]:
+    """Judge the trace, store the verdicts with it and give it its final name."""
+    try:
+        writer.seal()
+        with Trace(writer.partial) as trace:
+            trace.rows = writer.rows  # asking every signal of the file takes its time
+            verdicts = tuple(claim.judge(trace) for claim in claims)
+        return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], ended)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    except LoomfmuError as error:
+        kept = path.with_name(writer.abandon("unjudged").name)
+        raise LoomfmuError(f"{error}; the trace is kept in {kept}") from None
+
+
+def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
+    """The absolute path of the trace, since an FMU may change the working directory.
+
+    Refuses, before the run, a trace that may not be written there or does not fit, and reports a large one.
+    """
+    inputs = files_of(plan.scene)
+    check_target(path, TRACE, inputs, overwrite)
+    if path.suffix.lower() not in SUFFIXES:
+        raise LoomfmuError(f"{path}: a trace is an HDF5 file; name it {path.with_suffix('.h5').name}")
+    check_target(partial_of(path), PARTIAL, inputs, overwrite)
+    kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
+    size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
+    if report and size > LARGE_TRACE:
+        printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
+    try:
+        check_room(path, size)
+        return path.absolute()
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+def writer_of(plan: Plan, channels: list[Channel], path: Path, target: Path, flavour: str) -> TraceWriter:
+    """What writes the trace, begun."""
+    try:
+        return TraceWriter(target, attributes(plan, flavour), channels, groups(plan))
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+@contextmanager
+def bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
+    """A progress bar for a long run; call it with the number of steps done."""
+    shown = 0
+
+    def reached(step: int) -> None:
+        nonlocal shown
+        advance(step - shown)
+        shown = step
+
+    long = plan.grid.steps >= LONG_RUN
+    with printed.progress(plan.scene.name, plan.grid.steps, wanted=wanted and long) as advance:
+        yield reached

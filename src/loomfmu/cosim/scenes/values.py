@@ -1,0 +1,83 @@
+"""Other values for a scene that was read: where they are values and nothing else, it need not be read again."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ...errors import LoomfmuError
+from ...machines import TAKERS
+from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
+from .instances import Instance
+from .overrides import components, overridden
+from .scene import Scene
+from .standard_loom import FOLLOWING
+from .times import Times, check_times
+
+NOT_VALUES = (*PARAMETER_SETS, *FILES, ISOLATED)
+
+
+class Values:
+    """Sets parameters and start values of a scene as reading it with these overrides would."""
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+        self._targets: dict[str, list[tuple[str, str]]] = {}
+        self._fed = {wire.sink for wire in scene.wires} | {(d.instance, d.variable) for d in scene.drives}
+        self._times = Times(scene.periods, scene.steps_per_period, scene.step)
+
+    def targets(self, key: str) -> list[tuple[str, str]]:
+        """What a key sets, as (instance, variable), if it is a value; else nothing.
+
+        Not a value is whatever may change which FMUs there are, how they are wired, which of them run, for
+        how long, or what a scene warns of.
+        """
+        if key not in self._targets:
+            self._targets[key] = self._found(key)
+        return self._targets[key]
+
+    def _found(self, key: str) -> list[tuple[str, str]]:
+        scene = self.scene
+        if scene.package is not None:  # a value may stand for several of its own
+            return []
+        try:
+            pairs = overridden(scene.instances, key, components(scene.instances))
+        except LoomfmuError:
+            return []
+        return pairs if all(name and self._is_value(scene.instances[name], each) for name, each in pairs) else []
+
+    def _is_value(self, instance: Instance, variable: str) -> bool:
+        port, component = instance.fmu.ports.get(variable), instance.fmu.component
+        if port is None or port.own != variable or variable in NOT_VALUES:
+            return False
+        if variable == FOLLOWING or (component and variable in component.unsteady):
+            return False
+        free = port.causality in ("parameter", "input") and (instance.name, variable) not in self._fed
+        return free and not self._mixes(instance)
+
+    def _mixes(self, instance: Instance) -> bool:
+        """Whether the scene compares its values with a machine's or a head's that others were given."""
+        named = {kind for each in self.scene.instances.values() for kind in each.published}
+        kinds = [kind for kind, takers in TAKERS.items() if instance.fmu.name in takers]
+        return any(kind in named and kind not in instance.published for kind in kinds)
+
+    def set(self, values: Mapping[str, Any], overrides: dict[str, Any]) -> Scene:
+        """The scene with other values, out of all its overrides.
+
+        Raises LoomfmuError for what must be read anew.
+        """
+        changed: dict[str, Instance] = {}
+        for key, given in values.items():
+            if not self.targets(key):
+                raise LoomfmuError(f"{key} is not a value")
+            for name, variable in self.targets(key):
+                if name not in changed:
+                    old = self.scene.instances[name]
+                    changed[name] = replace(old, values=dict(old.values), doubts=dict(old.doubts))
+                changed[name].set(variable, given)
+        for name, each in changed.items():
+            if any(each.doubts.values()) or any(self.scene.instances[name].doubts.values()):
+                raise LoomfmuError(f"{name}: its values change what the scene warns of")
+        scene = replace(self.scene, instances=self.scene.instances | changed, overrides=overrides)
+        if "shaft" in changed and "speed" in scene.instances["shaft"].fmu.ports:
+            check_times(self._times, scene.speed)
+        return scene
