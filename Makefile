@@ -47,12 +47,12 @@ docs: .venv/installed
 validation: .venv/installed-for-tests
 	$(BIN)/loomfmu validate
 
-# a package that brings native FMUs and stepper for all platforms: who installs it needs no compiler
+# a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler
 wheel: .venv/installed
 	$(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
-	$(BIN)/python -c "from loomfmu.cosim.master.steppers import build_all; build_all()"
+	$(BIN)/python -c "from pathlib import Path; from loomfmu.fmi.native.libraries import build_all; build_all(Path('src/loomfmu/cosim').glob('*/native/*.c'))"
 	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist .
-	rm -r src/loomfmu/cosim/master/native/*/ src/loomfmu/fmi/native/shipped
+	rm -r src/loomfmu/cosim/*/native/*/ src/loomfmu/fmi/native/shipped
 
 .venv/created:
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"

@@ -702,7 +702,7 @@ def test_a_large_trace_is_told_before_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], fmu_cache: None
 ) -> None:
     (tmp_path / "one.toml").write_text(LONG.replace("3000", "1"))
-    monkeypatch.setattr("loomfmu.cosim.run.LARGE_TRACE", 50_000)
+    monkeypatch.setattr("loomfmu.cosim.recorded.LARGE_TRACE", 50_000)
     result = loomfmu.run(tmp_path / "one.toml", output=tmp_path / "one.h5", progress=True)
     assert capsys.readouterr().err == (  # 1441 samples of 48 bytes
         f"{tmp_path}/one.h5: the trace takes up to 0.1 MB; record = [...] keeps less\n"

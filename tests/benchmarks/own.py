@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from records import ROOT
 
 import loomfmu
-from loomfmu.cosim import run as runs
+from loomfmu.cosim import prepared
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master.master import Master
 from loomfmu.cosim.scenes import scene as scenes
@@ -102,7 +102,7 @@ class Ours:
         """Seconds for all but the steps, and for a revolution of them with its recording."""
         scene = self.source.scene(steps, turns)
         start = perf_counter()
-        with StopWatch(runs, "record") as stepping:
+        with StopWatch(prepared, "record") as stepping:
             self.run(scene)
         whole = perf_counter() - start
         return Timing(whole - stepping.seconds, stepping.seconds / turns)

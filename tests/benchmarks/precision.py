@@ -150,7 +150,7 @@ def dwell(signals: Signals) -> float:
         rate = rate if variable != "acceleration" else ""
         channels.append(Channel(instance, variable, "1", "1", "", column, rate=rate or None))
     samples = np.column_stack([signals[name] for name in MOTIONS])
-    recording = Recording("samples", channels, {"heald_1": {"stroke": STROKE}})
+    recording = Recording("samples", channels, lambda _name, _variable: STROKE)
     none = np.empty((len(samples), 0), dtype=np.int32)
     recording.append(signals["time"], signals["shaft.angle"], samples, none)
     return judge(recording, kind="dwell", heald="heald_1", at_least=0.0).worst

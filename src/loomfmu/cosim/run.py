@@ -67,8 +67,8 @@ def prepare(
 ) -> Prepared:
     """Read, wire and plan a scene once, to run it many times with other values.
 
-    `loom.evaluate({"shaft.speed": "650 rpm"})` and `loom.run(...)` set values, reset the FMUs, step and judge;
-    results are those of `evaluate` and `run`, to the last bit.
+    `loom.evaluate({"shaft.speed": "650 rpm"})` and `loom.run(...)` set values, reset the FMUs, step and
+    judge; results are those of `evaluate` and `run`, to the last bit.
 
     Args:
         scene, set, flavour: as for `run`

@@ -16,7 +16,8 @@ from typing import Any
 from .. import machines
 from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
-from ..cosim.run import evaluate, run
+from ..cosim.prepared import Prepared
+from ..cosim.run import prepare
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
 from ..traces import Verdict
@@ -81,14 +82,14 @@ def identity(scene: Scene, flavour: str) -> str:
 def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
     """Evaluate rows. A row that cannot be run says why; only a worker that differs raises LoomfmuError."""
     with _turn:
-        scene = _scene(job)
+        loom = _prepared(job)
         begun = time.perf_counter()
         labels: tuple[Label, ...] = ()
         results = []
         for each in settings:
-            result, verdicts = _row(job, scene, each)
+            result, verdicts = _row(job, loom, each)
             results.append(result)
-            labels = labels or tuple(map(_label, scene.claims, verdicts))
+            labels = labels or tuple(map(_label, loom.scene.claims, verdicts))
         return Batch(results, labels, (time.perf_counter() - begun) / len(settings))
 
 
@@ -101,33 +102,33 @@ def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
 def run_trace(job: Job, settings: dict[str, Any], path: Path) -> None:
     """Run a row with a full trace. What is there under its name is a sweep's, and no trace."""
     with _turn:
-        run(_scene(job), set=settings, output=path, flavour=job.flavour, overwrite=True)
+        _prepared(job).run(settings, output=path, overwrite=True)
 
 
 @lru_cache(maxsize=4)
-def _scene(job: Job) -> Scene:
-    """The scene as this worker sees it."""
+def _prepared(job: Job) -> Prepared:
+    """The scene as this worker sees it, prepared."""
     scene = read_scene(job.path, dict(job.fixed))
     if identity(scene, job.flavour) != job.identity:
         raise LoomfmuError(
             f"{job.path}: a worker has another version of loomfmu, or the file has changed since the start"
         )
-    return scene
+    return prepare(scene, flavour=job.flavour, values=job.values)
 
 
-def _row(job: Job, scene: Scene, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
+def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
     """The result of one row and the verdicts on it."""
     try:
-        found = evaluate(scene, set=settings, flavour=job.flavour, values=job.values)
+        found = loom.evaluate(settings)
         values = [found.trace[signal][-1].item() for signal in job.values]
     except (OSError, MemoryError):  # of the machine, not of the row
         raise
     except Interrupted:
         raise KeyboardInterrupt("interrupted") from None
     except LoomfmuError as error:
-        return failed(job, scene, str(error)), ()
+        return failed(job, loom.scene, str(error)), ()
     except Exception as error:  # one row of thousands must not end the others
-        return failed(job, scene, described(error)), ()
+        return failed(job, loom.scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
         values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound), verdict.note or None]

@@ -78,6 +78,11 @@ class Signals(ABC):
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
 
+    @property
+    def shared(self) -> dict[Any, Any]:
+        """What the claims on a run have in common, where it is kept: of a file it may be too large."""
+        return {}
+
     def _unknown(self, signal: object) -> LoomfmuError:
         return LoomfmuError(
             f"{self.name}: no signal {shown(signal)} is recorded{suggestion(str(signal), self)}"
@@ -100,6 +105,7 @@ class Recording(Signals):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
+        self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
 
     def __repr__(self) -> str:
@@ -108,8 +114,14 @@ class Recording(Signals):
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Keep a block: values along the rows, signals along the columns."""
         self._blocks.append((time, angle, reals, integers))
+        self._shared.clear()
         for kept in ("_joined", "time", "shaft_angle"):
             self.__dict__.pop(kept, None)
+
+    @property
+    def shared(self) -> dict[Any, Any]:
+        """What the claims on it have in common."""
+        return self._shared
 
     @cached_property
     def _joined(self) -> list[NDArray[Any]]:

@@ -25,7 +25,7 @@ def test_values_extremes_and_zeros_are_those_of_the_joining_polynomial(rates: in
     for _ in range(200):
         ends = [(RANDOM.normal(), RANDOM.normal()) for _ in range(rates + 1)]
         coefficients = hermite(ends)
-        points = bernstein.joining([(np.array([a]), np.array([b])) for a, b in ends])
+        points = np.stack(bernstein.joining([(np.array([a]), np.array([b])) for a, b in ends]))
         share = RANDOM.uniform()
         # rounding of a handful of terms of order 10
         assert abs(bernstein.value(points, share)[0] - polynomial.polyval(share, coefficients)) < 1e-12
@@ -37,7 +37,7 @@ def test_values_extremes_and_zeros_are_those_of_the_joining_polynomial(rates: in
         assert abs(polynomial.polyval(at[0], coefficients) - lowest[0]) < 1e-12
         zeros = polynomial.polyroots(coefficients)
         zeros = np.sort(zeros[(np.abs(zeros.imag) < 1e-12) & (zeros.real > 0) & (zeros.real < 1)].real)
-        found = bernstein.sign_changes(points[:, 0])
+        found = bernstein.sign_changes(points[:, 0].tolist())
         assert len(found) == len(zeros)
         assert np.allclose(found, zeros, rtol=0.0, atol=1e-9)  # of zeros that lie close together
 
@@ -53,5 +53,5 @@ def test_a_piece_is_cut_exactly_or_left_as_it_is() -> None:
 
 
 def test_a_zero_that_is_touched_is_not_passed() -> None:
-    touching = bernstein.joining([(np.array([1.0]), np.array([1.0])), (np.array([-4.0]), np.array([4.0]))])
-    assert bernstein.sign_changes(touching[:, 0]) == []  # (1 - 2 u)^2
+    touching = bernstein.joining([(1.0, 1.0), (-4.0, 4.0)])
+    assert bernstein.sign_changes(touching) == []  # (1 - 2 u)^2

@@ -21,7 +21,8 @@ from loomfmu.cosim.master.grid import Span
 from loomfmu.cosim.master.loops import Broyden, CompiledIteration, Growth, Iteration, Loop
 from loomfmu.cosim.master.master import Master
 from loomfmu.cosim.master.steppers import Action, Driven, Memory
-from loomfmu.cosim.run import Evaluation, _in_flavour
+from loomfmu.cosim.reading import in_flavour
+from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
 
@@ -135,7 +136,7 @@ def test_both_flavours_iterate_alike() -> None:
 def rows_of(text: str, compiled: bool, flavour: str, kind: type, block: int = 50) -> list[np.ndarray]:
     """All samples of a run in C or in Python, times, reals and integers."""
     rows = []
-    scene = _in_flavour(scenes.parse(text, "loop"), flavour)
+    scene = in_flavour(scenes.parse(text, "loop"), flavour)
     with Master(scene, compiled=compiled) as master:
         master.initialize()
         assert type(master._stepper) is kind

@@ -20,7 +20,7 @@ from loomfmu.cosim.master import steppers
 from loomfmu.cosim.master.grid import Grid, chosen, uniform
 from loomfmu.cosim.master.master import Interrupted, Master
 from loomfmu.cosim.planning.pruning import prune
-from loomfmu.cosim.run import _in_flavour
+from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.cache_entries import CHECKSUM
@@ -65,7 +65,7 @@ def equal(one: Rows, other: Rows) -> None:
 @pytest.mark.parametrize("flavour", fmus.FLAVOURS)
 @pytest.mark.parametrize("changed", SCENES.values(), ids=list(SCENES))
 def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: str) -> None:
-    scene = _in_flavour(small(180, **changed), flavour)
+    scene = in_flavour(small(180, **changed), flavour)
     equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
 
 
@@ -235,7 +235,7 @@ def test_both_fail_alike_and_keep_the_same_rows(component: str) -> None:
 
 
 def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
-    scene = _in_flavour(small(1440, revolutions=5000.0), "native")  # tens of seconds
+    scene = in_flavour(small(1440, revolutions=5000.0), "native")  # tens of seconds
     rows = 0
 
     def count(times: np.ndarray, *_: np.ndarray) -> None:

@@ -5,19 +5,28 @@ Cut in half, the points come closer to it by a factor of four: so its extremes a
 degree, for many pieces at once, and none is missed.
 """
 
+import ctypes
+from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...fmi.native.libraries import library_of
+
 Floats = NDArray[np.float64]
+Number = TypeVar("Number", float, Floats)
+SOURCE = Path(__file__).with_name("native") / "bernstein.c"
 
 HALVINGS = 60  # more than doubles can tell apart
 ROUNDING = 4.0 * float(np.finfo(float).eps)
 
 
-def joining(ends: list[tuple[Floats, Floats]]) -> Floats:
-    """Points of the polynomials that join samples: (points, pieces).
+def joining(ends: list[tuple[Number, Number]]) -> list[Number]:
+    """Points of the polynomials that join samples, of one piece or of many.
 
     Args:
         ends: values at both ends of each piece, then their rates and second rates as far as they are known,
@@ -25,21 +34,19 @@ def joining(ends: list[tuple[Floats, Floats]]) -> Floats:
     """
     y0, y1 = ends[0]
     if len(ends) == 1:
-        return np.stack([y0, y1])
+        return [y0, y1]
     v0, v1 = ends[1]
     if len(ends) == 2:
-        return np.stack([y0, y0 + v0 / 3.0, y1 - v1 / 3.0, y1])
+        return [y0, y0 + v0 / 3.0, y1 - v1 / 3.0, y1]
     a0, a1 = ends[2]
-    return np.stack(
-        [
-            y0,
-            y0 + 0.2 * v0,
-            y0 + 0.4 * v0 + 0.05 * a0,
-            y1 - 0.4 * v1 + 0.05 * a1,
-            y1 - 0.2 * v1,
-            y1,
-        ]
-    )
+    return [
+        y0,
+        y0 + 0.2 * v0,
+        y0 + 0.4 * v0 + 0.05 * a0,
+        y1 - 0.4 * v1 + 0.05 * a1,
+        y1 - 0.2 * v1,
+        y1,
+    ]
 
 
 def split(points: Floats, share: float | Floats) -> tuple[Floats, Floats]:
@@ -90,31 +97,46 @@ def lowest(points: Floats) -> tuple[Floats, Floats]:
     return best, share
 
 
-def sign_changes(points: Floats, begin: float = 0.0, width: float = 1.0) -> list[float]:
+def value_of_piece(points: list[float], share: float) -> float:
+    """Value at a share of the way of one piece: the same as `value`, to the last bit."""
+    while len(points) > 1:
+        points = [a + share * (b - a) for a, b in pairwise(points)]
+    return points[0]
+
+
+def sign_changes(points: list[float], begin: float = 0.0, width: float = 1.0) -> list[float]:
     """Shares of the way at which one piece changes its sign, in order; 0 counts as positive."""
-    negative = points < 0.0
-    changes = int(np.count_nonzero(negative[1:] != negative[:-1]))
+    changes = sum((a < 0.0) != (b < 0.0) for a, b in pairwise(points))
     if changes == 0:
         return []
     if changes == 1:
-        return [begin + width * _sign_change(points.tolist())]
+        return [begin + width * (_compiled() or python_sign_change)(points)]
     if width < 2.0**-HALVINGS:
-        return [begin] if negative[0] != negative[-1] else []
-    left, right = split(points, 0.5)
+        return [begin] if (points[0] < 0.0) != (points[-1] < 0.0) else []
+    left, right = (half[:, 0].tolist() for half in split(np.array(points)[:, np.newaxis], 0.5))
     half = 0.5 * width
     return sign_changes(left, begin, half) + sign_changes(right, begin + half, half)
 
 
-def _sign_change(points: list[float]) -> float:
+def python_sign_change(points: list[float]) -> float:
     """Where a piece that changes its sign once does so, halved until nothing is left between."""
     low, high = 0.0, 1.0
     begins_negative = points[0] < 0.0
     while low < (middle := 0.5 * (low + high)) < high:
-        row = points
-        while len(row) > 1:
-            row = [a + middle * (b - a) for a, b in pairwise(row)]
-        if (row[0] < 0.0) == begins_negative:
+        if (value_of_piece(points, middle) < 0.0) == begins_negative:
             low = middle
         else:
             high = middle
     return high
+
+
+@cache
+def _compiled() -> Callable[[list[float]], float] | None:
+    """The same in C, if it is available: fifty halvings of each piece are most of what judging would cost."""
+    library = library_of(SOURCE)
+    if library is None:
+        return None
+    function = ctypes.PyDLL(str(library)).sign_change
+    function.restype = ctypes.c_double
+    arrays = {count: ctypes.c_double * count for count in (2, 4, 6)}
+    return lambda points: float(function(arrays[len(points)](*points), ctypes.c_size_t(len(points))))

@@ -47,6 +47,15 @@ class Extreme(NamedTuple):
         return COARSE_NOTE if self.coarse else ""
 
 
+def motion_of(trace: Signals, signal: str, rates: int = 2) -> "Motion":
+    """A signal between its samples, the same for several claims where the trace keeps it."""
+    kept, key = trace.shared, (signal, rates)
+    if key not in kept:
+        kept[key] = Motion(trace, signal, rates)
+    found: Motion = kept[key]
+    return found
+
+
 class Motion:
     """A signal between its samples: on each interval the polynomial that it and its recorded rates give."""
 
@@ -60,6 +69,11 @@ class Motion:
             name = trace.rate(name)
 
         self.finite = all(bool(np.isfinite(values).all()) for values in self.values)
+
+    @cached_property
+    def longest(self) -> float:
+        """How far the samples are apart at most."""
+        return float(np.fmax.reduce(np.abs(np.diff(self.values[0])), initial=0.0))
 
     @property
     def note(self) -> str:
@@ -77,7 +91,18 @@ class Motion:
         ends = []
         for order, values in enumerate(self.values):
             ends.append((values[intervals] * h**order, values[intervals + 1] * h**order))
-        return bernstein.joining(ends)
+        return np.stack(bernstein.joining(ends))
+
+    def _piece(self, interval: int) -> list[float]:
+        """Bernstein points of the polynomial on one interval: those of `points`, to the last bit."""
+        h = float(self.time[interval + 1] - self.time[interval])
+        factors = (1.0, h, h * h)
+        return bernstein.joining(
+            [
+                (float(values[interval]) * factor, float(values[interval + 1]) * factor)
+                for values, factor in zip(self.values, factors, strict=False)
+            ]
+        )
 
     def doubt(self, intervals: Integers) -> Floats:
         """How far the polynomials on some intervals may be off.
@@ -130,19 +155,35 @@ class Motion:
 
     def at(self, time: float) -> float:
         """Value at a time."""
-        return float(self.along(np.array([time]))[0])
+        if len(self.time) == 1:
+            return float(self.values[0][0])
+        interval = min(max(int(self.time.searchsorted(time, "right")) - 1, 0), len(self.time) - 2)
+        before, after = float(self.time[interval]), float(self.time[interval + 1])
+        return bernstein.value_of_piece(self._piece(interval), (time - before) / (after - before))
+
+    def sign_changes(self, interval: int, level: float) -> list[float]:
+        """Shares of an interval at which the motion passes a level."""
+        return bernstein.sign_changes([point - level for point in self._piece(interval)])
+
+    @cached_property
+    def _reach(self) -> tuple[Floats, Floats]:
+        """Lowest and highest of the points of each interval: the motion stays between them."""
+        parts = []
+        for begin in range(0, len(self.time) - 1, BLOCK):
+            points = self.points(np.arange(begin, min(begin + BLOCK, len(self.time) - 1)))
+            parts.append((points.min(axis=0), points.max(axis=0)))
+        lowest, highest = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return lowest, highest
 
     def passages(self, level: float) -> list[tuple[float, bool]]:
         """Times at which the motion passes a level, to rounding, and whether it rises there."""
         found = []
-        for begin in range(0, len(self.time) - 1, BLOCK):
-            points = self.points(np.arange(begin, min(begin + BLOCK, len(self.time) - 1))) - level
-            astride = (points.min(axis=0) < 0.0) & (points.max(axis=0) >= 0.0)
-            for place in np.flatnonzero(astride):
-                rises = bool(points[0, place] < 0.0)
-                for share in bernstein.sign_changes(points[:, place]):
-                    found.append((self.moment(begin + int(place), share), rises))
-                    rises = not rises
+        lowest, highest = self._reach if len(self.time) > 1 else (np.empty(0), np.empty(0))
+        for interval in np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0)).tolist():
+            rises = bool(self.values[0][interval] - level < 0.0)
+            for share in self.sign_changes(interval, level):
+                found.append((self.moment(interval, share), rises))
+                rises = not rises
         return found
 
     def crossings(self, level: float) -> list[float]:

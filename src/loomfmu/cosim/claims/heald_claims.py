@@ -10,7 +10,7 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
-from .curves import Floats, Motion, Stretch, first_lowest
+from .curves import Floats, Motion, Stretch, first_lowest, motion_of
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
@@ -33,7 +33,7 @@ class _Span(Claim, kind=False):
         raise NotImplementedError
 
     def _judge(self, trace: Signals, text: str, signal: str) -> Verdict:
-        lift, turning = Motion(trace, f"{self.heald}.lift"), shaft.needed_angle(trace)
+        lift, turning = motion_of(trace, f"{self.heald}.lift"), shaft.needed_angle(trace)
         stroke = trace.parameter(f"{self.heald}.stroke")
         spans = _spans(lift, self._distance(trace), stroke)
         turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
@@ -47,7 +47,7 @@ class _Span(Claim, kind=False):
         return self.verdict(trace, text, signal, self.at_least, worst, time, note, lift.note)
 
     def landings(self, trace: Signals) -> Landings:
-        lift, distance = Motion(trace, f"{self.heald}.lift"), self._distance(trace)
+        lift, distance = motion_of(trace, f"{self.heald}.lift"), self._distance(trace)
         stroke = trace.parameter(f"{self.heald}.stroke")
         return Landings(lift.crossings(distance) + lift.crossings(stroke - distance), [])
 
@@ -100,7 +100,7 @@ class DwellContains(Claim):
 
     def judge(self, trace: Signals) -> Verdict:
         signal = f"{self.heald}.lift"
-        stroke, lift = trace.parameter(f"{self.heald}.stroke"), Motion(trace, signal)
+        stroke, lift = trace.parameter(f"{self.heald}.stroke"), motion_of(trace, signal)
         times, note = np.array(self.landings(trace).times), lift.note
         worst, time = math.nan, math.nan
         if len(times):

@@ -10,7 +10,7 @@ from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Names, Quantity, argument
 from .claim import AT_LEAST, AT_MOST, LENGTH, ONE, SPEED, Claim
-from .curves import SAME, Motion
+from .curves import SAME, Motion, motion_of
 
 NEVER = "the head never enters the shed in this run"
 
@@ -25,7 +25,7 @@ class _InShed(Claim, kind=False):
     unit = LENGTH
 
     def _travel(self, trace: Signals) -> Motion:
-        return Motion(trace, f"{self.weft}.travel")
+        return motion_of(trace, f"{self.weft}.travel")
 
     def _idle(self, trace: Signals) -> float:
         return trace.parameter(f"{self.belt}.idle_travel")
@@ -84,7 +84,7 @@ class ReedClearOfRapier(_InShed):
 
     def judge(self, trace: Signals) -> Verdict:
         text, signal = "the reed is clear of the rapier", f"{self.reed}.front_limit - {self.reed}.position"
-        travel, position = self._travel(trace), Motion(trace, f"{self.reed}.position")
+        travel, position = self._travel(trace), motion_of(trace, f"{self.reed}.position")
         in_shed = travel.beyond(self._idle(trace), 1.0)
         if not in_shed:
             return self.verdict(trace, text, signal, self.clearance, math.nan, math.nan, NEVER, travel.note)
@@ -107,8 +107,8 @@ class NipHolds(Claim):
     needs = ("roller.holding_force", "roller.drafting_force")
 
     def judge(self, trace: Signals) -> Verdict:
-        drafting = Motion(trace, f"{self.roller}.drafting_force")
-        holding = Motion(trace, f"{self.roller}.holding_force")
+        drafting = motion_of(trace, f"{self.roller}.drafting_force")
+        holding = motion_of(trace, f"{self.roller}.holding_force")
         most = drafting.lowest(-1.0)
         text, signal = "the nip holds the fibres", f"{self.roller}.holding_force / drafting_force"
         if not most.value > 0.0:
@@ -138,7 +138,7 @@ class LocksInTime(Claim):
     def judge(self, trace: Signals) -> Verdict:
         text, limit = "the pattern locks are in time", float(trace[f"{self.lock}.speed_limit"][-1])
         in_time = np.asarray(trace[f"{self.lock}.in_time"], dtype=bool)
-        speed = Motion(trace, "shaft.velocity", rates=1) if "shaft.velocity" in trace else None
+        speed = motion_of(trace, "shaft.velocity", rates=1) if "shaft.velocity" in trace else None
         if speed is None or not np.array_equal(np.abs(speed.values[0]) <= limit, in_time):
             return self._at_samples(trace, text, in_time)
         fastest = min(speed.lowest(1.0), speed.lowest(-1.0), key=lambda found: -abs(found.value))

@@ -6,9 +6,8 @@ import numpy as np
 
 from ...errors import LoomfmuError
 from ...traces import Signals
-from . import bernstein
 from .arguments import TURN, Window
-from .curves import SAME, Motion, Stretch
+from .curves import SAME, Motion, Stretch, motion_of
 
 # Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
 # margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
@@ -17,12 +16,12 @@ FARTHEST = TURN / 20.0
 
 def angle(trace: Signals) -> Motion | None:
     """The main shaft's angle, if the run has a shaft."""
-    return Motion(trace, "shaft.angle") if "shaft.angle" in trace else None
+    return motion_of(trace, "shaft.angle") if "shaft.angle" in trace else None
 
 
 def too_coarse(turning: Motion) -> bool:
     """Whether the shaft turns so far between two samples that they do not tell how a loom moves."""
-    return bool(np.any(np.abs(np.diff(turning.values[0])) > FARTHEST * (1.0 + SAME)))
+    return turning.longest > FARTHEST * (1.0 + SAME)
 
 
 def place(turning: Motion, time: float) -> tuple[float, int]:
@@ -48,12 +47,13 @@ def times_at(trace: Signals, wanted: float) -> list[float]:
     whole = np.floor(turned)
     times = []
     for interval in np.flatnonzero(whole[1:] != whole[:-1]):
-        points = turning.points(np.array([interval]))[:, 0]
         low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
         for turn in range(low + 1, high + 1):
-            level = points - (wanted + TURN * turn)
+            level = wanted + TURN * turn
+            ends = turning.values[0][interval : interval + 2].tolist()
+            before, after = (abs(end - level) for end in ends)
             # to rounding the level may be the sample itself
-            shares = bernstein.sign_changes(level) or [float(abs(level[-1]) < abs(level[0]))]
+            shares = turning.sign_changes(int(interval), level) or [float(after < before)]
             times += [turning.moment(int(interval), share) for share in shares]
     for end in (0, -1):  # a run that begins or ends there, to rounding
         if abs(turned[end] - round(float(turned[end]))) < 1e-9:

@@ -11,7 +11,7 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Bound, Edges, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
-from .curves import Motion
+from .curves import motion_of
 
 
 class Bounded(Claim, kind=False):
@@ -43,7 +43,7 @@ class Bounded(Claim, kind=False):
             if not within:
                 reason = "the run never enters that window"
                 return self.verdict(trace, text, self.signal, limit, math.nan, math.nan, reason, unit=unit)
-        motion = Motion(trace, self.signal)
+        motion = motion_of(trace, self.signal)
         worst = motion.lowest(self.sense, within)
         found = self.verdict(
             trace, text, self.signal, limit, worst.value, worst.time, motion.note, worst.note,

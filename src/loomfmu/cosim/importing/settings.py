@@ -15,7 +15,7 @@ class Setting(NamedTuple):
     function: str
     names: list[str]
     references: Any
-    count: ctypes.c_size_t
+    size: ctypes.c_size_t
     values: Any
 
 

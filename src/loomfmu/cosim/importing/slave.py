@@ -176,7 +176,7 @@ class Slave:
         self.started = True
         for setting in self._settings_of(tuple(values)):
             setting.values[:] = [values[name] for name in setting.names]
-            self._do(self._call, setting.function, setting.references, setting.count, setting.values)
+            self._do(self._call, setting.function, setting.references, setting.size, setting.values)
         self._do(self._call, "EnterInitializationMode")
 
     def finish_initialization(self) -> None:
@@ -186,7 +186,7 @@ class Slave:
         self._do(self._call, "ExitInitializationMode")
 
     def _call(self, name: str, *arguments: Any) -> None:
-        """Call a function of the FMU. Raises FMICallException, as fmpy's methods do, at a fifth of their cost."""
+        """Call a function of the FMU. Raises FMICallException, as fmpy's methods do."""
         if name not in self._functions:
             self._functions[name] = self._library[f"{self.standard}{name}"]
         status = self._functions[name](self._component, *arguments)

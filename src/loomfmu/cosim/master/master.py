@@ -7,7 +7,7 @@ of the step before, or are iterated until both ends agree (`coupling = "iterated
 
 import ctypes
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from time import perf_counter

@@ -9,7 +9,6 @@ import ctypes
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple, Protocol, cast
 
@@ -17,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
-from ...fmi.cache_entries import STEPPER, made_file
-from ...fmi.native import platforms
+from ...fmi.native.libraries import library_of
 from ..importing.calls import OK, REFUSED, WARNING, Call, Compiled
 from ..importing.slave import Ended, Slave
 from .grid import Span
@@ -234,7 +232,7 @@ def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path |
     None otherwise, or if `compiled` is False. Raises LoomfmuError if it is True and that is not so.
     """
     able = all(action.call.compiled for action in actions)
-    library = _library() if able and compiled is not False else None
+    library = library_of(SOURCE) if able and compiled is not False else None
     if compiled and library is None:
         raise LoomfmuError("the compiled stepper is not available: pip install 'loomfmu[native]'")
     return library
@@ -252,35 +250,3 @@ def stepper(
     if library:
         return CompiledStepper(library, actions, memory, time, size)
     return PythonStepper(actions, memory, time, size)
-
-
-@cache
-def _library() -> Path | None:
-    """The compiled stepper: it comes with the package, or is built once where a compiler is installed."""
-    platform = platforms.host()
-    if not platform:
-        return None
-    shipped = _shipped(platform)
-    if shipped.exists():
-        return shipped
-    from ...fmi.native import compiler
-
-    try:
-        identity = compiler.library_identity(SOURCE)
-        return made_file(STEPPER, identity, shipped.name, lambda: compiler.library(SOURCE, platform))
-    except LoomfmuError:  # no compiler, or no place to keep what it makes
-        return None
-
-
-def _shipped(platform: str) -> Path:
-    """Where the compiled stepper of a platform lies in a package that brings it."""
-    return SOURCE.with_name(platform) / f"stepper{platforms.PLATFORMS[platform].suffix}"
-
-
-def build_all() -> list[Path]:
-    """Build the stepper for all platforms, for a package that brings it. Raises LoomfmuError, OSError."""
-    from ...fmi.native.compiler import build_library
-
-    for platform in platforms.PLATFORMS:
-        build_library(SOURCE, _shipped(platform), platform)
-    return [_shipped(platform) for platform in platforms.PLATFORMS]

@@ -111,7 +111,10 @@ class Effective:
 def _fed(scene: Scene) -> dict[str, set[str]]:
     """The inputs of each instance that have a source."""
     found: dict[str, set[str]] = {}
-    for name, variable in [*(wire.sink for wire in scene.wires), *((d.instance, d.variable) for d in scene.drives)]:
+    for name, variable in [
+        *(wire.sink for wire in scene.wires),
+        *((d.instance, d.variable) for d in scene.drives),
+    ]:
         found.setdefault(name, set()).add(variable)
     return found
 

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +39,8 @@ NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
+
+_declared: dict[type[Component], Mapping[str, Variable]] = {}  # by name
 
 
 @dataclass
@@ -119,7 +120,10 @@ class Instance:
 
     def _declared(self) -> Mapping[str, Variable]:
         """The variables of our component; one that is not known here has those of its kind."""
-        return _variables(self.fmu.component or ShaftDriven) if self.fmu.ours else {}
+        component = self.fmu.component or ShaftDriven
+        if component not in _declared:
+            _declared[component] = {each.name: each for each in variables_of(component)}
+        return _declared[component] if self.fmu.ours else {}
 
     def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
         """Its parameters and inputs at the start, without inputs that are fed and values without effect."""
@@ -141,11 +145,6 @@ class Instance:
             return otherwise
         start = self.values.get(name, port.start)
         return otherwise if start is None else TYPES[port.kind](start)
-
-
-@cache
-def _variables(component: type[Component]) -> Mapping[str, Variable]:
-    return {each.name: each for each in variables_of(component)}
 
 
 def truth(given: Any, where: str) -> bool:

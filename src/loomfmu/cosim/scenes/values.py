@@ -1,4 +1,4 @@
-"""Other values for a scene that was read: where they are values and nothing else, it need not be read again."""
+"""Other values for a scene that was read: where nothing else depends on them, it is not read again."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -43,7 +43,9 @@ class Values:
             pairs = overridden(scene.instances, key, components(scene.instances))
         except LoomfmuError:
             return []
-        return pairs if all(name and self._is_value(scene.instances[name], each) for name, each in pairs) else []
+        return (
+            pairs if all(name and self._is_value(scene.instances[name], each) for name, each in pairs) else []
+        )
 
     def _is_value(self, instance: Instance, variable: str) -> bool:
         port, component = instance.fmu.ports.get(variable), instance.fmu.component
