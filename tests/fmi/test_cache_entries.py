@@ -16,6 +16,7 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master import steppers
 from loomfmu.fmi import cache_entries
 from loomfmu.fmi.cache_entries import FMUS, UNPACKED, folder, made_file
+from loomfmu.fmi.native.libraries import library_of
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENE = SIMS / "belt_alone.toml"
@@ -174,12 +175,12 @@ def test_a_native_library_that_was_exchanged_is_not_run(own_cache: Path) -> None
 
 def test_a_damaged_stepper_is_built_again(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ziglang", reason="ziglang is not installed")
-    kept = steppers._library.__wrapped__()
+    kept = library_of.__wrapped__(steppers.SOURCE)
     if kept is None or own_cache not in kept.parents:
         pytest.skip("the package brings its stepper")
     clean = kept.read_bytes()
     kept.write_bytes(clean[:100])
-    assert steppers._library.__wrapped__() == kept
+    assert library_of.__wrapped__(steppers.SOURCE) == kept
     assert kept.read_bytes() == clean
 
 

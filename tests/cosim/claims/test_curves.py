@@ -5,6 +5,8 @@ import pytest
 from numpy.polynomial import polynomial
 
 from loomfmu.cosim.claims import bernstein
+from loomfmu.cosim.claims.curves import Motion
+from loomfmu.traces import Channel, Recording
 
 RANDOM = np.random.default_rng(5)
 
@@ -55,3 +57,33 @@ def test_a_piece_is_cut_exactly_or_left_as_it_is() -> None:
 def test_a_zero_that_is_touched_is_not_passed() -> None:
     touching = bernstein.joining([(1.0, 1.0), (-4.0, 4.0)])
     assert bernstein.sign_changes(touching) == []  # (1 - 2 u)^2
+
+
+def test_c_and_python_find_the_same_bits() -> None:
+    compiled = bernstein._compiled()
+    if compiled is None:
+        pytest.skip("the compiled library is not available")
+    for count in (2, 4, 6):
+        for _ in range(300):
+            points = RANDOM.normal(size=count) * 10.0 ** RANDOM.uniform(-9, 9)
+            points[: RANDOM.integers(1, count)] *= -1.0
+            points = np.abs(points) * np.sign(np.sort(RANDOM.normal(size=count)))
+            if len({value < 0.0 for value in points.tolist()}) == 2:
+                assert compiled(points.tolist()) == bernstein.python_sign_change(points.tolist())
+
+
+@pytest.mark.parametrize("rates", [0, 1, 2])
+def test_one_value_is_that_of_many_to_the_last_bit(rates: int) -> None:
+    time = np.cumsum(RANDOM.uniform(0.01, 1.0, size=50))
+    samples = {name: RANDOM.normal(size=50) for name in ("a.x", "a.v", "a.w")}
+    channels = [
+        Channel("a", name, "m", "m", "", column, rate=rate)
+        for column, (name, rate) in enumerate((("x", "v"), ("v", "w"), ("w", None)))
+    ]
+    recording = Recording("samples", channels, lambda _instance, _name: None)
+    recording.append(
+        time, np.zeros(50), np.stack(list(samples.values()), axis=1), np.zeros((50, 0), np.int32)
+    )
+    motion = Motion(recording, "a.x", rates)
+    times = np.concatenate([time, RANDOM.uniform(time[0], time[-1], size=200)])
+    assert [motion.at(each) for each in times.tolist()] == motion.along(times).tolist()

@@ -37,7 +37,7 @@ def test_the_trace_goes_as_far_as_the_fmu(
     text: str, instance: str, velocity: str, stepped: str,
 ) -> None:  # fmt: skip
     if stepped == "in Python":
-        monkeypatch.setattr(steppers, "_library", lambda: None)
+        monkeypatch.setattr(steppers, "library_of", lambda _source: None)
     place, end = ending
     result = ran(place, text if stepped == "isolated" else f"isolated = false\n{text}", tmp_path)
     assert (result.ended, result.steps) == (f"{instance} at {end} s", 50)

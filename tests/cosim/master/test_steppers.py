@@ -24,6 +24,7 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.cache_entries import CHECKSUM
+from loomfmu.fmi.native.libraries import library_of
 
 __all__ = ["fmu_cache", "odd"]
 
@@ -254,7 +255,7 @@ def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
 
 
 def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(steppers, "_library", lambda: None)
+    monkeypatch.setattr(steppers, "library_of", lambda _source: None)
     with Master(small(90)) as master:
         master.initialize()
         assert type(master._stepper) is steppers.PythonStepper
@@ -267,9 +268,9 @@ def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatc
 
 def test_the_library_is_built_once_and_shared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path))
-    first = steppers._library.__wrapped__()
+    first = library_of.__wrapped__(steppers.SOURCE)
     assert first is not None
     made = first.stat().st_mtime_ns
-    assert steppers._library.__wrapped__() == first
+    assert library_of.__wrapped__(steppers.SOURCE) == first
     assert first.stat().st_mtime_ns == made
     assert {path.name for path in first.parent.iterdir()} == {first.name, CHECKSUM}  # nothing half-made

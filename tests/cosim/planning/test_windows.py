@@ -336,4 +336,4 @@ def test_more_steps_than_memory_holds_are_refused_before_any_is_taken() -> None:
         LoomfmuError,
         match=r"2400000000 steps are more than the 10000000 that fit into memory; .* fewer revolutions",
     ):
-        windows.window_grid(scene, ["belt.lowest_margin"])
+        loomfmu.evaluate(scene)

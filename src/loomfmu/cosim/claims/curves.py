@@ -87,10 +87,14 @@ class Motion:
 
     def points(self, intervals: Integers) -> Floats:
         """Bernstein points of the polynomials on some intervals."""
-        h = self._length(intervals)
-        ends = []
-        for order, values in enumerate(self.values):
-            ends.append((values[intervals] * h**order, values[intervals + 1] * h**order))
+        return self._points(intervals, intervals + 1)
+
+    def _points(self, before: Integers | slice, after: Integers | slice) -> Floats:
+        """The same for samples before and after each."""
+        h = self.time[after] - self.time[before]
+        ends = [(self.values[0][before], self.values[0][after])]
+        for values, factor in zip(self.values[1:], (h, h * h), strict=False):
+            ends.append((values[before] * factor, values[after] * factor))
         return np.stack(bernstein.joining(ends))
 
     def _piece(self, interval: int) -> list[float]:
@@ -142,7 +146,7 @@ class Motion:
     def interval(self, times: Floats) -> Integers:
         """The intervals that some times lie in."""
         found = np.searchsorted(self.time, times, side="right") - 1
-        return np.asarray(np.clip(found, 0, len(self.time) - 2))
+        return np.asarray(np.maximum(np.minimum(found, len(self.time) - 2), 0))
 
     def along(self, times: Floats) -> Floats:
         """Values at some times."""
@@ -168,9 +172,10 @@ class Motion:
     @cached_property
     def _reach(self) -> tuple[Floats, Floats]:
         """Lowest and highest of the points of each interval: the motion stays between them."""
-        parts = []
+        parts = [(np.empty(0), np.empty(0))]
         for begin in range(0, len(self.time) - 1, BLOCK):
-            points = self.points(np.arange(begin, min(begin + BLOCK, len(self.time) - 1)))
+            end = min(begin + BLOCK, len(self.time) - 1)
+            points = self._points(slice(begin, end), slice(begin + 1, end + 1))
             parts.append((points.min(axis=0), points.max(axis=0)))
         lowest, highest = (np.concatenate(each) for each in zip(*parts, strict=True))
         return lowest, highest
@@ -178,7 +183,7 @@ class Motion:
     def passages(self, level: float) -> list[tuple[float, bool]]:
         """Times at which the motion passes a level, to rounding, and whether it rises there."""
         found = []
-        lowest, highest = self._reach if len(self.time) > 1 else (np.empty(0), np.empty(0))
+        lowest, highest = self._reach
         for interval in np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0)).tolist():
             rises = bool(self.values[0][interval] - level < 0.0)
             for share in self.sign_changes(interval, level):
@@ -214,13 +219,18 @@ class Motion:
         values, largest = sign * self.values[0], float(np.max(np.abs(self.values[0])))
         if not self.finite:
             return self._lowest_sample(sign, within)
-        edges = np.array([time for each in within or () for time in each[:2]])
-        found, times = [sign * self.along(edges)], [edges]
-        if within is None:
-            found, times = [values[:1]], [self.time[:1]]
-        best = float(np.min(found[0], initial=math.inf))
-        sure = float(np.min(values[self._inside(within)], initial=math.inf))
-        for intervals, low, high in self._pieces(within):
+        if within is None:  # straight lines are lowest at a sample
+            count = 1 if len(self.values) > 1 else len(values)
+            found, times = [values[:count]], [self.time[:count]]
+            best = sure = float(np.min(values))
+            pieces = self._pieces_below(sign, best + SAME * largest) if count == 1 else iter(())
+        else:
+            edges = np.array([time for each in within for time in each[:2]])
+            found, times = [sign * self.along(edges)], [edges]
+            best = float(np.min(found[0], initial=math.inf))
+            sure = float(np.min(values[self._inside(within)], initial=math.inf))
+            pieces = self._pieces(within)
+        for intervals, low, high in pieces:
             points = bernstein.clipped(sign * self.points(intervals), low, high)
             best = min(best, float(np.min(points[[0, -1]])))
             near = points.min(axis=0) <= max(best + SAME * largest, sure)
@@ -247,7 +257,7 @@ class Motion:
         return Extreme(sign * value, time, sure=sign * value)
 
     def _inside(self, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
-        """Which samples are in some stretches of time."""
+        """Which samples are in some stretches of time, or in the whole run."""
         if within is None:
             return np.ones(len(self.time), dtype=bool)
         starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
@@ -262,15 +272,20 @@ class Motion:
         interval = int(self.interval(np.array([time]))[0])
         return [interval, interval + 1]
 
-    def _pieces(self, within: Sequence[Stretch] | None) -> Iterator[tuple[Integers, Floats, Floats]]:
+    def _pieces_below(self, sign: float, level: float) -> Iterator[tuple[Integers, Floats, Floats]]:
+        """Whole intervals on which `sign` times the motion may be as low as a level, block by block."""
+        lowest, highest = self._reach
+        pieces = np.flatnonzero((lowest if sign > 0.0 else -highest) <= level)
+        for begin in range(0, len(pieces), BLOCK):
+            some = pieces[begin : begin + BLOCK]
+            yield some, np.zeros(len(some)), np.ones(len(some))
+
+    def _pieces(self, within: Sequence[Stretch]) -> Iterator[tuple[Integers, Floats, Floats]]:
         """Intervals in some stretches of time, and the shares of each that lie within, block by block."""
-        if within is None:
-            cuts, inside = self.time, np.ones(len(self.time) - 1, dtype=bool)
-        else:
-            starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
-            cuts = np.unique(np.concatenate([self.time, starts, ends]))
-            middles = 0.5 * (cuts[1:] + cuts[:-1])
-            inside = np.searchsorted(starts, middles, "right") > np.searchsorted(ends, middles, "left")
+        starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
+        cuts = np.unique(np.concatenate([self.time, starts, ends]))
+        middles = 0.5 * (cuts[1:] + cuts[:-1])
+        inside = np.searchsorted(starts, middles, "right") > np.searchsorted(ends, middles, "left")
         pieces = np.flatnonzero(inside)
         for begin in range(0, len(pieces), BLOCK):
             some = pieces[begin : begin + BLOCK]

@@ -104,7 +104,7 @@ class DwellContains(Claim):
         times, note = np.array(self.landings(trace).times), lift.note
         worst, time = math.nan, math.nan
         if len(times):
-            lifts = lift.along(times)
+            lifts = np.array([lift.at(time) for time in times.tolist()])
             away = np.minimum(np.abs(lifts), np.abs(stroke - lifts)) / stroke
             lowest, time = first_lowest(-away, times)
             worst = -lowest

@@ -26,7 +26,7 @@ def too_coarse(turning: Motion) -> bool:
 
 def place(turning: Motion, time: float) -> tuple[float, int]:
     """Where the shaft stands in its revolution, and the revolution, counted from 1 the way that it turns."""
-    at, first, last = turning.at(time), *turning.values[0][[0, -1]]
+    at, first, last = turning.at(time), float(turning.values[0][0]), float(turning.values[0][-1])
     way = -1.0 if last < first else 1.0
     revolution = math.floor(way * at / TURN) - math.floor(way * first / TURN) + 1
     return at - TURN * math.floor(at / TURN), revolution

@@ -165,7 +165,8 @@ class Slave:
         except FMICallException as error:
             failure = error
             self._note(error.status)
-        if failure or any(status >= DISCARD for status, _text in self.messages[seen:]):
+        new = self.messages[seen:]
+        if failure or (new and any(status >= DISCARD for status, _text in new)):
             raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:

@@ -36,11 +36,8 @@ def interrupt_fills(flag: ctypes.c_int32) -> Iterator[None]:
 
 
 @contextmanager
-def directory_kept(ours: bool) -> Iterator[None]:
-    """Go back to the working directory that an FMU has left, as `ours` do not: relative paths stay valid."""
-    if ours:
-        yield
-        return
+def directory_kept() -> Iterator[None]:
+    """Go back to the working directory that an FMU has left: relative paths mean what they meant."""
     try:
         before = Path.cwd()
     except OSError:  # it was deleted

@@ -8,7 +8,7 @@ of the step before, or are iterated until both ends agree (`coupling = "iterated
 import ctypes
 import math
 from collections.abc import Callable, Collection, Mapping
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -31,6 +31,7 @@ from .start import Start
 from .steppers import Action, Memory, Stepper, stepper
 
 PATIENCE = 0.05  # s between looks for Ctrl-C
+NOTHING = nullcontext()  # to be kept
 HOLD = 0.5  # s that samples wait at most before they are handed over, if steps are not longer
 
 Reals = NDArray[np.float64]
@@ -105,7 +106,7 @@ class Master:
             self._guards.enter_context(exit_named(inside))
             for name in self.order:
                 limits, fmu = None if name in inside else self._limits, scene.instances[name].fmu
-                with directory_kept(fmu.ours):
+                with NOTHING if fmu.ours else directory_kept():
                     self.slaves[name] = borrow(fmu, name, limits)
         except BaseException as error:
             self.__exit__(type(error))
@@ -113,13 +114,17 @@ class Master:
         return self
 
     def __exit__(self, kind: type[BaseException] | None = None, *_: Any) -> None:
-        with directory_kept(self._ours):
+        with self._directory_kept():
             for slave in self.slaves.values():
                 give_back(slave)
         self.slaves.clear()
         self._guards.close()
         if kind is None and self.interrupted.value:  # it came after the last check
             raise KeyboardInterrupt("interrupted")
+
+    def _directory_kept(self) -> AbstractContextManager[None]:
+        """Go back to the working directory that an FMU has left, as ours never do."""
+        return NOTHING if self._ours else directory_kept()
 
     def initialize(self) -> None:
         """Set all values, exchange the outputs at the start until they settle, prepare the calls.
@@ -129,7 +134,7 @@ class Master:
             KeyboardInterrupt: Ctrl-C while an isolated FMU did not answer
         """
         try:
-            with directory_kept(self._ours):
+            with self._directory_kept():
                 self._initialize()
         except LoomfmuError:
             if self.interrupted.value:
@@ -238,7 +243,7 @@ class Master:
     def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
         driven = self._signals.driven(span.turns)
-        with directory_kept(self._ours):
+        with self._directory_kept():
             taken, failure = self._stepper.advance(span, driven, reals, integers)
         if failure is None and taken and (reason := self._limits.passed):
             failure = LoomfmuError(f"{self.scene.name} at {span.ends[taken - 1]:.9g} s: {reason}")

@@ -75,13 +75,16 @@ class Signals:
     def begin(self) -> None:
         """The values before the first exchange: zeros, and those of driven inputs and shafts."""
         self.reals[:], self.integers[:] = 0.0, 0
-        driven = self.driven(np.zeros(1))
-        self.reals[self.driven_slots(real=True)] = driven.reals[0]
-        self.integers[self.driven_slots(real=False)] = driven.integers[0]
+        if self._scene.drives:
+            driven = self.driven(np.zeros(1))
+            self.reals[self.driven_slots(real=True)] = driven.reals[0]
+            self.integers[self.driven_slots(real=False)] = driven.integers[0]
         self.turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
 
     def driven(self, turns: Floats) -> Driven:
         """The driven inputs at numbers of revolutions, along the columns those of `_driven_slots`."""
+        if not self._scene.drives:
+            return Driven(np.empty((len(turns), 0)), np.empty((len(turns), 0), dtype=np.int32))
         reals = [drive.along(turns) for drive in self._scene.drives if drive.kind == "Real"]
         integers = [drive.along(turns) for drive in self._scene.drives if drive.kind != "Real"]
         return Driven(
