@@ -1,4 +1,4 @@
-"""How many combinations of a sweep are done in a second, on one process and on two."""
+"""What a row of a sweep costs: prepared or not, beside a C loop of its steps, on one process and on two."""
 
 import os
 import subprocess
@@ -8,15 +8,25 @@ from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 from time import perf_counter
+from typing import Any
 
-from own import DEMO
+import c_programs
+from own import DEMO, Source
 from records import Notes, Table, say
 from start_up import MAIN
 from texts import Figures, Find, parts, shown, whole
 
+import loomfmu
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
+
 NAME = "sweeps"
+ROWS = "sweeps_rows"
+LOOP, SWEPT = "one C loop, the steps alone", "a row of `loomfmu sweep`, one process"
 STEPS = 180  # in the one revolution of a row
+LENGTH = {"revolutions": 1, "steps_per_revolution": STEPS}
 SIZES = {"full": (5000, 3), "quick": (64, 2), "tiny": (16, 1)}  # rows, repeats
+AT_ONCE = {"full": 400, "quick": 40, "tiny": 2}  # rows of the comparison in one process
 FEW = 8  # rows of the sweep that tells the set-up
 SWEEP = """
 scene = "{scene}"
@@ -60,7 +70,47 @@ def measure(effort: str, notes: Notes) -> list[Table]:
         rate = median(rates)
         spread = max(abs(each - rate) for each in rates) / rate
         table.add(count, rows, rate, 100.0 * spread, median(few) - FEW / rate, repeats)
-    return [table]
+    return [table, _rows(effort, repeats, table.rows[0]["rate [rows/s]"], notes)]
+
+
+class Loop(Source):
+    """The demonstration loom with the steps of a row, whatever number is asked for."""
+
+    def scene(self, steps: int = STEPS, turns: float = 1.0) -> Scene:
+        return super().scene(STEPS, turns)
+
+
+def _rows(effort: str, repeats: int, rate: float, notes: Notes) -> Table:
+    """A row in different ways, in turn: the same speeds for all, the C loop at the middle one."""
+    table = Table(ROWS, ("what", "a row [ms]", "over the C loop", "repeats"))
+    count = AT_ONCE[effort]
+    scene = scenes.load(DEMO, LENGTH)
+    loom = loomfmu.prepare(scene, flavour="native")
+    ways: dict[str, Any] = {
+        "`loomfmu.evaluate`, read anew": lambda given: loomfmu.evaluate(
+            scene, set=LENGTH | given, flavour="native"
+        ),
+        "`loom.evaluate`, prepared": loom.evaluate,
+    }
+    found: dict[str, list[float]] = {name: [] for name in (LOOP, *ways)}
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
+        try:
+            source = Loop(DEMO.read_text(encoding="utf-8"), {"shaft.speed": "550 rpm"})
+            program = c_programs.loop(source, Path(directory))
+        except RuntimeError as error:
+            notes(LOOP, str(error))
+            return table
+        for _ in range(max(5, repeats)):
+            found[LOOP].append(median(program.seconds(STEPS) for _ in range(9)))
+            for name, evaluate in ways.items():
+                start = perf_counter()
+                for number in range(count):
+                    evaluate({"shaft.speed": f"{400.0 + 300.0 * number / count} rpm"})
+                found[name].append((perf_counter() - start) / count)
+    medians = {name: median(times) for name, times in found.items()} | {SWEPT: 1.0 / rate}
+    for name, seconds in medians.items():
+        table.add(name, 1e3 * seconds, seconds / medians[LOOP], len(found.get(name, ())) or repeats)
+    return table
 
 
 def _swept(directory: Path, rows: int, processes: int) -> float:
@@ -103,6 +153,10 @@ def section(find: Find) -> str:
         " what the command takes beside them.",
         whole(rows),
         gain,
+        "What a row costs, in milliseconds, beside the steps of all its FMUs as one C loop, which judges"
+        " nothing. `loomfmu.prepare` does once what does not depend on values; `loomfmu.evaluate` does it for"
+        " each row.",
+        whole(find(ROWS)),
     )
 
 

@@ -26,7 +26,6 @@ VALUES: list[dict[str, Any]] = [
     {"heald.stroke": "110 mm", "heald_2.stroke": "120 mm"},
     {"heald_2.stroke": "120 mm", "heald.stroke": "110 mm"},
     {"dobby.law": "plateau", "damper_1.free_travel": "12 mm"},
-    {"shaft.speed": -60.0},
 ]
 OTHERS: list[dict[str, Any]] = [
     {"machine": "WL450-3600", "shaft.speed": "420 rpm"},
@@ -35,7 +34,7 @@ OTHERS: list[dict[str, Any]] = [
     {"grid": "windows", "steps_per_revolution": 720},
     {"shaft.ramp_duration": "20 ms"},
     {"weft.follow_shaft": False, "weft.speed": "300 rpm"},
-    {"belt.guide_clearance": 0.6},  # probably meant in mm
+    {"shaft.speed": 600.0},  # probably meant in rev/min
 ]
 
 
@@ -101,6 +100,7 @@ def test_values_alone_are_not_read_anew(loom: loomfmu.Prepared, monkeypatch: pyt
         {"belt.travel": "1 mm"},
         {"belt.margin": 1.0},
         {"shaft.speed": 0.0},
+        {"shaft.speed": "-600 rpm"},
         {"shaft.speed": "-600 rpm", "heald_1.stroke": "no"},
         {"machine": "WL1"},
         {"revolutions": 0.5001},

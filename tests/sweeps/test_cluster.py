@@ -62,7 +62,7 @@ def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
     def here(*_arguments: object, **_named: object) -> None:
         pytest.fail("a row ran in the process that asked")
 
-    monkeypatch.setattr("loomfmu.sweeps.worker.evaluate", here)
+    monkeypatch.setattr("loomfmu.cosim.prepared.Prepared.evaluate", here)
     before = (output / "table.parquet").read_bytes()
     (output / "table.parquet").unlink()
     arguments = ["sweep", str(path), "--output", str(output), "--scheduler", cluster.scheduler_address]

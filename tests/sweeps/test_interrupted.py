@@ -137,13 +137,15 @@ def test_ctrl_c_in_a_row_is_no_result_of_that_row(
     whole = loomfmu.sweep(path, processes=1, output=tmp_path / "whole").table
     calls = iter(range(50))
 
-    def interrupted(*arguments: Any, **named: Any) -> Any:
+    evaluate = loomfmu.Prepared.evaluate
+
+    def interrupted(*arguments: Any) -> Any:
         if next(calls) == 30:
             raise how
-        return loomfmu.evaluate(*arguments, **named)
+        return evaluate(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr("loomfmu.sweeps.worker.evaluate", interrupted)
+        patched.setattr("loomfmu.cosim.prepared.Prepared.evaluate", interrupted)
         with pytest.raises(KeyboardInterrupt, match=r"finished rows are kept in .*out; run the same"):
             loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert batches(tmp_path / "out") and not (tmp_path / "out" / "lock").exists()

@@ -209,7 +209,7 @@ def test_what_is_wrong_with_the_machine_and_not_with_a_row_ends_the_sweep(
 
     path = written(tmp_path, GRID + NO_TRACES)
     with monkeypatch.context() as patched:
-        patched.setattr("loomfmu.sweeps.worker.evaluate", full)
+        patched.setattr("loomfmu.cosim.prepared.Prepared.evaluate", full)
         with pytest.raises(OSError, match="No space left"):
             loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert loomfmu.sweep(path, processes=1, output=tmp_path / "out").errors == 0
