@@ -16,10 +16,14 @@ def inputs(component: type[Component]) -> list[Variable]:
 
 
 def flags(component: type[Component]) -> Iterator[dict[str, bool]]:
-    """Every combination of the component's yes-or-no parameters."""
-    names = [v.name for v in declared(component) if v.settable and v.type is bool]
-    for values in itertools.product((False, True), repeat=len(names)):
-        yield dict(zip(names, values, strict=True))
+    """Every combination of the component's yes-or-no parameters, those of an array all alike."""
+    groups: dict[str, list[str]] = {}
+    for variable in declared(component):
+        if variable.settable and variable.type is bool:
+            groups.setdefault(variable.element.partition("[")[0] or variable.name, []).append(variable.name)
+    for values in itertools.product((False, True), repeat=len(groups)):
+        chosen = zip(groups.values(), values, strict=True)
+        yield {name: value for names, value in chosen for name in names}
 
 
 def values(component: Component, causality: str | None = None) -> dict[str, Any]:
