@@ -55,6 +55,14 @@ def test_init_writes_a_scene_and_a_sweep_that_can_be_read(
     assert (tmp_path / "loom" / "sweeps" / "safe_speed.toml").is_file()
 
 
+def test_init_takes_a_folder_not_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("")
+    for name in ("file", "new.toml"):
+        assert main(["init", str(tmp_path / name)]) == 2
+        assert f"{name} is not a folder; init takes one and writes wl680_3600.toml" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == ["file"]
+
+
 def test_init_writes_all_examples_and_overwrites_none(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -54,6 +54,8 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     assert f", bound {bound}, at 0.0" in lines[place + 1] and lines[place + 1].endswith(" deg, rev. 1")
     assert "To be read after the run." in lines
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
+    assert main(["run", "scene.toml", "--set", "shaft.speed=300rpm", "--output", "other.h5"]) == status
+    assert "To be read after the run." not in capsys.readouterr().out  # it is about the values of the scene
     with Trace("results/scene.h5") as trace:
         assert trace.rows == 91
         assert [verdict.holds for verdict in trace.verdicts] == [status == 0]

@@ -23,6 +23,7 @@ STARTERS = (
     "wl680_3600.toml",
     "sweeps/safe_speed.toml",
 )  # what `loomfmu init` writes: a loom, and a sweep of it
+KINDS = (".toml", ".wif")  # of files that make up the examples
 HEADINGS = {"parameter": "parameters", "input": "inputs, with start values", "output": "outputs"}
 MOST_VALUES = 6  # of a run of numbered variables that are shown one by one
 
@@ -38,11 +39,15 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
     """Write the demo's scene and a sweep of it into a folder, or every example; the files written.
 
     Raises:
-        LoomfmuError: a file is there already; nothing has been written
+        LoomfmuError: the folder is a file, or a file is there already; nothing has been written
         OSError: the folder cannot be written
     """
+    if directory.is_file() or directory.suffix in KINDS:
+        raise LoomfmuError(
+            f"{directory} is not a folder; init takes one and writes {' and '.join(STARTERS)} into it"
+        )
     source = examples()
-    found = sorted(path for path in source.rglob("*") if path.suffix in (".toml", ".wif"))
+    found = sorted(path for path in source.rglob("*") if path.suffix in KINDS)
     chosen = found if everything else [source / name for name in STARTERS]
     targets = {path: directory / path.relative_to(source) for path in chosen}
     for target in targets.values():

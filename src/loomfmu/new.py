@@ -1,4 +1,4 @@
-"""A folder for a mechanism of one's own: component, test, README and scene, which run at once."""
+"""A folder for a mechanism of your own: component, test, README and scene, ready to run."""
 
 import keyword
 import re
@@ -8,6 +8,7 @@ import sys
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
+from . import mechanism
 from .components import COMPONENTS
 from .cosim.scenes.instances import KEYS, TAKEN
 from .cosim.scenes.standard_loom import COMPONENT_OF
@@ -16,6 +17,15 @@ from .files import ANY, cannot_write, check_target, write_file
 
 NAME = re.compile("[A-Z][A-Za-z0-9]*")
 TEMPLATE = Path(__file__).with_name("template")
+# file names that Windows keeps for devices
+DEVICES = (
+    "con",
+    "prn",
+    "aux",
+    "nul",
+    *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)),
+)
+MODULES = ("loomfmu", "conftest")  # not among the installed packages where this one is run from a checkout
 FILES = ("eccentric.py", "test_eccentric.py", "README.md", "eccentric.toml")
 
 
@@ -51,10 +61,21 @@ def _file_name(name: str) -> str:
         raise LoomfmuError(
             f"{name!r} is not a class name such as PickingCam: letters and digits, a capital first"
         )
+    reason = ""
     if name in COMPONENTS:
-        raise LoomfmuError(f"{name} is the name of one of loomfmu's components: choose another")
-    if own in (*KEYS, *TAKEN, *COMPONENT_OF):
-        raise LoomfmuError(f"{name}: scenes use the name {own} themselves: choose another")
-    if own in sys.stdlib_module_names or own in packages_distributions():
-        raise LoomfmuError(f"{name}: {own} is a Python module already: choose another")
+        reason = "it is one of loomfmu's components"
+    elif name in mechanism.__all__:
+        reason = "loomfmu.mechanism has this name"
+    elif own in (*KEYS, *TAKEN, *COMPONENT_OF):
+        reason = f"scenes use the name {own} themselves"
+    elif keyword.iskeyword(own):
+        reason = f"{own} is a Python keyword"
+    elif own in DEVICES:
+        reason = f"Windows cannot have a file {own}.py"
+    elif own.startswith("test_"):
+        reason = f"pytest would take {own}.py for tests"
+    elif own in (*MODULES, *sys.stdlib_module_names) or own in packages_distributions():
+        reason = f"{own} is already a Python module"
+    if reason:
+        raise LoomfmuError(f"{name}: {reason}; choose another name")
     return own

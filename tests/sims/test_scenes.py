@@ -54,7 +54,7 @@ def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> 
     done = run("wl680_3600.toml", tmp_path, "--set", "shaft.speed=700rpm")
     assert done.returncode == 1, done.stderr
     failed = [line for line in done.stdout.splitlines() if "FAILS" in line]
-    assert "the belt does not buckle: lowest margin" in failed[0]
+    assert "the belt keeps a margin of 10 %: lowest margin" in failed[0]
     assert "the loom runs below its safe speed" in failed[1]
     assert os.listdir(tmp_path / "results") == ["wl680_3600.h5"]
     with Trace(tmp_path / "results" / "wl680_3600.h5") as trace:

@@ -1,8 +1,15 @@
 """Whether a component carries more from step to step than extremes, as its outputs show."""
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
 from ..variables import AT_STEP_END, Component, variables_of
 
 STEPS = 24
+MOST_LINES = 1_000_000  # that the steps may execute: an endless loop must not hang the loading
 STEP_SIZE = 0.013  # s: no simple part of a revolution at usual speeds
 
 
@@ -12,7 +19,8 @@ def carrying(component: type[Component]) -> str:
     Empty if there is none, or if the component does not run that far with its defaults.
     """
     try:
-        used, fresh = _run(component, 0), _run(component, STEPS - 1)
+        with _bounded():
+            used, fresh = _run(component, 0), _run(component, STEPS - 1)
     except Exception:  # whatever its code raises: a run reports it
         return ""
     for variable in variables_of(component):
@@ -21,6 +29,26 @@ def carrying(component: type[Component]) -> str:
         if not held and repr(getattr(used, variable.name)) != repr(getattr(fresh, variable.name)):
             return variable.name
     return ""
+
+
+@contextmanager
+def _bounded() -> Iterator[None]:
+    """Raise TimeoutError in code that executes too many lines."""
+    left = MOST_LINES
+
+    def count(_frame: FrameType, event: str, _argument: Any) -> Any:
+        nonlocal left
+        left -= event == "line"
+        if left < 0:
+            raise TimeoutError
+        return count
+
+    before = sys.gettrace()
+    sys.settrace(count)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
 
 
 def _run(component: type[Component], first: int) -> Component:

@@ -33,7 +33,8 @@ GEARS = [(-0.27, -0.13, -0.05, -0.025), (0.2, -0.3, 0.1, 0.05), (0.0, 0.0, 0.0, 
 
 def dobby(law, **given):
     """A drive with its law, started."""
-    drive = DobbyDrive(law=NUMBER[law], **given)
+    needed = skewed(36) if law == "table" else {}
+    drive = DobbyDrive(law=NUMBER[law], **(needed | given))
     assert drive.initialize(0.0) == 0
     return drive
 
@@ -137,6 +138,12 @@ def test_a_new_table_counts_from_the_next_start():
     assert drive.initialize(0.0) == 0
     fresh = dobby("table", **skewed(12, first=0.3))
     assert at(drive, 4.0).rotor_angle == at(fresh, 4.0).rotor_angle
+
+
+def test_law_table_without_a_table_is_rejected():
+    drive = DobbyDrive(law=NUMBER["table"])
+    problem = drive.problems[drive.initialize(0.0) - 1]
+    assert problem.text.startswith("law = table has no table: ") and not problem.warning
 
 
 @pytest.mark.parametrize("law", ["spline_cam", "table"])

@@ -19,6 +19,7 @@ from loomfmu.cosim.claims import curves, shaft
 from loomfmu.cosim.claims.arguments import Name, Quantity, argument
 from loomfmu.cosim.claims.claim import AT_MOST, Claim
 from loomfmu.cosim.claims.claims import KINDS, Kind
+from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
@@ -504,9 +505,17 @@ def test_clear_shed_is_the_dwell_at_another_height(loom: Callable[..., Trace]) -
     with pytest.raises(LoomfmuError) as raised:
         judge(loom(), kind="clear_shed", heald="heald_1", clearance="9 mm", at_least=0.0)
     assert str(raised.value) == (
-        "clear_shed of heald_1: clearance = 9 mm is outside (0, 8.166667) mm,"
+        "claim 'clear_shed' of heald_1: clearance = 9 mm is outside (0, 8.166667) mm,"
         " how far the warp moves to either side"
     )
+
+
+@pytest.mark.parametrize("given", [{}, {"heald_1.warp_ratio": 0.1}])
+def test_a_clearance_beyond_the_warp_is_rejected_before_the_run(given: dict[str, float]) -> None:
+    reach = 98.0 / 2 * given.get("heald_1.warp_ratio", 1 / 6)
+    scene = 'revolutions = 1\n[loom]\nweave = "10"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n'
+    with pytest.raises(LoomfmuError, match=rf"clearance = 9 mm is outside \(0, {reach:.7g}\) mm"):
+        checked_claims(scenes.parse(f'{scene}at_least = 0\nclearance = "9 mm"', overrides=given))
 
 
 def test_dwell_contains(loom: Callable[..., Trace]) -> None:

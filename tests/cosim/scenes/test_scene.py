@@ -267,7 +267,12 @@ def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
     [
         (LOOM, {"machine": "WL45-3600"}, "there is no machine 'WL45-3600'; did you mean 'WL450-3600'?"),
         (LOOM, {"machine": 5}, "weft.machine = 5 is not a name in quotes"),
-        (LOOM, {"loom.weave": "10"}, "loom.weave cannot be set; known: machine, head"),
+        (LOOM, {"loom.speed": "10"}, "loom.speed cannot be set; known: machine, head, weave"),
+        ("[shaft]", {"loom.weave": "10"}, "loom.weave: the scene has no [loom]; set the pattern of"),
+        (LOOM, {"weave": "10"}, "'weave' cannot be set; did you mean 'loom.weave'?"),
+        (LOOM, {"speed": "1"}, "'speed' cannot be set; did you mean 'shaft.speed'?"),
+        (LOOM, {"guide_clearance": "1"}, "'guide_clearance' cannot be set; did you mean 'belt.guide_cl"),
+        (LOOM, {"shaft": "1"}, "'shaft' cannot be set: it is an instance; set one of its variables, such"),
         (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft has no machine"),
         ("[shaft]", {"machine": "WL450-3600"}, "machine: the scene has no WeftInsertion or BeltMonitor"),
     ],
@@ -276,6 +281,16 @@ def test_a_machine_that_cannot_be_set_is_refused(text: str, given: dict[str, obj
     with pytest.raises(LoomfmuError) as raised:
         scenes.parse(text, overrides=given)
     assert str(raised.value).startswith(said)
+
+
+def test_the_weave_can_be_set(tmp_path: Path) -> None:
+    (tmp_path / "twill.wif").write_text(
+        "[WIF]\nVersion=1.1\n[WEAVING]\nShafts=3\n[WEFT]\nThreads=2\n[LIFTPLAN]\n1=1,2\n2=3\n[THREADING]\n1=1\n"
+    )
+    for weave, frames in (("10/01/11", 3), ("twill.wif", 3), (["10"], 1)):
+        scene = scenes.parse(LOOM, overrides={"loom.weave": weave}, directory=tmp_path)
+        assert sum(name.startswith("heald_") for name in scene.instances) == frames
+        assert list(scene.texts) == ["twill.wif"] * (weave == "twill.wif")
 
 
 # ---- an input has one source

@@ -51,6 +51,10 @@ class RotorLaws(LawParameters):
         Problem(
             "half of plateau_angle = {plateau_angle} and ramp_angle = {ramp_angle} exceed 180 deg; reduce one"
         ),
+        Problem(
+            "law = table has no table: table_1 to table_36 are those of an even turn; set table_points and"
+            " table_1, table_2, ..., or law = uniform"
+        ),
     )
 
     def check(self) -> int:
@@ -64,7 +68,9 @@ class RotorLaws(LawParameters):
             if self.lowest_speed <= 0.0:
                 return 2
         elif self.law == TABLE:
-            lowest, _highest, _second, _third = self.spline_peaks()
+            lowest, _highest, second, _third = self.spline_peaks()
+            if second == 0.0:
+                return 8
             self.lowest_speed = 1.0 + lowest
             if self.lowest_speed <= 0.0:
                 return 3

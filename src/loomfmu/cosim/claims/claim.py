@@ -3,7 +3,7 @@
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple, dataclass_transform
 
@@ -75,6 +75,9 @@ class Claim(ABC):
     def parameter_owners(self) -> list[str]:
         """The instances whose parameters it needs, beside those of its signals."""
         return [getattr(self, owner) for owner in self.reads]
+
+    def check(self, parameter: Callable[[str], float]) -> None:  # noqa: B027 - most kinds have no such limits
+        """Refuse what the parameters of its instances, NaN where unknown, rule out before the run."""
 
     @abstractmethod
     def judge(self, trace: Signals) -> Verdict:

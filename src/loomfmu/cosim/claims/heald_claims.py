@@ -1,7 +1,7 @@
 """Claims on heald frames: how long they dwell and leave the shed clear, by the angle that the shaft turns."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -78,13 +78,16 @@ class ClearShed(_Span):
         stroke, ratio = (trace.parameter(f"{self.heald}.{name}") for name in ("stroke", "warp_ratio"))
         return 0.5 * stroke - self.clearance / ratio
 
-    def judge(self, trace: Signals) -> Verdict:
-        stroke, ratio = (trace.parameter(f"{self.heald}.{name}") for name in ("stroke", "warp_ratio"))
-        if not 0.0 < self.clearance < 0.5 * stroke * ratio:
+    def check(self, parameter: Callable[[str], float]) -> None:
+        reach = 0.5 * parameter(f"{self.heald}.stroke") * parameter(f"{self.heald}.warp_ratio")
+        if self.clearance <= 0.0 or self.clearance >= reach:
             raise LoomfmuError(
-                f"clear_shed of {self.heald}: clearance = {1e3 * self.clearance:.7g} mm is outside"
-                f" (0, {500 * stroke * ratio:.7g}) mm, how far the warp moves to either side"
+                f"claim 'clear_shed' of {self.heald}: clearance = {1e3 * self.clearance:.7g} mm is outside"
+                f" (0, {1e3 * reach:.7g}) mm, how far the warp moves to either side"
             )
+
+    def judge(self, trace: Signals) -> Verdict:
+        self.check(trace.parameter)
         return self._judge(trace, f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_height")
 
 

@@ -1,38 +1,19 @@
-"""What keeps FMUs in this process from doing harm to it: Ctrl-C, the working directory, its end."""
+"""What keeps FMUs in this process from doing harm to it: the working directory, its end."""
 
 import atexit
 import contextlib
 import ctypes
 import os
 import platform
-import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 from ...errors import LoomfmuError, signal_name
 
 FAILED = 2  # the exit status of a failed FMU
-
-
-@contextmanager
-def interrupt_fills(flag: ctypes.c_int32) -> Iterator[None]:
-    """Ctrl-C sets a flag instead of raising: an exception inside a live FMU would be fatal to it."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def fill(_number: int, _frame: Any) -> None:
-        flag.value = 1
-
-    previous = signal.signal(signal.SIGINT, fill)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
 
 
 @contextmanager

@@ -23,8 +23,9 @@ from ..importing.slave import NEEDS_TOOL, Ended, Slave
 from ..scenes.graph import step_order
 from ..scenes.scene import ITERATED, Scene
 from .constant_shaft import ConstantShaft
+from .endless import interruptible
 from .grid import Grid, Span, uniform
-from .guards import directory_kept, exit_named, interrupt_fills
+from .guards import directory_kept, exit_named
 from .loops import Growth, iteration
 from .signals import Signals
 from .start import Start
@@ -98,7 +99,7 @@ class Master:
     def __enter__(self) -> "Master":
         self._guards = ExitStack()
         self.interrupted.value, self.steps, self.ended = 0, 0, None
-        self._guards.enter_context(interrupt_fills(self.interrupted))
+        self._guards.enter_context(interruptible(self.interrupted, self.scene.step_timeout))
         try:
             scene = self.scene
             self._limits = Limits(scene.step_timeout, scene.run_timeout, self.interrupted)

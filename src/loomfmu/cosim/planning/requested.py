@@ -1,5 +1,6 @@
 """The signals that a run must give: those recorded and those that claims need, checked first."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -59,10 +60,17 @@ def checked_claims(scene: Scene) -> Scene:
 
 
 def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
-    """Refuse a parameter that cannot bound the signal of a claim."""
+    """Refuse parameters that cannot bound the signal of a claim, or that rule it out."""
     for claim in claims:
+        claim.check(partial(_parameter, scene))
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
             _check_parameter(scene, claim.bound, claim.signal)
+
+
+def _parameter(scene: Scene, name: str) -> float:
+    """The value of a parameter, NaN where the scene does not know it."""
+    instance, _, variable = name.partition(".")
+    return float(scene.instances[instance].effective().get(variable, math.nan))
 
 
 def _unrecorded(scene: Scene) -> Iterator[str]:

@@ -5,9 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from ... import machines
+from ...components import COMPONENTS
 from ...errors import LoomfmuError, shown, suggestion
+from ...variables import variables_of
 from .instances import TIMES, WHOLE, Instance, fmu_of
-from .standard_loom import members
+from .standard_loom import members, stem
+
+WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
 
 def override(
@@ -31,6 +35,15 @@ def override(
             tables[variable] = value
 
 
+def override_weave(tables: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
+    """Change the weave of a scene's loom, if that is among the overrides; the other ones."""
+    if WEAVE in overrides:
+        if not isinstance(tables.get("loom"), dict):
+            raise LoomfmuError(f"{WEAVE}: the scene has no [loom]; set the pattern of a heald frame instead")
+        tables["loom"] = tables["loom"] | {"weave": overrides[WEAVE]}
+    return {key: value for key, value in overrides.items() if key != WEAVE}
+
+
 def unit_of(key: str) -> str:
     """The variable whose unit a key such as `units.flange.w` states; an empty text for other keys."""
     return key.removeprefix("units.") if key.startswith("units.") else ""
@@ -50,8 +63,10 @@ def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) 
     given = list(given)
     instance, dot, variable = key.partition(".")
     if instance == "loom" and "loom" not in given:
+        if key == WEAVE:
+            raise LoomfmuError(f"{key} cannot be set here: the scene's frames depend on it")
         if variable not in machines.TAKERS:
-            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, machines.TAKERS)}")
+            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, [*machines.TAKERS, 'weave'])}")
         key, dot = variable, ""
     if key in machines.TAKERS:
         takers = machines.TAKERS[key]
@@ -61,10 +76,26 @@ def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) 
         return [(name, key) for name in found]
     if not dot:
         if key not in (*TIMES, *WHOLE):
-            known = [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in given)]
-            raise LoomfmuError(f"{shown(key)} cannot be set{suggestion(key, known)}")
+            raise LoomfmuError(f"{shown(key)} cannot be set{_nearest(key, given, component)}")
         return [("", key)]
     found = [instance] if instance in given else members(instance, given)
     if not found:
         raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, given)}")
     return [(member, variable) for member in found]
+
+
+def _nearest(key: str, given: Iterable[str], component: Callable[[str], str]) -> str:
+    """What a key without an instance was probably meant to be, as the end of a message."""
+    variables: dict[str, list[str]] = {}  # of each of our instances, those that can be set
+    for name in given:
+        if component(name) in COMPONENTS:
+            declared = variables_of(COMPONENTS[component(name)])
+            variables[name] = [variable.name for variable in declared if variable.settable]
+    for name in variables:
+        if key in (name, stem(name)):
+            return f": it is an instance; set one of its variables, such as {key}.{variables[name][0]}"
+    full = [WEAVE, *(f"{name}.{variable}" for name, each in variables.items() for variable in each)]
+    for name in full:
+        if name.partition(".")[2] == key:
+            return f"; did you mean {name!r}?"
+    return suggestion(key, [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in variables)])

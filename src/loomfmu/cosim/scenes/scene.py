@@ -16,7 +16,7 @@ from . import standard_loom
 from .drives import Drive
 from .graph import Wire
 from .instances import COARSE, KEYS, Instance, instance, instance_tables, mixed, own_texts, truth
-from .overrides import override
+from .overrides import override, override_weave
 from .tables import choice, number, toml
 from .tables import text as text_of
 from .times import check_times, seconds, times_of
@@ -119,9 +119,10 @@ def parse(
     `directory` is where the files that the scene names are looked for.
     """
     tables = toml(text)
+    rest = override_weave(tables, overrides or {})
     texts = standard_loom.resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
-    for key, value in (overrides or {}).items():
+    for key, value in rest.items():
         override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
     wires = wires_of(instances, tables.get("wires", {}), tables.get("inputs"))

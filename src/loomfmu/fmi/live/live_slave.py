@@ -25,6 +25,7 @@ CATEGORIES = {
 CAUSALITIES = {"parameter": "a fixed parameter", "output": "an output", "local": "a local variable"}
 LARGEST = 1.7976931348623157e308
 LARGEST_INTEGER = 2147483647
+LONGEST_INTEGER = 2**63  # first integer beyond 64 bits
 
 
 class Message(NamedTuple):
@@ -62,6 +63,7 @@ class LiveSlave(Fmi2Slave):
         self.failure = ""
         self.stale = True
         self.warned: set[int] = set()
+        self.values = operator.attrgetter(*(row.name for row in self.rows.values()))
         self.readers: dict[tuple[Any, ...], Callable[[Any], Any]] = {}
         self.writers: dict[tuple[Any, ...], list[tuple[str, float, float]]] = {}
         let_go_at_exit(str(kwargs.get("resources", "")), type(self.component).__name__)
@@ -106,10 +108,11 @@ class LiveSlave(Fmi2Slave):
             return
         try:
             problem = self.component.step(time, step_size)
-        except BaseException as error:  # Ctrl-C too: it would cut the wrapper's own bookkeeping short
+        except BaseException as error:  # whatever it raises would cut the wrapper's own bookkeeping short
             self.failure = f"at {time!r} s: {type(error).__name__}: {error}"
             return
         self.time = time + step_size
+        self._check_values()
         self._report(problem)
 
     def terminate(self) -> None:
@@ -226,11 +229,26 @@ class LiveSlave(Fmi2Slave):
             return
         self.stale = False
         try:
-            self._report(self.component.initialize(self.time))
-        except BaseException as error:  # Ctrl-C too: it would cut the wrapper's own bookkeeping short
+            problem = self.component.initialize(self.time)
+            self._check_values()
+            self._report(problem)
+        except BaseException as error:  # whatever it raises would cut the wrapper's own bookkeeping short
             self.failure = f"at the start: {type(error).__name__}: {error}"
         if self.failure and logged:
             self._log(ERROR, self.failure)
+
+    def _check_values(self) -> None:
+        """Fail where Python has computed what C cannot: a complex number, or an integer beyond 64 bits."""
+        values = self.values(self.component)
+        values = values if isinstance(values, tuple) else (values,)
+        for row, value in zip(self.rows.values(), values, strict=True):
+            kind = type(value)
+            if kind is complex:
+                self.failure = f"{row.name} is complex: a negative number to a fractional power"
+                setattr(self.component, row.name, math.nan)
+            elif kind is int and not -LONGEST_INTEGER <= value < LONGEST_INTEGER:
+                self.failure = f"{row.name} = {value:.7g} exceeds a 64-bit integer"
+                setattr(self.component, row.name, 0)
 
     # ---- complaints
 
