@@ -5,6 +5,7 @@ import re
 import shlex
 import tomllib
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import pytest
@@ -13,8 +14,10 @@ from live_fmus import fmu_cache
 from loomfmu import arguments as cli_arguments
 from loomfmu import cli
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim.claims.claims import KINDS
 from loomfmu.cosim.scenes import scene
 from loomfmu.sweeps import plan
+from loomfmu.variables import variables_of
 
 __all__ = ["fmu_cache"]
 
@@ -119,3 +122,39 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_the_table_of_fmus_names_all_components() -> None:
     table = (Path(__file__).parents[1] / "fmus" / "README.md").read_text()
     assert re.findall(r"^\| `(\w+)` \|", table, re.M) == list(COMPONENTS)
+
+
+SOURCES = HOUSE / "docs" / "sources.md"
+
+
+def of_package(name: str) -> object:
+    """What a name stands for: a component, one of its variables, or something within `loomfmu`."""
+    head, _, rest = name.partition(".")
+    if head in COMPONENTS:
+        known = {variable.name: variable for variable in variables_of(COMPONENTS[head])}
+        return known[rest] if rest else COMPONENTS[head]
+    return resolve_name(f"loomfmu.{name}")
+
+
+def test_the_sources_page_names_what_there_is() -> None:
+    cited = re.findall(r"`([^`]+)`", SOURCES.read_text())
+    assert len(cited) > 100
+    for name in dict.fromkeys(cited):
+        if name.endswith(".csv"):
+            assert (HOUSE / "src" / "loomfmu" / name).is_file(), name
+        elif name != "loomfmu":
+            assert name in KINDS or of_package(name), name
+
+
+def test_the_sources_page_names_tables_of_the_validation() -> None:
+    report = (HOUSE / "results" / "validation.md").read_text()
+    headings = re.findall(r"^### (.*)$", report, re.MULTILINE)
+    for row in re.findall(r"^\| (?!section|-).*$", SOURCES.read_text(), re.MULTILINE):
+        section, _holds, _place, validation, _open = (cell.strip() for cell in row.strip("|").split("|"))
+        for start in validation.split("; ") if validation != "-" else ():
+            assert any(re.match(rf"{re.escape(start)}\b", heading) for heading in headings), (section, start)
+
+
+def test_every_component_of_a_source_is_on_its_page() -> None:
+    text = SOURCES.read_text()
+    assert [name for name in COMPONENTS if f"`{name}`" not in text] == ["MainShaft", "DrivenShaft"]
