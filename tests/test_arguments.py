@@ -73,8 +73,8 @@ def test_a_result_is_shown_in_a_few_lines() -> None:
             lambda found: judge(found.trace, kind="above", signal=None, bound=0),
             "claim 'above': signal = None is not a name in quotes",
         ),
-        (lambda found: found.trace[3], "wl680_3600: no signal 3 is recorded"),
-        (lambda found: found.trace[["a"]], "wl680_3600: no signal ['a'] is recorded"),
+        (lambda found: found.trace[3], "wl680_3600: signal 3 is not recorded"),
+        (lambda found: found.trace[["a"]], "wl680_3600: signal ['a'] is not recorded"),
         (lambda _found: run(Path(DEMO).read_text()), "scene = 'title = "),
     ],
 )

@@ -480,7 +480,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "wire to true": (
         HEAD + LOOM + '[wires]\n"belt.travel" = true\n',
-        'wires: "belt.travel" = true is neither an output nor false, which cuts the wire',
+        'wires: "belt.travel" = true must be an output, or false to cut the wire',
     ),
     "a date": (
         HEAD + LOOM + "[belt]\nguide_clearance = 2026-01-02\n",
@@ -772,7 +772,7 @@ def test_a_fault_of_our_own_is_told_in_one_line(
     monkeypatch.setattr("loomfmu.catalogue.overview", broken)
     assert main([*before, "list", *after]) == 2  # 1 is the status of a claim that fails
     lines = capsys.readouterr().err.splitlines()
-    said = r"loomfmu: RuntimeError: a\x1b[2J fault (a fault of loomfmu; please report it to its maintainers"
+    said = r"loomfmu: RuntimeError: a\x1b[2J fault (a bug in loomfmu; please report it to its maintainers"
     assert lines[-1] == f"{said} with what --debug prints)"
     assert len(lines) == 1 if not before + after else "Traceback (most recent call last):" in lines
 
@@ -790,7 +790,7 @@ def test_a_trace_that_was_not_judged_is_not_one_that_holds(capsys: pytest.Captur
         del file.attrs["claims"]
     capsys.readouterr()
     assert main(["show", "results/scene.h5"]) == 1
-    assert capsys.readouterr().out.endswith("claims not judged: the run did not get to its end\n")
+    assert capsys.readouterr().out.endswith("claims not judged: the run did not finish\n")
 
 
 # ---- FMU files

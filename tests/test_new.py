@@ -198,7 +198,7 @@ def test_one_that_is_cut_off_from_the_shaft_is_named(cam: Path) -> None:
     cut = "".join(f'"cam.shaft_{n}" = false\n' for n in ("angle", "velocity", "acceleration"))
     path.write_text(f"{path.read_text()}[wires]\n{cut}")
     (note,) = scenes.load(path).notes
-    assert note == "cam turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+    assert note == "cam runs at its own constant speed: its shaft inputs are not wired to the shaft"
 
 
 ALONE = '''"""A wheel that knows no shaft."""
@@ -229,7 +229,7 @@ class Wheel(Component):
 def test_one_that_cannot_follow_the_shaft_is_named(tmp_path: Path) -> None:
     (tmp_path / "wheel.py").write_text(ALONE)
     scene = scenes.parse('[shaft]\n[wheel]\ncomponent = "wheel.py"\n', directory=tmp_path)
-    assert scene.notes == ("wheel turns at a speed of its own: Wheel has no terminal SHAFT",)
+    assert scene.notes == ("wheel runs at its own constant speed: Wheel has no terminal SHAFT",)
 
 
 def test_an_extreme_that_samples_does_not_pass_the_check(cam: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -316,7 +316,7 @@ def test_the_fmu_runs_in_a_scene_as_a_file_and_in_a_package(cam: Path) -> None:
                                                   'fmu = "PickingCam.fmu"')  # fmt: skip
     (cam / "file.toml").write_text(text)
     (note,) = scenes.load(cam / "file.toml").notes
-    assert note.startswith("cam turns at a speed of its own")
+    assert note.startswith("cam runs at its own constant speed")
     for flavour in ("live", "native"):
         package = cam / f"{flavour}.ssp"
         arguments = ["export", str(cam / "cam.toml"), "--ssp", str(package), "--flavour", flavour]

@@ -217,7 +217,7 @@ def test_a_trace_says_how_to_repeat_it(
     other = loomfmu.run(read, set={"shaft.speed": "450 rpm"}, output="5.h5")
     assert json.loads(other.trace.attributes["set"]) == {"shaft.speed": "450 rpm"}
     assert other.trace.parameter("belt.guide_clearance") == 0.0003
-    with pytest.raises(LoomfmuError, match=r"no parameter 'belt\.head' is recorded"):
+    with pytest.raises(LoomfmuError, match=r"parameter 'belt\.head' is not recorded"):
         third.trace.parameter("belt.head")
 
 
@@ -304,11 +304,11 @@ def test_our_own_reader(result: loomfmu.Result, file: h5py.File) -> None:
 @pytest.mark.parametrize(
     ("ask", "said"),
     [
-        (lambda t: t["belt.margn"], "no signal 'belt.margn' is recorded; did you mean 'belt.margin'?"),
-        (lambda t: t["belt"], "no signal 'belt' is recorded; did you mean 'belt."),
-        (lambda t: t.unit("weft.travl"), "no signal 'weft.travl' is recorded; did you mean 'weft.travel'?"),
-        (lambda t: t.parameter("heald_1.strok"), "no parameter 'heald_1.strok' is recorded"),
-        (lambda t: t.parameter("heald_9.stroke"), "no parameter 'heald_9.stroke' is recorded"),
+        (lambda t: t["belt.margn"], "signal 'belt.margn' is not recorded; did you mean 'belt.margin'?"),
+        (lambda t: t["belt"], "signal 'belt' is not recorded; did you mean 'belt."),
+        (lambda t: t.unit("weft.travl"), "signal 'weft.travl' is not recorded; did you mean 'weft.travel'?"),
+        (lambda t: t.parameter("heald_1.strok"), "parameter 'heald_1.strok' is not recorded"),
+        (lambda t: t.parameter("heald_9.stroke"), "parameter 'heald_9.stroke' is not recorded"),
     ],
 )
 def test_our_own_reader_names_what_it_does_not_find(result: loomfmu.Result, ask, said: str) -> None:

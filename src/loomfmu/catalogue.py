@@ -1,4 +1,4 @@
-"""What there is to run: FMUs with their variables, published machines and rapier heads, example scenes."""
+"""FMUs with their variables, published machines and rapier heads, and the example scenes."""
 
 import re
 import shutil
@@ -62,7 +62,7 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
 def components(names: Sequence[str]) -> list[type[Component]]:
     """The components of these names, or of files such as cam.py:PickingCam; all of ours if there are none.
 
-    Raises LoomfmuError for a name that is not known, and for two components that bear one name.
+    Raises LoomfmuError for an unknown name, and for two components of the same name.
     """
     found: dict[str, type[Component]] = {}
     for name in names or COMPONENTS:
@@ -70,7 +70,9 @@ def components(names: Sequence[str]) -> list[type[Component]]:
             raise LoomfmuError(f"there is no FMU {name!r}{suggestion(name, COMPONENTS)}")
         each = load.component(name) if load.is_file(name) else COMPONENTS[name]
         if found.setdefault(each.__name__, each) is not each:
-            raise LoomfmuError(f"{name}: there are two components {each.__name__}, and one file for both")
+            raise LoomfmuError(
+                f"{name}: two components are called {each.__name__}; their FMUs would be the same file"
+            )
     return list(found.values())
 
 

@@ -83,7 +83,7 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         return "out of memory"
     what = described(error)
-    return f"{what} (a fault of loomfmu; please report it to its maintainers with what --debug prints)"
+    return f"{what} (a bug in loomfmu; please report it with the output of --debug)"
 
 
 def _overrides(options: argparse.Namespace) -> dict[str, Any]:
@@ -242,7 +242,7 @@ def _init(options: argparse.Namespace) -> int:
 
     written = catalogue.start(options.directory, everything=options.all)
     say(*written, "")
-    say('a sweep and its picture need two extras: pip install "loomfmu[sweep,plot]"')
+    say('sweeps and their maps need two extras: pip install "loomfmu[sweep,plot]"')
     first = options.directory / catalogue.STARTERS[0]
     say(f"next: {shlex.join(['loomfmu', 'run', str(first)])}")
     return 0
@@ -345,7 +345,7 @@ def _summarise(trace: "Trace") -> None:
     if trace.judged:
         _print_verdicts(trace.verdicts)
     else:
-        say("claims not judged: the run did not get to its end")
+        say("claims not judged: the run did not finish")
 
 
 def _revolutions(count: str) -> str:

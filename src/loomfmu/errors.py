@@ -83,7 +83,7 @@ def check_text(text: str, where: str, most: int = LONGEST_NAME) -> str:
 
 
 def path_of(given: object, what: str) -> Path:
-    """A path that a caller gave. Raises LoomfmuError for what is none."""
+    """A path that a caller gave. Raises LoomfmuError if it is not one."""
     if not isinstance(given, str | os.PathLike) or re.search("[\x00\n]", str(given)):
         raise LoomfmuError(f"{what} = {shown(given)} is not a path")
     return Path(given)

@@ -30,7 +30,7 @@ FILES = ("eccentric.py", "test_eccentric.py", "README.md", "eccentric.toml")
 
 
 def new(name: str, directory: Path = Path()) -> list[Path]:
-    """Write the folder of a mechanism called `name`, such as PickingCam, into a directory; the files written.
+    """Write the folder of a mechanism called `name`, such as PickingCam, into a directory; returns the files.
 
     Raises LoomfmuError for a name that cannot be used or a folder that exists; nothing has been written then.
     """

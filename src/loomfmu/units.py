@@ -14,7 +14,7 @@ from .errors import LoomfmuError, shown, suggestion
 
 
 class UnitError(LoomfmuError):
-    """A quantity that cannot be read, or two units that do not meet."""
+    """A quantity that cannot be read, or units that do not fit each other."""
 
 
 BASES = ("kg", "m", "s", "rad", "K", "A")  # as FMI calls them
@@ -188,12 +188,12 @@ def parse(quantity: str | float, target: str) -> float:
 
 
 def fitted(target: str) -> str:
-    """What a quantity has to fit, in the words of a message."""
+    """What a quantity must fit, as part of a message."""
     return "a number without a unit" if target == "1" else target
 
 
 class Si(float):
-    """A number that is known to be meant in SI: no warning asks whether another unit was meant."""
+    """A number that is known to be in SI: it never causes a warning about its unit."""
 
 
 def doubt(quantity: Any, target: str, display: str, usual: float) -> str:

@@ -258,7 +258,7 @@ def output(
     highest_of: str | None = None,
     pole: bool = False,
 ) -> Any:
-    """A value that the component computes; integers and booleans are discrete if nothing else is said."""
+    """A value that the component computes; integers and booleans are discrete by default."""
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "output", variability or usual, unit, start, description, display,
@@ -278,7 +278,7 @@ def state(
 ) -> Any:
     """A value that the component carries from one step to the next: its motion, a counter.
 
-    Its limits are those that the component itself keeps to: a saved state beyond them is refused.
+    Its limits are those that the component itself keeps to: a saved state beyond them is rejected.
     """
     variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
@@ -314,7 +314,7 @@ class Component:
 
     problems: ClassVar[tuple[Problem, ...]] = ()
     terminals: ClassVar[tuple[Terminal, ...]] = ()
-    # what it carries from step to step; where nothing is said, the case in which every step counts
+    # what it carries from step to step; by default everything, so that every step counts
     keeps: ClassVar[str] = MOTION
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()

@@ -43,7 +43,7 @@ def shown(path: Path, capsys: pytest.CaptureFixture[str]) -> int:
     assert "1234.5" not in printed.out + printed.err
     if status == 2:
         assert printed.err.startswith("loomfmu: ") and printed.err.count("\n") == 1
-        assert "a fault of loomfmu" not in printed.err
+        assert "a bug in loomfmu" not in printed.err
     else:
         assert printed.err == ""
     return status

@@ -61,7 +61,7 @@ def test_an_fmu_none_of_whose_outputs_can_be_recorded_is_named(tmp_path: Path) -
     result = ran(tmp_path, text, tmp_path)
     assert list(result.trace) == []
     assert result.warnings == (
-        "motor: no output is recorded, none is a scalar number or a Boolean:"
+        "motor: nothing recorded; none of its outputs is a scalar number or a Boolean:"
         " phase 0, phase 1, phase 2, phase 3, phase 4, ...",
     )
     # one that has no outputs at all, or others as well, is as usual

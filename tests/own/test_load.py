@@ -46,17 +46,17 @@ class Bell(Component):
 '''
 MISTAKES = {
     "a class that is no dataclass": ("@dataclass(slots=True)\n", "", r"line 9: Bell is not a dataclass"),
-    "no slots": ("(slots=True)", "", r"line 10: Bell could keep what it does not declare"),
+    "no slots": ("(slots=True)", "", r"line 10: Bell could store undeclared values"),
     "no docstring": ('    """A bell."""\n\n    p', "    p", r"line 10: Bell has no docstring"),
     "no step": ("def step(", "def stepp(", r"it has no component|line 10: Bell has no method step"),
     "a field of another kind": ('parameter("1", 0.5, "Pitch"', 'dict("1", 0.5, "Pitch"', "14: TypeError"),
     "an unknown unit": ('output("m/s"', 'output("furlong/s"', "line 16: rate: unknown unit 'furlong/s'"),
     "a unit that is not SI": ('output("m",', 'output("mm",', "line 15: sound is in mm: values are SI, m"),
     "another unit for people": ('"Rate")', '"Rate", display="N")', "line 16: rate is in m/s, which"),
-    "an int for a float": ("0.5, ", "1, ", "line 14: pitch is declared float, and its start"),
+    "an int for a float": ("0.5, ", "1, ", "line 14: pitch is declared float, but its start"),
     "a start outside": ("0.5, ", "1.5, ", r"line 14: pitch = 1.5 is outside \[0, 1\]"),
     "a rate that is not there": ('rate="rate"', 'rate="rat"', "line 15: sound: rate = 'rat' is not one of"),
-    "a rate in another unit": ('"m/s", "Rate"', '"m", "Rate"', "line 15: sound is in m, and its rate"),
+    "a rate in another unit": ('"m/s", "Rate"', '"m", "Rate"', "line 15: sound is in m, but its rate"),
     "a switch that is not there": (
         'minimum=0.0, maximum=1.0)', 'when="loud")', "pitch: when = 'loud' is not one of its parameters"
     ),
@@ -66,13 +66,13 @@ MISTAKES = {
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',
         '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="sound")',
-        "line 17: rate is an extreme so far, and keeps = NOTHING",
+        "line 17: rate is an extreme so far, but keeps = NOTHING",
     ),
     "a state beside extremes": (
         '    rate: float = output("m/s", "Rate")',
         '    keeps: ClassVar[str] = EXTREMES\n    low: float = output("m", "Low", lowest_of="sound")\n'
         '    rate: float = output("m/s", "Rate")\n    blows: float = state("1", "Blows so far")',
-        "line 19: blows is a state, and keeps is not MOTION: remove keeps, or declare blows as auxiliary",
+        "line 19: blows is a state, but keeps is not MOTION: remove keeps, or declare blows as auxiliary",
     ),
     "an output that integrates": (
         'output("m/s", "Rate")\n\n    def initialize(self, time: float) -> int:\n        """Silence."""\n'
@@ -84,7 +84,7 @@ MISTAKES = {
         "        self.sound = 0.0\n        return 0\n\n"
         '    def step(self, time: float, step_size: float) -> int:\n        """Ring."""\n'
         "        self.sound = self.sound + self.pitch * step_size",
-        "line 15: sound depends on the steps before, and keeps is not MOTION: remove keeps",
+        "line 15: sound depends on earlier steps, but keeps is not MOTION: remove keeps",
     ),
     "a problem without words": ("return 0\n\n", "return 2\n\n", "line 18: initialize returns problem 2"),
     "words that show nothing": ("{pitch}", "{pich}", r"line 13: problems: \{pich\} .* did you mean 'pitch'"),
@@ -110,7 +110,7 @@ MISTAKES = {
         "@dataclass",
         "@dataclass(slots=True)\nclass Other(Component):\n    value: float = output('1', 'V')\n\n"
         "    def step(self, time: float, step_size: float) -> int:\n        return 0\n\n\n@dataclass",
-        r"2 components, say which: .*bell\.py:Other, .*bell\.py:Bell",
+        r"2 components; name one: .*bell\.py:Other, .*bell\.py:Bell",
     ),
     "no component": ("(Component)", "", "it has no component: declare a class on"),
 }  # fmt: skip
@@ -160,7 +160,7 @@ def test_an_array_of_another_type_is_refused(tmp_path: Path) -> None:
     assert load.component(str(path))(peg_2=5).peg == (1, 5)
     path.write_text(text.replace("KIND", "float"))
     with pytest.raises(
-        LoomfmuError, match=r"line 14: peg_1 is declared tuple\[float, \.\.\.\], and its start"
+        LoomfmuError, match=r"line 14: peg_1 is declared tuple\[float, \.\.\.\], but its start"
     ):
         load.component(str(path))
 
@@ -243,5 +243,5 @@ def test_units_of_heat_and_electricity_reach_the_model_description(
     assert bases["J/K"] == {"kg": "1", "m": "2", "s": "-2", "K": "-1"}
     assert bases["N.m/A"] == {"kg": "1", "m": "2", "s": "-2", "A": "-1"}
     (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more.replace("K/s", "W/K"), 1))
-    with pytest.raises(LoomfmuError, match="warmth is in K, and its rate warming in W/K"):
+    with pytest.raises(LoomfmuError, match="warmth is in K, but its rate warming in W/K"):
         load.component("bell.py", tmp_path)

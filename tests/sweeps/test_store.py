@@ -135,7 +135,7 @@ def test_rows_that_are_there_twice_are_refused(plan: SweepPlan, tmp_path: Path) 
     with opened(tmp_path / "results", plan, "one", restart=False) as store:
         for rows in (range(0, 12), range(10, 24)):
             store.write(rows, batch(rows))
-        with pytest.raises(LoomfmuError, match="rows are missing or there twice"):
+        with pytest.raises(LoomfmuError, match="rows are missing or duplicated"):
             store.finish()
 
 

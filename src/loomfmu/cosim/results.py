@@ -1,4 +1,4 @@
-"""What a run gives back: its verdicts, its warnings and its trace."""
+"""The result of a run: verdicts, warnings and trace."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,8 +11,8 @@ from .scenes.scene import Scene
 class Judged:
     """A finished run: its verdicts, its warnings, and what it skipped. It is true if all claims hold.
 
-    `skipped` are lines on what was not run or not read, why, and what that saved; `steps` is the number of
-    communication steps. `ended` names the FMU that ended the run early, and when it did.
+    `skipped` lists what was not run or not read, and why; `steps` is the number of communication steps.
+    `ended` says which FMU ended the run early, and when; it is empty if none did.
     """
 
     scene: Scene
@@ -43,7 +43,7 @@ class Judged:
 class Result(Judged):
     """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
 
-    `path` is where the trace was written. `trace` stays that of this run if another one is written there.
+    `path` is where the trace was written. `trace` stays that of this run even if another is written there.
     `seconds` is the time that the steps took, the writing of their samples included.
     """
 

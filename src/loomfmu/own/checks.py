@@ -1,4 +1,4 @@
-"""What every mechanism on the shaft has to pass: its rates and its extremes are what they are declared to be.
+"""Checks for mechanisms on the shaft: rates and extremes are what they are declared to be.
 
 The checks turn a mechanism by its own `speed` and `start_angle`, as a class on `ShaftDriven` has them.
 Each raises AssertionError, naming the output; the tests that `loomfmu new` writes call them.
@@ -35,8 +35,8 @@ def check_rates(component: type[Component], values: Mapping[str, Any] | None = N
             change = (after[name] - before[name]) / h
             mean = 0.5 * (before[rate] + after[rate])
             assert abs(change - mean) <= OFF * largest + ROUNDING * abs(after[name]) / h, (
-                f"{name} changes by {change:.6g} in a second near {before['time']:.6g} s,"
-                f" and its rate {rate} is {mean:.6g}"
+                f"near {before['time']:.6g} s {name} changes by {change:.6g} per second,"
+                f" but its rate {rate} is {mean:.6g}"
             )
 
 

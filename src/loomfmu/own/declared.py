@@ -34,7 +34,7 @@ class Fault(NamedTuple):
 
 
 def fault(component: type[Component], taken: Collection[str]) -> Fault | None:
-    """The first fault of a component that bears none of the names that are taken; None if there is none."""
+    """The first fault of a component, or None; its name must not be one of those `taken`."""
     for find in (_of_class, _of_variables, _of_references, _of_traits, _of_problems):
         for found in find(component):
             return found
@@ -46,7 +46,7 @@ def fault(component: type[Component], taken: Collection[str]) -> Fault | None:
         return Fault("", " ".join(str(error).split()))
     name = "" if component.keeps == MOTION else memory.carrying(component)
     if name:
-        text = f"{name} depends on the steps before, and keeps is not MOTION: remove keeps"
+        text = f"{name} depends on earlier steps, but keeps is not MOTION: remove keeps"
         return Fault(name, text)
     return None
 
@@ -56,7 +56,7 @@ def _of_class(component: type[Component]) -> Iterator[Fault]:
     if any(isinstance(each, Field) for each in vars(component).values()):
         yield Fault("", f"{name} is not a dataclass: write @dataclass(slots=True) above it")
     elif "__slots__" not in vars(component):
-        yield Fault("", f"{name} could keep what it does not declare: write @dataclass(slots=True) above it")
+        yield Fault("", f"{name} could store undeclared values: write @dataclass(slots=True) above it")
     for method, given in (("initialize", Component.initialize), ("step", Component.step)):
         if getattr(component, method) is given:
             yield Fault("", f"{name} has no method {method}")
@@ -79,13 +79,14 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
 
 def _of_variable(component: type[Component], variable: Variable) -> str:
     name, annotation = variable.name, component.__dataclass_fields__[variable.name].type
-    said = annotation.__name__ if isinstance(annotation, type) else str(annotation)
+    declared = annotation.__name__ if isinstance(annotation, type) else str(annotation)
     wanted = f"tuple[{variable.type.__name__}, ...]" if variable.element else variable.type.__name__
     if name in KEYS or name == "time" or not NAME.fullmatch(name):
         return f"a variable cannot be called {name}: scenes and traces use that name"
-    if said != wanted:
+    if declared != wanted:
         return (
-            f"{name} is declared {said}, and its start {variable.start!r} is of type {variable.type.__name__}"
+            f"{name} is declared {declared}, but its start {variable.start!r} is of type"
+            f" {variable.type.__name__}"
         )
     for unit in (variable.unit, variable.display):
         try:
@@ -93,7 +94,7 @@ def _of_variable(component: type[Component], variable: Variable) -> str:
         except units.UnitError as error:
             return f"{name}: {error}"
     if units.unit(variable.unit).factor != 1.0:
-        return f"{name} is in {variable.unit}: values are SI, {units.si(variable.unit)}; say display="
+        return f"{name} is in {variable.unit}: values are SI, {units.si(variable.unit)}; use display="
     if units.unit(variable.unit).dimension != units.unit(variable.display).dimension:
         return f"{name} is in {variable.unit}, which cannot be shown in {variable.display}"
     return variable.complaint(variable.start) if variable.settable else ""
@@ -128,7 +129,7 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
 
 def _of_rate(variable: Variable, rate: Variable) -> Iterator[Fault]:
     if units.unit(rate.unit).dimension != units.unit(variable.unit).rate:
-        text = f"{variable.name} is in {variable.unit}, and its rate {rate.name} in {rate.unit}"
+        text = f"{variable.name} is in {variable.unit}, but its rate {rate.name} in {rate.unit}"
         yield Fault(variable.name, text)
 
 
@@ -138,12 +139,12 @@ def _of_traits(component: type[Component]) -> Iterator[Fault]:
     if component.keeps not in (NOTHING, EXTREMES, MOTION):
         yield Fault("keeps", f"keeps = {component.keeps!r} is not NOTHING, EXTREMES or MOTION")
     if held and component.keeps == NOTHING:
-        yield Fault(held[0], f"{held[0]} is an extreme so far, and keeps = NOTHING: write keeps = EXTREMES")
+        yield Fault(held[0], f"{held[0]} is an extreme so far, but keeps = NOTHING: write keeps = EXTREMES")
     if component.keeps != MOTION:
         for name in (v.name for v in variables_of(component) if v.carried):
             yield Fault(
                 name,
-                f"{name} is a state, and keeps is not MOTION: remove keeps, or declare {name} as"
+                f"{name} is a state, but keeps is not MOTION: remove keeps, or declare {name} as"
                 " auxiliary if nothing but extremes depends on its past",
             )
     for name in component.windows:
@@ -152,7 +153,7 @@ def _of_traits(component: type[Component]) -> Iterator[Fault]:
 
 
 def _of_problems(component: type[Component]) -> Iterator[Fault]:
-    """Problems that methods return and nobody has worded, and words that show no variable."""
+    """Problems that methods return but that have no text, and texts that name unknown variables."""
     names = [variable.name for variable in variables_of(component)]
     for problem in component.problems:
         for name in re.findall(r"\{([^{}]*)\}", problem.text.replace("{{", "").replace("}}", "")):
@@ -161,7 +162,9 @@ def _of_problems(component: type[Component]) -> Iterator[Fault]:
     for method in ("check", "initialize", "step"):
         for number in _returned(getattr(component, method)):
             if number > len(component.problems):
-                text = f"{method} returns problem {number}, and `problems` has {len(component.problems)}"
+                text = (
+                    f"{method} returns problem {number}, but there are {len(component.problems)} `problems`"
+                )
                 yield Fault(method, text)
 
 

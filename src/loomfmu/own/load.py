@@ -171,7 +171,7 @@ def _chosen(module: ModuleType, name: str, shown: Path) -> type[Component]:
     candidates = whole or found
     if len(candidates) > 1:
         listed = ", ".join(f"{shown}:{each}" for each in candidates)
-        raise LoomfmuError(f"{shown}: it has {len(candidates)} components, say which: {listed}")
+        raise LoomfmuError(f"{shown}: it has {len(candidates)} components; name one: {listed}")
     return next(iter(candidates.values()))
 
 

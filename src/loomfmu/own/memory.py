@@ -14,7 +14,7 @@ STEP_SIZE = 0.013  # s: no simple part of a revolution at usual speeds
 
 
 def carrying(component: type[Component]) -> str:
-    """The first output, not an extreme, that an instance which starts before the last step shows differently.
+    """The first output, other than extremes, that differs if an instance starts just before the last step.
 
     Empty if there is none, or if the component does not run that far with its defaults.
     """

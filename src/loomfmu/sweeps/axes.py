@@ -125,7 +125,7 @@ def _as_range(varied: Varied, given: Any) -> dict[str, Any]:
     if not isinstance(given, dict):
         raise LoomfmuError(f"{where} = {given!r} is not a range [low, high]")
     if "count" in given:
-        raise LoomfmuError(f"{where}.count: a sample has one count for all, sample.count")
+        raise LoomfmuError(f"{where}.count: all samples share one count; set sample.count")
     return given
 
 
@@ -145,7 +145,7 @@ def _ends(varied: Varied, table: dict[str, Any], where: str) -> tuple[float, flo
         raise LoomfmuError(f"{where}: {varied.show(ends[0])} is not below {varied.show(ends[1])}")
     logarithmic = table.get("logarithmic", False)
     if not isinstance(logarithmic, bool):
-        raise LoomfmuError(f"{where}.logarithmic = {logarithmic!r} is neither true nor false")
+        raise LoomfmuError(f"{where}.logarithmic = {logarithmic!r} must be true or false")
     if logarithmic and (low <= 0.0 or varied.kind == "Integer" or not math.isfinite(low)):
         raise LoomfmuError(f"{where}: only a range of real numbers above 0 can be logarithmic")
     return low, high, logarithmic

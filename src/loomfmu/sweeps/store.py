@@ -84,7 +84,7 @@ class Store:
         numbers = pa.chunked_array([range(self.plan.rows)], pa.int64())
         if table.column_names != schema_of(self.plan, ()).names or not table["row"].equals(numbers):
             where = self.table_path if finished else self.batches
-            raise LoomfmuError(f"{where}: rows are missing or there twice; --restart runs all rows again")
+            raise LoomfmuError(f"{where}: rows are missing or duplicated; --restart runs all rows again")
         if not finished:
             _write(table, self.table_path)
         return table

@@ -15,4 +15,4 @@ def _is_partial(path: Path) -> bool:
 
 
 TRACE = Kind("a trace of loomfmu", is_trace)
-PARTIAL = Kind("what an interrupted run of loomfmu left", _is_partial)
+PARTIAL = Kind("a partial trace of an interrupted run", _is_partial)

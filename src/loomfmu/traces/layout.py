@@ -40,9 +40,9 @@ def column(item: Any) -> Any:
         raise Foreign(f"{item.name} lies in another file")
     filters = {created.get_filter(number)[0] for number in range(created.get_nfilters())}
     if not filters <= FILTERS:
-        raise Foreign(f"{item.name} takes a filter that traces do not use")
+        raise Foreign(f"{item.name} uses an HDF5 filter that traces never use")
     stored = min(item.id.get_storage_size(), item.file.id.get_filesize())
     chunk = item.chunks[0] * item.dtype.itemsize if item.chunks and item.size else 0
     if max(item.nbytes, chunk) > EXPANSION * stored:
-        raise Foreign(f"{item.name} has {item.size} rows, but next to nothing is stored of them")
+        raise Foreign(f"{item.name} has {item.size} rows but stores almost none of them")
     return item

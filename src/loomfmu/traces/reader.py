@@ -28,12 +28,12 @@ REQUIRED = ("title", "status", "software")  # attributes that every trace has
 class Trace(Signals):
     """A run recorded in a file: `trace["belt.margin"]` is the signal's values, in SI.
 
-    The file is open while it is read, and within a `with` statement: hundreds of traces can be held at once.
-    It stays readable when a run of this process writes another one under its name.
+    Iterate over it for the names of the signals. The file is open only during a read or a `with` statement,
+    so you can keep hundreds of traces. A trace stays readable if this process writes another under its name.
 
-    HDF5 loops for ever over some damage. Where a file may be damaged, first call
-    `loomfmu.traces.damage.check(path)`, as `loomfmu show` does: it reads the file in a process of its own,
-    which takes a third of a second.
+    Some damaged files make HDF5 loop forever. If a file may be damaged, call
+    `loomfmu.traces.damage.check(path)` first, as `loomfmu show` does: it reads the file in a separate
+    process, which takes a third of a second.
     """
 
     def __init__(self, path: str | Path):
@@ -244,7 +244,7 @@ class Trace(Signals):
         with self._opened() as file:
             value = member(file, instance).attrs.get(name) if has(file, instance) else None
         if not isinstance(value, np.number | np.bool_):
-            raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
+            raise LoomfmuError(f"{self.name}: parameter {signal!r} is not recorded")
         return float(value)
 
 

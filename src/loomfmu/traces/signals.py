@@ -68,7 +68,7 @@ class Signals(ABC):
 
     @abstractmethod
     def display(self, signal: str) -> str:
-        """Unit that people read a signal in."""
+        """Display unit of a signal."""
 
     @abstractmethod
     def rate(self, signal: str) -> str | None:
@@ -85,7 +85,7 @@ class Signals(ABC):
 
     def _unknown(self, signal: object) -> LoomfmuError:
         return LoomfmuError(
-            f"{self.name}: no signal {shown(signal)} is recorded{suggestion(str(signal), self)}"
+            f"{self.name}: signal {shown(signal)} is not recorded{suggestion(str(signal), self)}"
         )
 
 
@@ -160,7 +160,7 @@ class Recording(Signals):
         return self._channel(signal).unit
 
     def display(self, signal: str) -> str:
-        """Unit that people read a signal in."""
+        """Display unit of a signal."""
         return self._channel(signal).display
 
     def rate(self, signal: str) -> str | None:
@@ -173,5 +173,5 @@ class Recording(Signals):
         instance, _, name = signal.partition(".")
         value = self._parameter(instance, name)
         if value is None:
-            raise LoomfmuError(f"{self.name}: no parameter {signal!r} is recorded")
+            raise LoomfmuError(f"{self.name}: parameter {signal!r} is not recorded")
         return float(value)

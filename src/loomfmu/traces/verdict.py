@@ -1,4 +1,4 @@
-"""What became of a claim, as people read it and as a trace keeps it."""
+"""The outcome of a claim: as text for people, and as a trace stores it."""
 
 import math
 from dataclasses import MISSING, dataclass, fields
@@ -20,12 +20,13 @@ JSON: dict[Any, tuple[type, ...]] = {
 
 @dataclass(frozen=True, repr=False)
 class Verdict:
-    """What became of a claim; true where it holds.
+    """The outcome of a claim; true if the claim holds.
 
-    `bound` and `worst` are in `unit`, which is SI unless a third-party FMU has a unit of its own.
-    People read them in `display_unit`; "1" means in `unit` itself. `time` is in s, `angle` in rad within the
-    revolution, which is counted from 1; without a shaft they are NaN and None. `sense` is 1 if the worst
-    value is to be at least the bound, -1 if at most, and 0 if a trace does not say.
+    `worst` is the value nearest to the bound or furthest beyond it, at `time` [s] and at the shaft angle
+    `angle` [rad] of the `revolution`, counted from 1; without a shaft these two are NaN and None. `worst`
+    and `bound` are in `unit`, which is SI unless a third-party FMU has its own; texts show them in
+    `display_unit`, where "1" means `unit`. `sense` is 1 if the worst value must be at least the bound,
+    -1 if at most, and 0 if the trace does not say.
     """
 
     claim: str
@@ -62,12 +63,12 @@ class Verdict:
 
     @property
     def word(self) -> str:
-        """How it went, in a word."""
+        """The outcome in one word."""
         return "holds" if self.holds else "FAILS"
 
     @property
     def place(self) -> str:
-        """Where it was, as people read it; nothing if there is no place."""
+        """Time and shaft angle of the worst value as text; empty if there are none."""
         if not math.isfinite(self.time):
             return ""
         if self.revolution is None:
@@ -75,24 +76,24 @@ class Verdict:
         return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
 
     def displayed(self, value: float) -> float:
-        """One of the verdict's values, in the unit that people read it in."""
+        """One of the verdict's values in its display unit."""
         if self.display_unit in ("1", self.unit):
             return value
         return value * units.unit(self.unit).factor / units.unit(self.display_unit).factor
 
     def shown(self, value: float) -> str:
-        """One of the verdict's values as people read it."""
+        """One of the verdict's values as text, with its unit."""
         if not math.isfinite(value):
             return "no value"
         return f"{self.displayed(value):.7g}" + ("" if self.label == "1" else f" {self.label}")
 
     @property
     def label(self) -> str:
-        """The unit that people read beside the values."""
+        """The unit shown beside the values."""
         return self.unit if self.display_unit == "1" else self.display_unit
 
     def as_dict(self) -> dict[str, Any]:
-        """The verdict for JSON, null for what is not finite; `display` has the values that people read."""
+        """The verdict for JSON, null for what is not finite; `display` has the values in the display unit."""
         known = {field.name: getattr(self, field.name) for field in fields(self)}
         del known["display_unit"]
         display = {name: self.displayed(known[name]) for name in ("bound", "worst")}

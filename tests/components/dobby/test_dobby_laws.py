@@ -33,8 +33,8 @@ GEARS = [(-0.27, -0.13, -0.05, -0.025), (0.2, -0.3, 0.1, 0.05), (0.0, 0.0, 0.0, 
 
 def dobby(law, **given):
     """A drive with its law, started."""
-    needed = skewed(36) if law == "table" else {}
-    drive = DobbyDrive(law=NUMBER[law], **(needed | given))
+    needed = {f"table_{k + 1}": rotor_law(4, 2.0 * pi * k / 36, 0.5)[0] for k in range(36)}
+    drive = DobbyDrive(law=NUMBER[law], **((needed if law == "table" else {}) | given))
     assert drive.initialize(0.0) == 0
     return drive
 

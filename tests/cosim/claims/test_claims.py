@@ -728,7 +728,7 @@ at_most = "1 N"
         ),
         (
             {"kind": "dwell", "heald": "heald_9", "at_least": 1},
-            "loom_0.h5: no signal 'heald_9.lift' is recorded; did you mean 'heald_2.lift'?",
+            "loom_0.h5: signal 'heald_9.lift' is not recorded; did you mean 'heald_2.lift'?",
         ),
     ],
 )

@@ -260,7 +260,7 @@ def test_one_that_a_process_can_have_once(tmp_path: Path) -> None:
         assert ran(tmp_path, MOTOR, tmp_path).holds
     two = MOTOR + '[other]\nfmu = "Motor.fmu"\n'
     assert refused(tmp_path, "isolated = false\n" + two) == (
-        f"motor and other: a process can have one instance only of {path}"
+        f"motor and other: a process can hold only one instance of {path}"
         " (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
     )
     assert ran(tmp_path, two, tmp_path).holds  # each in a process of its own

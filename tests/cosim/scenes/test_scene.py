@@ -258,7 +258,7 @@ def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
     of_680 = '[weft]\nmachine = "WL680-3600"\n[belt]\n'  # what the defaults are of
     assert scenes.parse(of_680).notes == ()
     assert scenes.parse(of_680.replace("680", "450")).notes == (
-        MIXED.replace("WL680-3600", "values of its own"),
+        MIXED.replace("WL680-3600", "its own values"),
     )
 
 
@@ -495,7 +495,7 @@ def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> N
 def test_a_mechanism_that_follows_no_shaft_beside_one_is_named() -> None:
     cut = "\n".join(f'"weft.shaft_{name}" = false' for name in ("angle", "velocity", "acceleration"))
     scene = scenes.parse(f'[loom]\nmachine = "WL680-3600"\n[wires]\n{cut}\n')
-    note = "weft turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+    note = "weft runs at its own constant speed: its shaft inputs are not wired to the shaft"
     assert note in scene.notes
     assert scenes.parse('[loom]\nmachine = "WL680-3600"\n').notes == ()
 

@@ -36,7 +36,7 @@ def needed_angle(trace: Signals) -> Motion:
     """The main shaft's angle. Raises LoomfmuError where the run has none."""
     found = angle(trace)
     if found is None:
-        raise LoomfmuError(f"{trace.name}: the claim needs shaft angles, and no shaft.angle is recorded")
+        raise LoomfmuError(f"{trace.name}: the claim needs shaft angles, but shaft.angle is not recorded")
     return found
 
 

@@ -5,11 +5,13 @@ import contextlib
 import ctypes
 import os
 import platform
+import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ...errors import LoomfmuError, signal_name
 

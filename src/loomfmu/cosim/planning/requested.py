@@ -48,7 +48,7 @@ def checked_claims(scene: Scene) -> Scene:
     for table, claim in zip(scene.claims, claims_of(scene), strict=True):
         where = f"claim {table['kind']!r}"
         for angle in angles_in(table) if "shaft" not in scene.instances else ():
-            raise LoomfmuError(f"{where}: {angle} is a shaft angle, and the scene has no shaft")
+            raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in signals_of(scene, claim):
             output_port(scene, signal, where)
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
@@ -79,7 +79,7 @@ def _unrecorded(scene: Scene) -> Iterator[str]:
         fmu = instance.fmu
         if fmu.unsupported and not any(port.causality == "output" for port in fmu.ports.values()):
             listed = ", ".join([*fmu.unsupported[:MOST], *["..."] * (len(fmu.unsupported) > MOST)])
-            yield f"{name}: no output is recorded, none is a scalar number or a Boolean: {listed}"
+            yield f"{name}: nothing recorded; none of its outputs is a scalar number or a Boolean: {listed}"
 
 
 def _check_parameter(scene: Scene, name: str, signal: str) -> None:

@@ -136,8 +136,8 @@ def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
         if component:
             yield component.longest_step(each.effective())
         if component and component.keeps != MOTION:  # of what integrates every step counts anyway
-            said = f"asks for {component.longest_turn * 180.0 / math.pi:.4g} deg at most"
-            why = f"{name} {said if component.longest_turn else 'declares no longest_turn'}"
+            limit = f"allows steps of at most {component.longest_turn * 180.0 / math.pi:.4g} deg"
+            why = f"{name} {limit if component.longest_turn else 'declares no longest_turn'}"
             yield max(component.longest_turn * turn, fine), why
 
 

@@ -98,7 +98,7 @@ class Instance:
             raise LoomfmuError(f"{where} = {shown(given)} is not a name in quotes")
         if self.fmu.name not in machines.TAKERS[kind]:
             takers = " or a ".join(machines.TAKERS[kind])
-            raise LoomfmuError(f"{where}: a {self.fmu.name} has no {kind}, only a {takers} has")
+            raise LoomfmuError(f"{where}: a {self.fmu.name} has no {kind}; only a {takers} has one")
         found = machines.parameters(self.fmu.name, **{kind: given})
         for key in found:
             self.fmu.port(key, self.name)  # an FMU of another version may lack it
@@ -231,7 +231,7 @@ def mixed(instances: dict[str, Instance]) -> list[str]:
         if len(names) > 1 or differing:
             shown = [
                 f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published
-            ] + [f"{each.name} has values of its own" for each in differing]
+            ] + [f"{each.name} has its own values" for each in differing]
             notes.append(f"the loom mixes {kind}s: {', '.join(shown)}; {kind} = NAME sets all of them")
     return notes
 

@@ -72,7 +72,7 @@ def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) 
         takers = machines.TAKERS[key]
         found = [name for name in given if component(name) in takers]
         if not found:
-            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} that would take it")
+            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} to apply it to")
         return [(name, key) for name in found]
     if not dot:
         if key not in (*TIMES, *WHOLE):

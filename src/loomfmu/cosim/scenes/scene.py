@@ -202,15 +202,15 @@ def _notes(
     for drive in drives:
         if drive.periods[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
-            yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds all the time"
+            yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
     yield from mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
         inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
         if inputs and not any((name, variable) in fed for variable in inputs):
-            yield f"{name} turns at a speed of its own: none of its shaft inputs is wired to the shaft"
+            yield f"{name} runs at its own constant speed: its shaft inputs are not wired to the shaft"
         if not inputs and each.fmu.component and standard_loom.turns_alone(each.fmu.component):
-            yield f"{name} turns at a speed of its own: {each.fmu.name} has no terminal SHAFT"
+            yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 
@@ -223,7 +223,7 @@ def _check_single(scene: Scene) -> None:
             continue
         if each.fmu.sha256 in found:
             raise LoomfmuError(
-                f"{found[each.fmu.sha256]} and {name}: a process can have one instance only of"
+                f"{found[each.fmu.sha256]} and {name}: a process can hold only one instance of"
                 f" {each.fmu.path} (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
             )
         found[each.fmu.sha256] = name

@@ -101,7 +101,7 @@ def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:
 def _wanted(table: dict[str, Any], key: str) -> bool:
     wanted = table.get(key, False)
     if not isinstance(wanted, bool):
-        raise LoomfmuError(f"loom.{key} = {shown(wanted)} is neither true nor false")
+        raise LoomfmuError(f"loom.{key} = {shown(wanted)} must be true or false")
     return wanted
 
 

@@ -47,7 +47,7 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
     """A wire whose ends are known, of the right kind and of the same unit."""
     if not isinstance(source, str):
         raise LoomfmuError(
-            f'wires: "{sink}" = {shown(source).lower()} is neither an output nor false, which cuts the wire'
+            f'wires: "{sink}" = {shown(source).lower()} must be an output, or false to cut the wire'
         )
     where = f"wire {source} -> {sink}"
     ends = []
