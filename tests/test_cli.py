@@ -213,7 +213,9 @@ def test_what_is_not_ours_is_replaced_only_when_told_to(capsys: pytest.CaptureFi
         capsys.readouterr()
     Path("scene.h5.partial").write_text("my own notes")
     assert main(["run", path, "--output", "scene.h5"]) == 2
-    assert "scene.h5.partial: exists and is not what an interrupted run" in capsys.readouterr().err
+    assert (
+        "scene.h5.partial: exists and is not a partial trace of an interrupted run" in capsys.readouterr().err
+    )
 
 
 def umask() -> int:

@@ -508,7 +508,7 @@ machine = "WL680-3600"
 [inputs]
 "belt.guide_clearance" = [[{first}, "0.3 mm"], [30, "1 mm"]]
 """
-    said = f"inputs.belt.guide_clearance begins at {first:g}, after the end at 3: its first value holds all"
+    said = f"inputs.belt.guide_clearance begins at {first:g}, after the end at 3: its first value holds"
     assert any(note.startswith(said) for note in scenes.parse(text).notes) == warned
 
 
