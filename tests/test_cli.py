@@ -392,7 +392,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "dampers": (
         HEAD + LOOM + 'dampers = "no"\n',
-        "loom.dampers = 'no' is neither true nor false",
+        "loom.dampers = 'no' must be true or false",
     ),
     "pattern": (
         HEAD + LOOM + '[heald_1]\npattern = "12"\n',
@@ -453,7 +453,7 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "no yes or no": (
         HEAD + LOOM + "[belt]\nprescribe_length_factor = 1\n",
-        "belt.prescribe_length_factor = 1 is neither true nor false",
+        "belt.prescribe_length_factor = 1 must be true or false",
     ),
     "no whole number": (
         HEAD + "[shaft]\nripple_order = 1.5\n",
@@ -613,7 +613,7 @@ def test_a_mistake_in_a_scene_is_told_in_one_line(capsys: pytest.CaptureFixture[
         ("heald.strok=1", "scene.toml: heald_1.strok is unknown; did you mean 'stroke'?"),
         (
             "heald.inputs_at_step_end=maybe",
-            "scene.toml: heald_1.inputs_at_step_end = 'maybe' is neither true nor false",
+            "scene.toml: heald_1.inputs_at_step_end = 'maybe' must be true or false",
         ),
     ],
 )

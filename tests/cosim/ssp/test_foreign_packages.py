@@ -286,7 +286,7 @@ MISTAKES = {
     "there are two elements called 'left head'": {
         "other": '<ssd:Component name="left head" source="resources/Motor.fmu"/>'
     },
-    "drive_motor.verbose = 'yes' is neither true nor false": {
+    "drive_motor.verbose = 'yes' must be true or false": {
         "more": '<ssv:Parameter name="verbose"><ssv:Boolean value="yes"/></ssv:Parameter>'
     },
     "drive_motor.mode = 99999999999999999999 is outside [1, 2]": {
