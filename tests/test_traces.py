@@ -267,7 +267,7 @@ def test_what_is_left_out_had_no_effect(tmp_path: Path, said: str, fmu_cache: No
     one = loomfmu.run(scene, output=tmp_path / "1.h5").trace
     two = loomfmu.run(scene, set=IDLE[said], output=tmp_path / "2.h5").trace
     for name in IDLE[said]:
-        with pytest.raises(LoomfmuError, match="parameter .* is not recorded"):
+        with pytest.raises(LoomfmuError, match=r"parameter .* is not recorded"):
             two.parameter(name)
     for signal_ in one:
         np.testing.assert_array_equal(one[signal_], two[signal_])
