@@ -774,8 +774,8 @@ def test_a_fault_of_our_own_is_told_in_one_line(
     monkeypatch.setattr("loomfmu.catalogue.overview", broken)
     assert main([*before, "list", *after]) == 2  # 1 is the status of a claim that fails
     lines = capsys.readouterr().err.splitlines()
-    said = r"loomfmu: RuntimeError: a\x1b[2J fault (a bug in loomfmu; please report it to its maintainers"
-    assert lines[-1] == f"{said} with what --debug prints)"
+    said = r"loomfmu: RuntimeError: a\x1b[2J fault (a bug in loomfmu; please report it"
+    assert lines[-1] == f"{said} with the output of --debug)"
     assert len(lines) == 1 if not before + after else "Traceback (most recent call last):" in lines
 
 

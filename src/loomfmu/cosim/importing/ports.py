@@ -122,7 +122,7 @@ class Port:
         """
         if self.kind == "Boolean":
             if str(given).lower() not in ("true", "false"):
-                raise LoomfmuError(f"{where} = {given!r} is neither true nor false")
+                raise LoomfmuError(f"{where} = {given!r} must be true or false")
             return str(given).lower() == "true"
         if self.choices and isinstance(given, str) and not given.isdigit():
             return self._choice(given, where)

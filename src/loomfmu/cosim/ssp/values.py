@@ -89,7 +89,7 @@ def _value(port: Port, given: Given, where: str) -> float | bool | str:
     """A value in the unit of its variable."""
     if given.kind == "Boolean":
         if given.text not in ("true", "false", "1", "0"):
-            raise LoomfmuError(f"{where} = {shown(given.text)} is neither true nor false")
+            raise LoomfmuError(f"{where} = {shown(given.text)} must be true or false")
         return given.text in ("true", "1")
     if given.kind in ("Enumeration", "Integer"):
         return given.text
