@@ -155,7 +155,7 @@ def _run_here(options: argparse.Namespace) -> int:
     if options.explain:
         say("skipped:", *(f"  {line}" for line in result.skipped))
     _print_verdicts(result.claims)
-    if scene.description and not overrides:  # it is about the values that the scene has
+    if scene.description and not scene.overrides:  # it is about the values that the scene has
         say(*scene.description.splitlines(), "")
     _print_pace(result)
     command = "loomfmu"
