@@ -57,7 +57,7 @@ def test_a_step_that_does_not_return_ends_the_run(tmp_path: Path) -> None:
     with pytest.raises(
         LoomfmuError, match=r"^waiting at 0.5 s: .* did not return within step_timeout = 0.4 s$"
     ):
-        loomfmu.run(scene, output=tmp_path / "run.h5")
+        loomfmu.run(scene, output=tmp_path / "run.h5", flavour="live")
     (kept,) = tmp_path.glob("run.h5*")
     assert loomfmu.Trace(kept).rows == 51
 
@@ -66,13 +66,13 @@ def test_a_step_that_does_not_return_ends_the_run(tmp_path: Path) -> None:
 def test_loading_does_not_hang(tmp_path: Path, keeps: str) -> None:
     scene = written(tmp_path, timeout=0.4, keeps=keeps, begin=0.1)
     with pytest.raises(LoomfmuError, match="did not return within step_timeout"):
-        loomfmu.evaluate(scene, values=["waiting.value"])
+        loomfmu.evaluate(scene, values=["waiting.value"], flavour="live")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT to send")
 def test_ctrl_c_ends_it(tmp_path: Path) -> None:
     scene = written(tmp_path, timeout=600)
-    command = [sys.executable, "-m", "loomfmu.cli", "run", scene.name, "--output", "run.h5"]
+    command = [sys.executable, "-m", "loomfmu.cli", "run", scene.name, "--output", "run.h5", "--live"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
         end = time.monotonic() + 60.0
         while not (tmp_path / "run.h5.partial").exists() and time.monotonic() < end:

@@ -53,4 +53,4 @@ def test_it_is_rejected(tmp_path: Path, start: str, step: str, text: str) -> Non
     (tmp_path / "odd.py").write_text(ODD.format(start=start, step=step))
     (tmp_path / "odd.toml").write_text(SCENE)
     with pytest.raises(LoomfmuError, match=f"^{text}"):
-        loomfmu.evaluate(tmp_path / "odd.toml", values=["odd.value"])
+        loomfmu.evaluate(tmp_path / "odd.toml", values=["odd.value"], flavour="live")
