@@ -25,20 +25,22 @@ LIVE = "live_slave.py"
 
 
 @contextmanager
-def interruptible(flag: ctypes.c_int32, step_timeout: float) -> Iterator[None]:
-    """Ctrl-C sets a flag, and a call of a live FMU that goes on after it, or for too long, fails."""
+def interruptible(flag: ctypes.c_int32, step_timeout: float, live: bool) -> Iterator[None]:
+    """Ctrl-C sets a flag. If there are live FMUs, a call that goes on after it, or for too long, fails."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     watch = _Watch(flag, step_timeout)
     previous = signal.signal(signal.SIGINT, watch.handle)
-    thread = threading.Thread(target=watch.look, daemon=True)
-    thread.start()
+    threads = [threading.Thread(target=watch.look, daemon=True)] if live else []
+    for thread in threads:
+        thread.start()
     try:
         yield
     finally:
         watch.done.set()
-        thread.join()
+        for thread in threads:
+            thread.join()
         signal.signal(signal.SIGINT, previous)
 
 

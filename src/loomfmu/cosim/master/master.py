@@ -99,9 +99,14 @@ class Master:
     def __enter__(self) -> "Master":
         self._guards = ExitStack()
         self.interrupted.value, self.steps, self.ended = 0, 0, None
-        self._guards.enter_context(interruptible(self.interrupted, self.scene.step_timeout))
+        scene = self.scene
+        # one that is given as a file may be live, too
+        live = any(
+            not scene.isolates(name) and each.fmu.flavour != "native"
+            for name, each in scene.instances.items()
+        )
+        self._guards.enter_context(interruptible(self.interrupted, scene.step_timeout, live))
         try:
-            scene = self.scene
             self._limits = Limits(scene.step_timeout, scene.run_timeout, self.interrupted)
             inside = [name for name in self.order if not scene.isolates(name)]
             self._guards.enter_context(exit_named(inside))
