@@ -12,6 +12,7 @@ from ..files import check_target, starts_with, write_file
 from ..traces import Trace
 from .claims import section as claims
 from .diagram import section as diagram
+from .drawings import section as motion
 from .provenance import section as provenance
 from .section import Section, Subject, embedded
 from .templates import template, text
@@ -20,7 +21,7 @@ MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
 REPORT = starts_with("a report of loomfmu", MARK.encode())
 CURSOR_POINTS = 2000  # between which the cursor's time is interpolated
 
-SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, provenance)
+SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, motion, provenance)
 
 
 def write(

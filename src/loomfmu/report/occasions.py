@@ -72,7 +72,7 @@ class Occasions:
         trace = self.subject.trace
         rows: list[Row] = []
         for fmu, make in MAKERS:
-            for instance in sorted((name for name, its in trace.fmus.items() if its == fmu), key=_in_order):
+            for instance in sorted((name for name, its in trace.fmus.items() if its == fmu), key=in_order):
                 rows += make(trace, instance)
         return rows
 
@@ -112,7 +112,7 @@ class Occasions:
         return (self.revolution(number) for number in self.numbers)
 
 
-def _in_order(name: str) -> tuple[str, int]:
+def in_order(name: str) -> tuple[str, int]:
     """heald_2 comes before heald_10."""
     stem, _, number = name.rpartition("_")
     return (stem, int(number)) if number.isdigit() else (name, 0)

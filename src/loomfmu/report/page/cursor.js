@@ -57,9 +57,13 @@ const loomfmu = (() => {
     if (position >= last) seek(first);
     button.textContent = "Pause";
     button.setAttribute("aria-pressed", "true");
+    const hold = matchMedia("(prefers-reduced-motion: reduce)").matches ? 1000 : 0; // ms between jumps, then
     const frame = now => {
-      if (before !== null) seek(position + rate * (now - before) / 1000);
-      before = now;
+      if (before === null) before = now;
+      if (now - before >= hold) {
+        seek(position + (hold ? 10 * step : rate * (now - before) / 1000));
+        before = now;
+      }
       if (position >= last) pause(); else playing = requestAnimationFrame(frame);
     };
     playing = requestAnimationFrame(frame);

@@ -1,0 +1,5 @@
+"""The mechanisms of the loom as schematic drawings that move with the page's cursor."""
+
+from .section import section
+
+__all__ = ["section"]

@@ -1,0 +1,210 @@
+"""The rapier's belt: across the loom's width, and between its guide and the head, buckled as it is."""
+
+from dataclasses import dataclass
+from math import pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...physics.belt import MOST_BENT, complete_elliptic
+from .recorded import instances, mm
+from .sketch import Figure, Sketch, Value, title
+from .tracks import Tracks
+
+Floats = NDArray[np.float64]
+FINER = 4  # keyframes for each of other drawings: a belt buckles within a degree
+POINTS = 33  # of a buckled belt
+SHAPES = 41  # between a straight belt and the one that is bent most
+HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
+
+# every elastica that there is: half the slope of its ends [rad], its modulus, its quarter period
+HALVES = np.linspace(0.0, 0.5 * pi - 1e-6, 4000)
+MODULI = np.sin(HALVES)
+QUARTERS = np.array([complete_elliptic(float(modulus)) for modulus in MODULI])
+
+
+def elastica(modulus: float) -> tuple[Floats, Floats]:
+    """A pinned column of length 1 that has buckled, from x = 0 along x: x and y of its points.
+
+    With `sin(t / 2) = k sin(p)` for its slope t, p from -pi/2 to pi/2,
+
+        y = k cos(p) / K(k),  dx = (1 - 2 k^2 sin(p)^2) / sqrt(1 - k^2 sin(p)^2) dp / (2 K(k))
+
+    so that its largest deflection is that of `loomfmu.physics.belt.elastica_deflection`.
+    """
+    p = np.linspace(-0.5 * pi, 0.5 * pi, 32 * (POINTS - 1) + 1)
+    square = (modulus * np.sin(p)) ** 2
+    slope = (1.0 - 2.0 * square) / np.sqrt(1.0 - square)
+    quarter = complete_elliptic(modulus)
+    x = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]))]) * (p[1] - p[0]) / (2.0 * quarter)
+    return x[::32], modulus * np.cos(p[::32]) / quarter
+
+
+def half_slopes(deflection: Floats, free_length: Floats, load: Floats | float) -> Floats:
+    """Half the slope of the belt's ends at each sample [rad], from its recorded deflection.
+
+    Beyond 2.2 times its critical load a column is bent back and its deflection falls again: `load` over the
+    critical one, 0 if it is not known, tells which of the two shapes it has.
+    """
+    length = np.maximum(free_length, 1e-9)
+    bent_back = MODULI >= MOST_BENT
+    rising = ~bent_back
+    found = np.interp(deflection / length, (MODULI / QUARTERS)[rising], HALVES[rising])
+    loads = (2.0 / pi * QUARTERS[bent_back]) ** 2
+    found = np.where(load > loads[0], np.interp(load, loads, HALVES[bent_back]), found)
+    return np.where((deflection > 0.0) & (free_length > 0.0), found, 0.0)
+
+
+@dataclass(frozen=True)
+class Belt:
+    """The tracks of a belt: lengths from the end of its guide, inwards [mm]."""
+
+    name: str
+    outside: str
+    inside: str
+    tail: str
+    tip: str
+    slope: str  # half that of its ends [rad]; empty if it never buckles
+    pressed: str  # empty if its compression is not recorded
+    idle: float
+    head: float
+
+
+def tracked(tracks: Tracks, name: str) -> Belt:
+    """The tracks of a belt that records its free length and its deflection."""
+    trace = tracks.subject.trace
+    free, bent = mm(trace, f"{name}.free_length"), mm(trace, f"{name}.deflection")
+    idle, head = (1000.0 * trace.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
+    outside = np.maximum(free, 0.0)
+    slope, tail = "", free
+    if np.any(bent > 0.0):
+        margin = f"{name}.margin"
+        found = half_slopes(bent, free, 1.0 - trace[margin] if margin in trace else 0.0)
+        slope = tracks.add(f"{name}.slope", found, 1e-4, FINER)
+        grid = np.linspace(0.0, float(np.max(found)), 100)
+        chords = np.array([elastica(sin(each))[0][-1] for each in grid])
+        tail = np.where(free > 0.0, free * np.interp(found, grid, chords), free)
+    pressed = ""
+    if f"{name}.axial_force" in trace:
+        force = trace[f"{name}.axial_force"]
+        shares = [each / max(float(np.max(np.abs(each))), 1e-300) for each in (free, force)]
+        pressed = tracks.add(f"{name}.pressed", np.minimum(*shares), 1e-3)
+    tracks.add(f"{name}.deflection", bent, finer=FINER if slope else 1)
+    tracks.add(f"{name}.travel", free + idle + head)
+    return Belt(
+        name,
+        tracks.add(f"{name}.outside", outside),
+        tracks.add(f"{name}.inside", np.minimum(free, 0.0)),
+        tracks.add(f"{name}.tail", tail, finer=FINER if slope else 1),
+        tracks.add(f"{name}.tip", tail + head, finer=FINER if slope else 1),
+        slope, pressed, idle, head,
+    )  # fmt: skip
+
+
+def width(tracks: Tracks, belt: Belt) -> Figure:
+    """The head's way across the loom, with the wheel on which the belt is wound."""
+    trace = tracks.subject.trace
+    reach = float(np.max(mm(trace, f"{belt.name}.free_length"))) + belt.head
+    back = belt.idle + belt.head
+    wheels = [
+        1000.0 * trace.parameter(f"{each}.wheel_diameter")
+        for each in (*instances(trace, "WeftInsertion"), *instances(trace, "BeltWrap"))
+    ]
+    radius = 0.5 * wheels[0] if wheels else 0.0
+    centre = -back - 1.3 * radius
+    sketch = Sketch(tracks, centre - radius - 40.0, -190.0, max(reach, 500.0) + 60.0, 2.0 * radius + 130.0)
+    if radius:
+        sketch.circle((centre, radius), radius, "body")
+        sketch.joint((centre, radius))
+        wound = [(centre - radius * np.sin(a), radius + radius * np.cos(a)) for a in np.linspace(0.0, pi, 25)]
+        sketch.line(*wound, role="link belt")
+    for y in (-28.0, 28.0):
+        sketch.line((centre + 1.1 * radius, y), (0.0, y), role="rail")
+    for x in np.arange(0.0, max(reach, 500.0), 500.0):
+        sketch.line((x, -60.0), (x, -90.0))
+        sketch.label(x, -90.0, f"{x:g}", shift=(0.0, 14.0))
+    sketch.line((0.0, -60.0), (max(reach, 500.0), -60.0))
+    sketch.line((reach, -60.0), (reach, 90.0), role="path")
+    sketch.label(reach, 90.0, "innermost", "end", (0.0, -5.0))
+    sketch.label(-0.5 * back, 28.0, "guide", shift=(0.0, -8.0))
+    _belt(sketch, belt, centre, 32.0)
+    return sketch.figure(
+        f"width-{belt.name}", title("Across the loom", belt.name, "belt"),
+        f"The rapier head on its way from the guide across the loom's width, up to {reach:.0f} mm into the"
+        " shed.",
+        [Value("head into the shed", belt.tip, "mm"), Value("travel", f"{belt.name}.travel", "mm")],
+        "The axis counts mm from the end of the guide. Heights of head and guide are schematic.",
+    )  # fmt: skip
+
+
+def between(tracks: Tracks, belt: Belt) -> Figure:
+    """The free section between guide and head, large enough to see it bend."""
+    trace = tracks.subject.trace
+    free, bent = mm(trace, f"{belt.name}.free_length"), mm(trace, f"{belt.name}.deflection")
+    at_risk = np.asarray(bent > 0.0)
+    if not np.any(at_risk) and f"{belt.name}.axial_force" in trace:
+        at_risk = trace[f"{belt.name}.axial_force"] > 0.0
+    longest = float(np.max(free[at_risk])) if np.any(at_risk) else 200.0
+    right = max(200.0, 1.6 * longest)
+    sketch = Sketch(tracks, -0.2 * right, -30.0, right, max(60.0, 1.15 * float(np.max(bent))))
+    for y in (-9.0, 9.0):
+        sketch.line((sketch.left, y), (0.0, y), role="rail")
+    sketch.line((0.0, 0.0), (right, 0.0), role="path")
+    _belt(sketch, belt, 2.0 * sketch.left, 9.0)
+    sketch.label(0.0, 9.0, "guide", "end", (-4.0, -6.0))
+    shape = (
+        "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn bent"
+        " upwards, and its head stays back by what the bend takes."
+        if belt.slope
+        else "The belt stays straight in this run."
+    )
+    return sketch.figure(
+        f"belt-{belt.name}", title("Belt between guide and head", belt.name, "belt"),
+        "The free section of the belt between its guide and the rapier head"
+        + (", which buckles in this run." if belt.slope else ", which stays straight in this run."),
+        [Value("free length", belt.outside, "mm"), Value("deflection", f"{belt.name}.deflection", "mm")],
+        f"{shape} The deflection is not exaggerated. Red: outside the guide and compressed.",
+    )  # fmt: skip
+
+
+def _belt(sketch: Sketch, belt: Belt, start: float, half: float) -> None:
+    """The belt from its wheel to its head."""
+    sketch.line((start, 0.0), (belt.inside, 0.0), role="link belt")
+    _free(sketch, belt, "link belt")
+    if belt.pressed:
+        with sketch.group(shown=belt.pressed):
+            _free(sketch, belt, "link risk")
+    with sketch.group(shift=(belt.tail, 0.0)):
+        front = max(belt.head - HEAD, 0.0)
+        sketch.line((0.0, 0.0), (front, 0.0), role="link rigid")
+        nose = belt.head - 0.4 * half
+        outline = (front, half), (nose, half), (belt.head, 0.0), (nose, -half), (front, -half)
+        sketch.line(*outline, role="body weft", closed=True)
+        sketch.joint((0.0, 0.0))
+
+
+def _free(sketch: Sketch, belt: Belt, role: str) -> None:
+    if not belt.slope:
+        sketch.line((0.0, 0.0), (belt.outside, 0.0), role=role)
+        return
+    length = sketch.tracks.at(belt.outside)
+    x, y = elastica(sin(sketch.tracks.at(belt.slope)))
+    shape = " ".join(f"{length * a:.3f} {length * b:.3f}" for a, b in zip(x, y, strict=True))
+    sketch.bow(belt.slope, belt.outside, (0.0, 0.0), shape, role)
+
+
+def shapes(tracks: Tracks) -> dict[str, object] | None:
+    """Elasticas up to the largest slope that occurs, for the page; None if no belt buckles."""
+    largest = [
+        track.step * int(np.max(track.frames))
+        for name, track in tracks.made.items()
+        if name.endswith(".slope")
+    ]
+    if not largest:
+        return None
+    rows = [elastica(sin(half)) for half in np.linspace(0.0, max(largest), SHAPES)]
+    return {
+        "largest": max(largest),
+        "x": [np.round(x, 5) for x, _y in rows],
+        "y": [np.round(y, 5) for _x, y in rows],
+    }

@@ -1,0 +1,57 @@
+"""What a trace has of a mechanism: instances by their FMU, and a component with their parameters."""
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LoomfmuError
+from ...traces import Trace
+from ..occasions import in_order
+from ..section import Subject
+
+AGREES = 1e-6  # m by which a recorded signal may differ from the component's
+COMPARED = 50  # samples at which they are compared
+
+
+def instances(trace: Trace, fmu: str, *variables: str) -> list[str]:
+    """Instances of an FMU that record all of some variables, heald_2 before heald_10."""
+    found = (
+        name
+        for name, its in trace.fmus.items()
+        if its == fmu and all(f"{name}.{each}" in trace for each in variables)
+    )
+    return sorted(found, key=in_order)
+
+
+def mm(trace: Trace, signal: str) -> NDArray[np.float64]:
+    """A length in mm."""
+    return 1000.0 * np.asarray(trace[signal], dtype=np.float64)
+
+
+def follows(subject: Subject, instance: str, kind: Callable[[], Any], signal: str) -> Any:
+    """A component with the recorded parameters of an instance, moved by `start_angle`.
+
+    None unless it is the shaft's angle alone that moves it: unless it has the recorded signal there.
+    """
+    component, trace = kind(), subject.trace
+    if not subject.turns:
+        return None
+    for each in fields(component):
+        try:
+            value = trace.parameter(f"{instance}.{each.name}")
+        except LoomfmuError:
+            continue  # an input or an output
+        setattr(component, each.name, type(getattr(component, each.name))(value))
+    component.follow_shaft, component.speed = False, 0.0
+    if component.initialize(0.0) != 0:
+        return None
+    recorded = trace[f"{instance}.{signal}"]
+    for place in np.linspace(0, trace.rows - 1, COMPARED).astype(int):
+        component.start_angle = float(trace.shaft_angle[place])
+        component.step(0.0, 0.0)
+        if not abs(getattr(component, signal) - recorded[place]) < AGREES:
+            return None
+    return component

@@ -1,0 +1,75 @@
+"""The loom in motion: a drawing of each mechanism that the trace records."""
+
+from math import degrees, floor, radians
+
+import numpy as np
+
+from ..section import TURN, Section, Subject
+from ..templates import template
+from .belt import between, shapes, tracked, width
+from .drive import drive
+from .recorded import instances
+from .reed import beat_up
+from .shed import frames, shed
+from .sketch import Figure
+from .tracks import Tracks
+
+COARSEST = radians(10.0)  # between samples, for drawings that move
+DRAWN = {
+    "WeftInsertion": ("travel",),
+    "BeltMonitor": ("free_length", "deflection"),
+    "HealdFrame": ("lift",),
+    "ReedBeatUp": ("position",),
+}
+USUAL = radians(100.0)  # where a belt without guide hooks is pressed most
+
+
+def section(subject: Subject) -> Section | None:
+    """Drawings of the first trace's mechanisms; None if it records none that can be drawn."""
+    if not any(instances(subject.trace, fmu, *signals) for fmu, signals in DRAWN.items()):
+        return None
+    gap = float(np.max(np.diff(subject.positions), initial=0.0))
+    if subject.turns and gap > COARSEST:
+        coarse = f"Not drawn: the samples are up to {degrees(gap):.0f}° apart, too far to show a motion."
+        return Section("motion", "The loom in motion", template("motion.html.j2").render(coarse=coarse))
+    tracks = Tracks(subject, still(subject))
+    figures = _figures(tracks)
+    if not figures:
+        return None
+    place = _place(subject, tracks.still)
+    html = template("motion.html.j2").render(coarse="", place=place, figures=figures)
+    data = tracks.data() | {"still": tracks.still, "bows": shapes(tracks)}
+    return Section("motion", "The loom in motion", html, "motion.js", data)
+
+
+def still(subject: Subject) -> float:
+    """Where the claim is worst: the one that is nearest to its bound, or farthest beyond; else at 100 deg."""
+    first, last = (float(subject.positions[place]) for place in (0, -1))
+    worst = [
+        (verdict.holds, verdict.distance / (abs(verdict.bound) or 1.0), position)
+        for verdict in subject.trace.verdicts
+        if (position := subject.position(verdict)) is not None
+    ]
+    place = min(worst)[2] if worst else first + USUAL if subject.turns else 0.5 * (first + last)
+    return min(max(place, first), last)
+
+
+def _figures(tracks: Tracks) -> list[Figure]:
+    """Drawings in the order of the weft's way, then of the warp's."""
+    weft, belts, reeds = (
+        instances(tracks.subject.trace, fmu, *DRAWN[fmu])
+        for fmu in ("WeftInsertion", "BeltMonitor", "ReedBeatUp")
+    )
+    drives = [drive(tracks, name) for name in weft]
+    found = [tracked(tracks, name) for name in belts]
+    ways = [figure for belt in found for figure in (width(tracks, belt), between(tracks, belt))]
+    warp = [shed(tracks, found[0].tip if found else ""), frames(tracks)]
+    every = [*drives, *ways, *warp, *(beat_up(tracks, name) for name in reeds)]
+    return [figure for figure in every if figure]
+
+
+def _place(subject: Subject, position: float) -> str:
+    if not subject.turns:
+        return f"{position:.6g} s"
+    turn = floor(position / TURN + 1e-12)
+    return f"rev. {turn + 1}, {degrees(position - turn * TURN):.1f}°"

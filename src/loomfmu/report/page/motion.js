@@ -1,0 +1,58 @@
+// Moves the parts of the drawings to where the keyframes have them at the cursor's position.
+(() => {
+  const { first, span, tracks, bows, still } = loomfmu.data("motion");
+  const root = document.getElementById("motion"), missing = document.getElementById("motion-missing");
+  for (const track of Object.values(tracks))
+    track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
+  const windows = Math.max(...Object.values(tracks).map(track => track.shown.length));
+  let window_ = 0, share = 0; // of the window that is past
+
+  const between = (values, place, part) => {
+    const next = values[Math.min(place + 1, values.length - 1)];
+    return values[place] + part * (next - values[place]);
+  };
+  const value = name => {
+    const track = tracks[name], frame = track.frames[track.shown[window_]];
+    const place = share * (frame.length - 1), index = Math.floor(place);
+    return track.step * between(frame, index, place - index);
+  };
+  const follower = word => Number.isNaN(Number(word)) ? () => value(word) : () => Number(word);
+  const followers = (how, move) => [...root.querySelectorAll(`[data-${how}]`)].map(element => {
+    const words = element.getAttribute(`data-${how}`).split(" ").map(follower);
+    return () => move(element, words.map(word => word()));
+  });
+
+  /* Points of an elastica by half the slope of its ends, between the two computed ones that are next to it. */
+  function bow(slope, length, x, y) {
+    const place = Math.min(slope / bows.largest, 1) * (bows.x.length - 1), row = Math.floor(place);
+    const part = place - row, size = Math.max(length, 0);
+    const along = bows.x[0].map((_, point) => [bows.x, bows.y].map(rows => between(rows.map(each => each[point]), row, part)));
+    return along.map(([across, up]) => `${(x + size * across).toFixed(3)} ${(y + size * up).toFixed(3)}`).join(" ");
+  }
+
+  const moves = [
+    ...followers("points", (element, at) => element.setAttribute("points", at.map(each => each.toFixed(3)).join(" "))),
+    ...followers("at", (element, [x, y]) => { element.setAttribute("cx", x); element.setAttribute("cy", y); }),
+    ...followers("shift", (element, [x, y]) => element.setAttribute("transform", `translate(${x} ${y})`)),
+    ...followers("turn", (element, [angle, x, y]) => element.setAttribute("transform", `rotate(${angle} ${x} ${y})`)),
+    ...followers("shown", (element, [amount]) => element.toggleAttribute("hidden", !(amount > 0))),
+    ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
+    ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(Number(element.dataset.digits)); }),
+  ];
+
+  function draw(position) {
+    const turns = (position - first) / span;
+    window_ = Math.min(Math.max(Math.floor(turns + 1e-9), 0), windows - 1);
+    share = Math.min(Math.max(turns - window_, 0), 1);
+    const known = turns < windows + 1e-9 && Object.values(tracks).every(track => track.shown[window_] !== null);
+    missing.hidden = known;
+    root.classList.toggle("stale", !known);
+    if (known) for (const move of moves) move();
+    document.getElementById("motion-place").textContent = loomfmu.label(position);
+  }
+
+  loomfmu.follow(draw);
+  // on paper: where the cursor was moved to, else where the worst claim is
+  matchMedia("print").addEventListener("change", event =>
+    draw(event.matches && loomfmu.position === loomfmu.first ? still : loomfmu.position));
+})();

@@ -1,0 +1,273 @@
+"""The loom in motion: its parts are where the physics has them, at the position of the cursor."""
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import NARROW, until
+
+import loomfmu
+from loomfmu import report
+from loomfmu.components.reed_beat_up import ReedBeatUp
+from loomfmu.components.weft_insertion import WeftInsertion
+from loomfmu.physics.belt import complete_elliptic, elastica_deflection
+from loomfmu.report.drawings import section
+from loomfmu.report.drawings.belt import elastica, half_slopes
+from loomfmu.report.drawings.drive import BALL, planar, spherical
+from loomfmu.report.drawings.reed import joints
+from loomfmu.report.drawings.tracks import BUDGET, Tracks
+from loomfmu.report.section import TURN, Section, Subject
+from loomfmu.traces import Trace
+
+Open = Callable[..., Any]
+SIMS = Path(__file__).parents[2] / "sims"
+ANGLES = (0.0, 37.0, 100.0, 180.0, 271.0, 359.0)  # deg
+STEP = 0.011  # mm: keyframes are rounded to 0.01 mm, points to a thousandth
+
+
+@pytest.fixture(scope="module")
+def buckled(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    output = tmp_path_factory.mktemp("buckled") / "buckled.h5"
+    return loomfmu.run(SIMS / "wl680_3600.toml", set={"shaft.speed": "700rpm"}, output=output).trace
+
+
+@pytest.fixture(scope="module")
+def pages(
+    whole: Trace, buckled: Trace, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Path]]:
+    folder = tmp_path_factory.mktemp("pages")
+    yield {
+        name: report.write([trace], folder / f"{name}.html")
+        for name, trace in (("whole", whole), ("buckled", buckled))
+    }
+
+
+def made(trace: Trace) -> Section:
+    found = section(Subject([trace]))
+    assert found is not None
+    return found
+
+
+def seek(page: Any, degrees: float) -> None:
+    page.evaluate(f"loomfmu.seek({math.radians(degrees)!r})")
+
+
+def points(page: Any, figure: str, role: str, place: int = 0) -> list[tuple[float, float]]:
+    text = page.locator(f"#motion-{figure} .{role}").nth(place).get_attribute("points")
+    numbers = [float(word) for word in text.split()]
+    return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+# ---- against the physics
+
+
+def test_the_drive_is_where_its_equations_have_it(pages: dict[str, Path], opened: Open) -> None:
+    page, weft = opened(pages["whole"]), WeftInsertion()
+    assert weft.initialize(0.0) == 0  # the defaults are those of the scene's machine
+    for degrees in ANGLES:
+        seek(page, 720.0 + degrees)
+        (_c, d, k, g), angle = points(page, "drive-weft", "link.weft", 2), math.radians(degrees)
+        np.testing.assert_allclose([d, k], planar(weft, angle), atol=STEP)
+        assert math.dist(d, k) == pytest.approx(1000.0 * weft.coupler_length, abs=2.0 * STEP)
+        assert math.dist(k, g) == pytest.approx(1000.0 * weft.output_length, abs=2.0 * STEP)
+        np.testing.assert_allclose(
+            points(page, "drive-weft", "link.weft", 0), spherical(weft, angle), atol=STEP
+        )
+
+
+def test_the_links_keep_their_lengths_between_keyframes(pages: dict[str, Path], opened: Open) -> None:
+    page, weft = opened(pages["whole"]), WeftInsertion()
+    for degrees in (10.5, 200.5, 300.5):
+        seek(page, degrees)
+        _c, d, k, _g = points(page, "drive-weft", "link.weft", 2)
+        # a chord of one degree of the shaft is off by at most 150 mm * (1 deg)^2 / 8 = 0.006 mm
+        assert math.dist(d, k) == pytest.approx(1000.0 * weft.coupler_length, abs=2.0 * STEP + 0.012)
+
+
+def test_the_spherical_linkage_satisfies_its_equation() -> None:
+    weft = WeftInsertion()
+    for degrees in ANGLES:
+        a, *_arc, b = (np.array(place) / BALL for place in spherical(weft, math.radians(degrees)))
+        alpha = math.atan2(b[1], b[0])
+        # A and B are on the unit sphere, B in the plane of the drawing: equation (1) is their dot product
+        assert math.hypot(*b) == pytest.approx(1.0)
+        assert a @ b == pytest.approx(math.cos(weft.rocker_angle))
+        turned = -math.sin(weft.crank_cone) * math.cos(math.radians(degrees))
+        assert a[1] == pytest.approx(turned)
+        assert 0.0 < alpha < math.pi
+
+
+def test_the_reed_is_where_the_trace_has_it(whole: Trace, pages: dict[str, Path], opened: Open) -> None:
+    page, reed = opened(pages["whole"]), ReedBeatUp()
+    assert reed.initialize(0.0) == 0
+    for degrees in ANGLES:
+        seek(page, 1080.0 + degrees)
+        _pivot, arm, tip = points(page, "reed-reed", "link.reed", 3)
+        np.testing.assert_allclose([arm, tip], joints(reed, math.radians(degrees))[2:], atol=STEP)
+        position = np.interp(math.radians(1080.0 + degrees), whole.shaft_angle, whole["reed.position"])
+        # the trace is sampled every quarter degree, and between samples interpolated
+        assert tip[0] == pytest.approx(1000.0 * position, abs=2.0 * STEP)
+        assert math.dist(arm, tip) == pytest.approx(1000.0 * reed.rod_length, abs=2.0 * STEP)
+
+
+def test_frames_and_carriers_are_at_their_recorded_places(
+    whole: Trace, pages: dict[str, Path], opened: Open
+) -> None:
+    page = opened(pages["whole"])
+    for degrees in (100.0, 1234.0, 2100.0):
+        seek(page, degrees)
+        shifts = [
+            [float(word) for word in re.findall(r"-?[\d.]+", each.get_attribute("transform"))]
+            for each in page.locator("#motion-frames g[data-shift]").all()
+        ]
+        signals = [f"{kind}_{n}" for n in range(1, 5) for kind in ("heald", "damper")]
+        for name, (_x, y) in zip(signals, shifts, strict=True):
+            signal = f"{name}.lift" if name.startswith("heald") else f"{name}.displacement"
+            there = 1000.0 * np.interp(math.radians(degrees), whole.shaft_angle, whole[signal])
+            # equal frames of two revolutions may be two steps apart and are kept once
+            assert y == pytest.approx(there, abs=0.03)
+
+
+# ---- the buckled belt
+
+
+def test_the_drawn_belt_has_the_recorded_deflection_and_length(
+    buckled: Trace, pages: dict[str, Path], opened: Open
+) -> None:
+    page = opened(pages["buckled"])
+    for degrees in (99.5, 100.0, 101.0):
+        seek(page, degrees)
+        place = math.radians(degrees)
+        bow = np.array(points(page, "belt-belt", "risk"))
+        bent, free = (
+            1000.0 * np.interp(place, buckled.shaft_angle, buckled[f"belt.{name}"])
+            for name in ("deflection", "free_length")
+        )
+        # the slope is rounded to 1e-4 rad, and interpolated between 41 shapes
+        assert np.max(bow[:, 1]) == pytest.approx(bent, abs=0.05)
+        # 32 chords are shorter than their curve by a share of (pi / 32)^2 / 24 at a slope of one
+        assert np.sum(np.hypot(*np.diff(bow, axis=0).T)) == pytest.approx(free, rel=1e-3)
+        head = page.locator("#motion-belt-belt g[data-shift]").last.get_attribute("transform")
+        assert float(re.findall(r"[\d.]+", head)[0]) == pytest.approx(bow[-1, 0], abs=0.1)
+
+
+def test_the_elastica_is_that_of_the_physics() -> None:
+    for load in (1.0029, 1.05, 1.5, 3.0, 10.0):
+        bend = np.array([elastica_deflection(load, 1.0)])
+        (half,) = half_slopes(bend, np.ones(1), load)
+        modulus = math.sin(half)
+        assert (2.0 * complete_elliptic(modulus) / math.pi) ** 2 == pytest.approx(load, rel=1e-4)
+        x, y = elastica(modulus)
+        assert np.max(y) == pytest.approx(bend[0], rel=1e-3)
+        assert x[0] == 0.0 and x[16] == pytest.approx(0.5 * x[-1])  # symmetric about its middle
+
+
+def test_a_straight_belt_has_the_length_one() -> None:
+    x, y = elastica(0.0)
+    assert x[-1] == pytest.approx(1.0) and np.all(y == 0.0)
+
+
+# ---- what is drawn
+
+
+def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path) -> None:
+    assert "reed" not in made(demo).html
+    trace = loomfmu.run(SIMS / "spline_cam.toml", output=tmp_path / "cam.h5").trace
+    figures = re.findall(r'<figure id="motion-([^"]+)"', made(trace).html)
+    assert figures == ["shed", "frames"]
+
+
+def test_a_linkage_that_does_not_give_the_recorded_travel_is_not_drawn(
+    demo: Trace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "motion-drive-weft" in made(demo).html
+    parameter = Trace.parameter
+    monkeypatch.setattr(
+        Trace, "parameter", lambda self, name: parameter(self, name) * (1.01 if "coupler" in name else 1.0)
+    )
+    assert "motion-drive-weft" not in made(demo).html
+
+
+def test_samples_too_far_apart_are_not_joined_to_a_motion(tmp_path: Path) -> None:
+    scene = (SIMS / "wl680_3600.toml").read_text().replace("1440", "30")
+    (tmp_path / "coarse.toml").write_text(scene)
+    trace = loomfmu.run(tmp_path / "coarse.toml", output=tmp_path / "coarse.h5").trace
+    found = made(trace)
+    assert "the samples are up to 12° apart" in found.html and "<svg" not in found.html
+
+
+def test_the_still_is_at_the_worst_claim(demo: Trace, buckled: Trace) -> None:
+    assert math.degrees(made(buckled).data["still"]) == pytest.approx(100.139, abs=1e-3)
+    assert 0.0 <= made(demo).data["still"] <= 3.0 * TURN
+
+
+def test_each_drawing_has_a_sentence(whole: Trace) -> None:
+    html = made(whole).html
+    labels = re.findall(r'<svg [^>]*role="img" aria-label="([^"]+)"', html)
+    assert len(labels) == html.count("<figure ") == 6
+    assert all(label.endswith(".") and len(label) > 40 for label in labels)
+
+
+# ---- size
+
+
+@pytest.mark.parametrize("name", ["demo", "whole", "buckled"])
+def test_the_section_is_small(name: str, request: pytest.FixtureRequest) -> None:
+    found = made(request.getfixturevalue(name))
+    assert len(found.html) + len(found.json) < 300_000
+
+
+def test_equal_revolutions_are_kept_once_and_the_budget_is_kept(demo: Trace) -> None:
+    subject = Subject([demo])
+    tracks = Tracks(subject, 0.0)
+    tracks.add("same", np.sin(subject.positions))
+    noise = np.random.default_rng(1).normal(size=len(subject.positions))
+    for number in range(2 * BUDGET // 361):
+        tracks.add(f"other {number}", noise)
+    data = json.loads(Section("x", "x", "", data=tracks.data()).json)
+    assert data["tracks"]["same"]["shown"] == [0, None, None]
+    assert len(data["tracks"]["same"]["frames"]) == 1
+
+
+# ---- in the page
+
+
+def test_a_revolution_that_is_not_kept_says_so(
+    demo: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("loomfmu.report.drawings.tracks.BUDGET", 1000)
+    page = opened(report.write([demo], tmp_path / "short.html"))
+    kept = int(made(demo).data["still"] / TURN)
+    other = 0 if kept else 1
+    seek(page, 360.0 * kept + 50.0)
+    assert page.locator("#motion-missing").is_hidden()
+    seek(page, 360.0 * other + 50.0)
+    assert page.locator("#motion-missing").is_visible()
+
+
+def test_play_moves_the_head(pages: dict[str, Path], opened: Open) -> None:
+    page = opened(pages["buckled"])
+    value = page.locator('#motion-width-belt output[data-value="belt.travel"]')
+    seek(page, 100.0)
+    assert value.inner_text() == "963.4"
+    page.keyboard.press("ArrowRight")
+    assert float(value.inner_text()) > 970.0
+
+
+def test_nothing_stands_out_on_a_narrow_screen(pages: dict[str, Path], opened: Open) -> None:
+    page = opened(pages["buckled"], NARROW, color_scheme="dark")
+    assert page.evaluate("document.documentElement.scrollWidth") == NARROW[0]
+    for box in (each.bounding_box() for each in page.locator("#motion svg").all()):
+        assert box["x"] >= 0.0 and box["x"] + box["width"] <= NARROW[0]
+
+
+def test_on_paper_it_stands_where_the_worst_claim_is(pages: dict[str, Path], opened: Open) -> None:
+    page = opened(pages["buckled"])
+    for media, place in (("print", "rev. 1, 100.1°"), ("screen", "rev. 1, 0.0°")):
+        page.emulate_media(media=media)
+        until(page, lambda place=place: page.locator("#motion-place").inner_text().startswith(place))
