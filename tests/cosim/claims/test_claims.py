@@ -645,7 +645,7 @@ def test_a_run_without_a_shaft_tells_the_time_alone(tmp_path: Path) -> None:
     assert str(found.claims[0]) == "FAILS: stays below: shaft_2.angle, 360 deg at 1 s, bound 90 deg"
     stored = found.claims[0].as_dict()
     assert stored["angle"] is stored["revolution"] is None
-    with pytest.raises(LoomfmuError, match=r"the claim needs shaft angles, and no shaft\.angle is recorded"):
+    with pytest.raises(LoomfmuError, match=r"the claim needs shaft angles, but shaft\.angle is not recorded"):
         judge(found.trace, kind="below", signal="shaft_2.angle", bound=1.0, window=[0.0, 1.0])
 
 
