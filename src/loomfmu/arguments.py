@@ -46,6 +46,7 @@ def parser() -> argparse.ArgumentParser:
         _show,
         _report,
         _diagram,
+        _plot,
         _sweep,
         _list,
         _init,
@@ -97,6 +98,23 @@ def _diagram(commands: Any) -> None:
         "--output", metavar="FILE.svg|png|pdf", help="FILE_diagram.svg beside the trace by default"
     )
     _add_force(diagram, "the picture even if it is not one")
+
+
+def _plot(commands: Any) -> None:
+    plot = commands.add_parser("plot", help="plot signals of a trace (PNG, SVG or PDF)")
+    plot.add_argument("trace", metavar="FILE.h5")
+    plot.add_argument(
+        "names", nargs="+", metavar="SIGNAL",
+        help="signals such as belt.margin; other traces (MORE.h5) before them are laid over the first",
+    )  # fmt: skip
+    plot.add_argument(
+        "--over", choices=("angle", "time"), help="the shaft's angle if a shaft turns, by default"
+    )
+    plot.add_argument("--fold", action="store_true", help="lay the revolutions over one another")
+    plot.add_argument(
+        "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
+    )
+    _add_force(plot, "the picture even if it is not one")
 
 
 def _sweep(commands: Any) -> None:

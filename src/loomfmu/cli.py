@@ -320,6 +320,22 @@ def _diagram(options: argparse.Namespace) -> int:
     return 0
 
 
+def _plot(options: argparse.Namespace) -> int:
+    from .report import pictures
+    from .traces import Trace
+    from .traces.damage import check
+
+    more = [name for name in options.names if name.endswith(".h5") or Path(name).is_file()]
+    paths = [Path(name) for name in (options.trace, *more)]
+    for path in paths:
+        check(path)
+    signals = [name for name in options.names if name not in more]
+    output = Path(options.output) if options.output else None
+    traces = [Trace(path) for path in paths]
+    say(pictures.plot(traces, signals, output, options.over, options.fold, options.force))
+    return 0
+
+
 def _summarise(trace: "Trace") -> None:
     """Print what a trace says of the run, its signals, and the verdicts."""
     attributes = trace.attributes
@@ -337,10 +353,10 @@ def _summarise(trace: "Trace") -> None:
     for name in trace:
         values = trace[name]
         if len(values):
-            display = trace.display(name)
-            values = values / units.unit(display).factor
+            factor, unit = trace.displayed(name)
+            values = values / factor
             shown = (f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
-            rows.append((printed.safe(name), *shown, trace.unit(name) if display == "1" else display))
+            rows.append((printed.safe(name), *shown, unit))
     say(*printed.in_columns(rows), "")
     if trace.judged:
         _print_verdicts(trace.verdicts)
@@ -381,6 +397,7 @@ COMMANDS = {
     "show": _show,
     "report": _report,
     "diagram": _diagram,
+    "plot": _plot,
     "cache": _cache,
     "validate": _validate,
 }

@@ -31,12 +31,12 @@ class Kind:
     ours: Callable[[Path], bool]
 
 
-def starts_with(name: str, start: bytes) -> Kind:
-    """The kind of files that begin so."""
+def starts_with(name: str, *starts: bytes) -> Kind:
+    """The kind of files that begin in one of these ways."""
 
     def ours(path: Path) -> bool:
         with path.open("rb") as file:
-            return file.read(len(start)) == start
+            return file.read(max(map(len, starts))).startswith(starts)
 
     return Kind(name, ours)
 

@@ -60,7 +60,7 @@ def test_it_is_written_as_a_picture(copied: Path, suffix: str, shape: list[str])
     ("arguments", "reason"),
     [
         (["--revolution", "9"], "revolution = 9 is outside [1, 3]"),
-        (["--output", "picture.gif"], "'.gif' is not a suffix of a picture: use .svg, .png or .pdf"),
+        (["--output", "picture.gif"], "'.gif' is not a suffix of a picture; use .svg, .png or .pdf"),
         (["--output", "picture"], "the file has no suffix"),
     ],
 )

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import LoomfmuError
-from ..files import ANY, Kind, starts_with, write_file
+from ..files import write_file
 from ..traces import Trace, Verdict
+from . import pictures
 from .occasions import Bar, Occasions, Revolution, Row
 from .section import TURN, Section, Subject
 from .shapes import Drawing, Point, Shape, Text, file, on_circle, ring, svg
@@ -16,11 +17,6 @@ from .templates import template
 LEFT, RIGHT, TOP, ROW, WIDTH = 110.0, 20.0, 34.0, 30.0, 900.0
 CENTRE, OUTER, INNER, SQUARE = (345.0, 345.0), 290.0, 90.0, 690.0
 MOST_DRAWN = 24  # revolutions that differ, in one report
-PICTURES = {
-    ".svg": starts_with("an SVG picture", b"<svg"),
-    ".png": starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n"),
-    ".pdf": starts_with("a PDF", b"%PDF"),
-}
 
 
 @dataclass(frozen=True)
@@ -86,9 +82,8 @@ def write(
     drawing = (round_ if circular else straight)(occasions.rows, *its)
     size = (SQUARE, SQUARE) if circular else straight_size(occasions.rows)
     title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
-    kind: Kind = PICTURES.get(output.suffix, ANY)
-    content = file(drawing, size, output.suffix, title)
-    return write_file(output, content, kind, [trace.path], overwrite)
+    kind = pictures.kind(output)
+    return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
 
 
 def marks_in(verdicts: Sequence[Verdict], number: int) -> list[Mark]:

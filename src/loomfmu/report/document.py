@@ -13,6 +13,7 @@ from ..traces import Trace
 from .claims import section as claims
 from .diagram import section as diagram
 from .drawings import section as motion
+from .plots import section as plots
 from .provenance import section as provenance
 from .section import Section, Subject, embedded
 from .templates import template, text
@@ -21,7 +22,7 @@ MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
 REPORT = starts_with("a report of loomfmu", MARK.encode())
 CURSOR_POINTS = 2000  # between which the cursor's time is interpolated
 
-SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, motion, provenance)
+SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, motion, plots, provenance)
 
 
 def write(
@@ -58,7 +59,7 @@ def page(subject: Subject) -> str:
         title=str(trace.attributes["title"]),
         software=str(trace.attributes["software"]),
         sections=made,
-        style=text("style.css"),
+        style="\n".join([text("style.css"), *(section.style for section in made)]),
         cursor=text("cursor.js"),
         axis=embedded(_axis(subject)),
     )

@@ -20,7 +20,8 @@ TURN = 2.0 * math.pi
 class Section:
     """A part of the page: `html` below the heading `title`, and what makes it follow the cursor.
 
-    `data` is what `script`, a file of the folder `page`, finds by `loomfmu.data(name)`.
+    `data` is what `script`, a file of the folder `page`, finds by `loomfmu.data(name)`. `library` names the
+    script and the style sheet of others that it needs, without suffix.
     """
 
     name: str
@@ -28,11 +29,18 @@ class Section:
     html: str
     script: str = ""
     data: Any = None
+    library: str = ""
 
     @property
     def code(self) -> str:
         """The text of the script."""
-        return text(self.script) if self.script else ""
+        library = text(f"{self.library}.js") if self.library else ""
+        return library + text(self.script) if self.script else ""
+
+    @property
+    def style(self) -> str:
+        """The style sheet of the library."""
+        return text(f"{self.library}.css") if self.library else ""
 
     @property
     def json(self) -> str:
@@ -80,8 +88,7 @@ class Subject:
     @cached_property
     def turns(self) -> bool:
         """Whether a shaft turns: then positions are its angles."""
-        angle = self.trace.shaft_angle
-        return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and angle[-1] > angle[0]
+        return self.trace.turns
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:
@@ -101,3 +108,12 @@ class Subject:
         if verdict.revolution is None:
             return None
         return (verdict.revolution - 1) * TURN + verdict.angle
+
+
+def labels(traces: Sequence[Trace]) -> list[str]:
+    """What a legend calls traces: their files, with folders if two have the same name."""
+    names = [trace.path.name for trace in traces]
+    return [
+        name if names.count(name) == 1 else str(trace.given)
+        for trace, name in zip(traces, names, strict=True)
+    ]

@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from io import BytesIO
 from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import LoomfmuError
+from ..traces import plotting
+from .pictures import content
 
 Point = tuple[float, float]
 Anchor = Literal["start", "middle", "end"]
@@ -67,28 +67,17 @@ def _short(value: float) -> str:
 def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -> bytes:
     """A drawing as the content of a file of its own: `.svg`, `.png` or `.pdf`.
 
-    Raises LoomfmuError for another suffix, and where matplotlib is needed and not installed.
+    Raises LoomfmuError where matplotlib is needed and not installed.
     """
     if suffix == ".svg":
         return _svg_file(drawing, size, title).encode()
-    if suffix not in (".png", ".pdf"):
-        found = f"{suffix!r} is not a suffix" if suffix else "the file has no suffix"
-        raise LoomfmuError(f"{found} of a picture: use .svg, .png or .pdf")
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise LoomfmuError(
-            f'{suffix} needs the extra "plot": pip install "loomfmu[plot]", or use .svg'
-        ) from None
-    figure = Figure(figsize=(size[0] / 100.0, size[1] / 100.0), dpi=100)
+    figure = plotting.figure((size[0] / 100.0, size[1] / 100.0), layout=None)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0.0, size[0]), ylim=(size[1], 0.0))
     axes.axis("off")
     for order, each in enumerate(drawing):
         _plot(axes, each, order)
-    content = BytesIO()
-    figure.savefig(content, format=suffix[1:], dpi=200, metadata={"Title": title})
-    return content.getvalue()
+    return content(figure, suffix, title)
 
 
 def _plot(axes: Any, each: Shape | Text, order: int) -> None:

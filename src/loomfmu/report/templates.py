@@ -27,7 +27,6 @@ def check() -> None:
 @cache
 def _environment() -> Any:
     try:
-        import bokeh  # noqa: F401
         from jinja2 import Environment, StrictUndefined
     except ImportError:
         raise LoomfmuError('a report needs the extra "report": pip install "loomfmu[report]"') from None

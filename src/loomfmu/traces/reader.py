@@ -112,11 +112,20 @@ class Trace(Signals):
 
     def _read(self, signal: str) -> NDArray[Any]:
         with self._dataset(signal) as dataset:
-            try:
-                values = np.asarray(dataset[: self.rows])
-            except (OSError, RuntimeError) as error:
-                raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
-            return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
+            return self._values(dataset, slice(self.rows))
+
+    def blocks(self, signal: str, rows: int) -> Iterator[NDArray[Any]]:
+        """The values of a signal, so many rows at a time: none are kept, however long the run was."""
+        with self._dataset(signal) as dataset:
+            for start in range(0, self.rows, rows):
+                yield self._values(dataset, slice(start, min(start + rows, self.rows)))
+
+    def _values(self, dataset: Any, rows: slice) -> NDArray[Any]:
+        try:
+            values = np.asarray(dataset[rows])
+        except (OSError, RuntimeError) as error:
+            raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
+        return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
@@ -231,6 +240,22 @@ class Trace(Signals):
     def description(self, signal: str) -> str:
         """What a signal is."""
         return str(self._text(signal, "COMMENT"))
+
+    def plot(self, *signals: str, over: str | None = None, fold: bool = False, axes: Any = None) -> Any:
+        """Plot signals of one unit by matplotlib and return the axes.
+
+        Args:
+            signals: their names, such as `belt.margin`
+            over: `"angle"` or `"time"`; the shaft's angle if a shaft turns, by default
+            fold: lay the revolutions over one another, at 0 to 360 deg
+            axes: where to draw; axes of a new figure by default
+
+        Raises:
+            LoomfmuError: a signal is not recorded, units differ, no shaft turns, or matplotlib is missing
+        """
+        from .plotting import plot
+
+        return plot(self, signals, over, fold, axes)
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError, shown, suggestion
+from ..units import unit
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -69,6 +70,17 @@ class Signals(ABC):
     @abstractmethod
     def display(self, signal: str) -> str:
         """Display unit of a signal."""
+
+    def displayed(self, signal: str) -> tuple[float, str]:
+        """What the values that people read are multiplied by to give the recorded ones, and their unit."""
+        display = self.display(signal)
+        return unit(display).factor, self.unit(signal) if display == "1" else display
+
+    @property
+    def turns(self) -> bool:
+        """Whether a shaft turns."""
+        angle = self.shaft_angle
+        return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and bool(angle[-1] > angle[0])
 
     @abstractmethod
     def rate(self, signal: str) -> str | None:

@@ -1,0 +1,233 @@
+// A plot for each chosen signal, all over one range; a line shows the page's cursor, a click moves it there.
+(() => {
+  const { traces, labels, signals, first } = loomfmu.data("plots"), DEGREE = Math.PI / 180, TURN = 2 * Math.PI;
+  const ROLES = ["--blue", "--red", "--green", "--purple", "--orange", "--ink"];
+  const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [14, 5], [5, 2, 1, 2, 1, 2]], HEIGHT = 190, PAPER = 680;
+  const home = document.getElementById("plots-drawn"), choice = document.getElementById("plots-choice");
+  const boxes = [...choice.querySelectorAll("input[type=checkbox]")], plots = new Map();
+  const unpack = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
+  let over = loomfmu.turns ? "angle" : "time", range = null, setting = 0, printing = false;
+
+  for (const trace of traces) for (const key of ["positions", "times"]) trace[key] = unpack(trace[key]);
+
+  // ---- from positions, angles [rad] or times [s], to what the axis shows: degrees or seconds; and back
+
+  const shown = (trace, position) => over === "angle" ? position / DEGREE
+    : trace.turns ? loomfmu.interpolate(trace.positions, trace.times, position) : position;
+  const placed = x => over === "angle" ? x * DEGREE
+    : traces[0].turns ? loomfmu.interpolate(traces[0].times, traces[0].positions, x) : x;
+  const whole = () => [shown(traces[0], loomfmu.first), shown(traces[0], loomfmu.last)];
+
+  function tables(signal) {
+    return signal.curves.map((curve, number) => {
+      const trace = traces[number];
+      if (!curve || (over === "angle" && !trace.turns)) return [[], []];
+      const along = Array.from(unpack(curve[0]), position => shown(trace, position));
+      return [along, Array.from(unpack(curve[1]), value => Number.isNaN(value) ? null : value)];
+    });
+  }
+
+  // ---- one plot
+
+  const root = document.documentElement;
+  const colour = role => getComputedStyle(root).getPropertyValue(role).trim();
+
+  function axis(label, more) {
+    const grid = { stroke: () => colour("--line"), width: 1 };
+    return { label, labelSize: 20, labelFont: "12px system-ui, sans-serif", font: "12px system-ui, sans-serif",
+             stroke: () => colour("--ink"), grid, ticks: { ...grid, size: 5 }, ...more };
+  }
+
+  /* Whether values lie so far apart, all above zero, that only a logarithmic axis shows them. */
+  function wide(data) {
+    const values = data.slice(1).flatMap(each => each.filter(value => value !== null && value !== undefined));
+    const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), 0);
+    return low > 0 && high > 100 * low;
+  }
+
+  function options(signal, width, logarithmic) {
+    const stepped = uPlot.paths.stepped({ align: 1 }), path = signal.step ? { paths: stepped } : {};
+    const line = { width: 1.5, points: { show: false }, pxAlign: 0 };
+    const series = signal.curves.map((_, number) => ({
+      label: labels[number], stroke: () => colour(ROLES[number % ROLES.length]), dash: DASHES[number % DASHES.length],
+      ...line, ...path }));
+    const bounds = signal.bounds.map(bound => ({
+      label: bound.text, stroke: () => colour(bound.holds ? "--holds" : "--fails"), dash: [3, 3], ...line }));
+    const angles = over === "angle" ? { incrs: [1, 2, 5, 10, 15, 30, 60, 90, 180, 360, 720, 1800, 3600, 7200, 36000] } : {};
+    return {
+      width, height: HEIGHT, legend: { show: false }, series: [{}, ...series, ...bounds],
+      scales: { x: { time: false }, y: { distr: logarithmic ? 3 : 1 } },
+      axes: [axis(over === "angle" ? "Shaft angle [deg]" : "Time [s]", { size: 34, ...angles }),
+             axis((signal.unit && `[${signal.unit}]`) + (logarithmic ? " log." : ""), { size: 58, labelSize: 18 })],
+      cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false } },
+      hooks: { setScale: [(plot, key) => { if (key === "x" && !setting) show([plot.scales.x.min, plot.scales.x.max]); }] },
+    };
+  }
+
+  function contents(signal) {
+    const found = tables(signal), ends = whole();
+    const lines = signal.bounds.map(bound => [ends, [bound.value, bound.value]]);
+    const all = [...found, ...lines];
+    return { found, data: all.length === 1 ? found[0] : uPlot.join(all) };
+  }
+
+  function draw(name) {
+    const signal = signals[name], figure = document.createElement("figure"), caption = document.createElement("figcaption");
+    const title = document.createElement("code"), value = document.createElement("output"), about = document.createElement("span");
+    const inside = document.createElement("div"), line = document.createElement("div");
+    title.textContent = name;
+    about.className = "about";
+    about.textContent = [signal.about, ...signal.bounds.map(bound => bound.text)].filter(Boolean).join("; ");
+    value.setAttribute("aria-live", "off");
+    caption.append(title, " ", value, " ", about);
+    inside.className = "plot";
+    inside.setAttribute("role", "img");
+    inside.setAttribute("aria-label", `Plot of ${name}; the table of signals has its lowest, highest and last value`);
+    line.className = "cursor-line";
+    figure.dataset.name = name;
+    figure.append(caption, inside);
+    home.append(figure);
+    const made = { figure, value, line, signal, inside };
+    plots.set(name, made);
+    render(made);
+  }
+
+  function render(made) {
+    if (made.plot) made.plot.destroy();
+    const { found, data } = contents(made.signal);
+    made.found = found;
+    setting += 1;
+    made.plot = new uPlot(options(made.signal, made.inside.clientWidth || 600, wide(data)), data, made.inside);
+    made.plot.setScale("x", bounded(range));
+    made.plot.over.append(made.line);
+    made.plot.over.addEventListener("click", event => {
+      if (made.plot.select.width > 2) return;
+      const box = made.plot.over.getBoundingClientRect();
+      loomfmu.seek(placed(made.plot.posToVal(event.clientX - box.left, "x")));
+    });
+    queueMicrotask(() => { setting -= 1; point(made, loomfmu.position); });
+  }
+
+  // ---- the range of all plots
+
+  function bounded(wanted) {
+    const [low, high] = whole();
+    if (!wanted) return { min: low, max: high };
+    const width = Math.min(Math.max(wanted[1] - wanted[0], (high - low) * 1e-4), high - low);
+    const min = Math.min(Math.max(wanted[0], low), high - width);
+    return { min, max: min + width };
+  }
+
+  function show(wanted) {
+    const limits = bounded(wanted);
+    range = wanted && [limits.min, limits.max];
+    setting += 1;
+    for (const { plot } of plots.values()) plot.setScale("x", limits);
+    queueMicrotask(() => { setting -= 1; follow(loomfmu.position); });
+  }
+
+  const zooms = {
+    in: (low, high, at) => [at - (high - low) / 4, at + (high - low) / 4],
+    out: (low, high, at) => [at - (high - low), at + (high - low)],
+    turn: () => {
+      const start = Math.floor(loomfmu.position / TURN + 1e-9) * TURN;
+      return [start, start + TURN].map(position => shown(traces[0], position));
+    },
+    all: () => null,
+  };
+  for (const button of document.querySelectorAll("#plots [data-zoom]"))
+    button.addEventListener("click", () => {
+      const { min, max } = bounded(range);
+      show(zooms[button.dataset.zoom](min, max, shown(traces[0], loomfmu.position)));
+    });
+
+  // ---- the cursor
+
+  function valueAt({ found, signal }, x) {
+    return found.map(([along, values]) => {
+      if (!along.length || x < along[0] - 1e-6 || x > along[along.length - 1] + 1e-6) return "–";
+      const [index, share] = loomfmu.locate(along, x), next = Math.min(index + 1, values.length - 1);
+      const [before, after] = [values[index], values[next]];
+      if (before === null || after === null) return "–";
+      const value = signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
+      return `${Number(value.toPrecision(5))}${signal.unit ? ` ${signal.unit}` : ""}`;
+    }).join(" | ");
+  }
+
+  function point(made, position) {
+    const x = shown(traces[0], position), at = made.plot.valToPos(x, "x");
+    made.line.style.transform = `translateX(${at}px)`;
+    made.line.hidden = at < 0 || at > made.plot.over.clientWidth + 1;
+    made.value.textContent = valueAt(made, x);
+  }
+
+  function follow(position) {
+    for (const made of plots.values()) point(made, position);
+  }
+
+  loomfmu.follow(position => {
+    const x = shown(traces[0], position);
+    if (range && (x < range[0] || x > range[1])) {
+      const width = range[1] - range[0], start = x > range[1] && x < range[1] + width ? x : x - width / 2;
+      show([start, start + width]);
+    } else follow(position);
+  });
+
+  // ---- what is chosen
+
+  function choose(name, wanted) {
+    if (wanted && !plots.has(name)) draw(name);
+    if (!wanted && plots.has(name)) {
+      plots.get(name).plot.destroy();
+      plots.get(name).figure.remove();
+      plots.delete(name);
+    }
+    document.getElementById("plots-count").textContent = plots.size;
+  }
+  choice.addEventListener("change", event => {
+    if (event.target.type === "checkbox") choose(event.target.value, event.target.checked);
+  });
+  document.getElementById("plots-clear").addEventListener("click", () => {
+    for (const box of boxes) { box.checked = false; choose(box.value, false); }
+  });
+  document.getElementById("plots-search").addEventListener("input", event => {
+    const words = event.target.value.toLowerCase().split(/\s+/);
+    for (const row of choice.querySelectorAll("tr[data-name]")) {
+      const text = `${row.dataset.name} ${signals[row.dataset.name].about}`.toLowerCase();
+      row.hidden = !words.every(word => text.includes(word));
+    }
+    for (const group of choice.querySelectorAll("tbody"))
+      group.querySelector(".group").hidden = !group.querySelector("tr[data-name]:not([hidden])");
+  });
+  for (const radio of document.querySelectorAll("#plots input[name=plots-over]"))
+    radio.addEventListener("change", () => {
+      const kept = range && range.map(placed);
+      over = radio.value;
+      range = kept && kept.map(position => shown(traces[0], position));
+      for (const made of plots.values()) render(made);
+    });
+
+  // ---- width, colours and paper
+
+  const fit = width => {
+    for (const { plot, inside } of plots.values()) plot.setSize({ width: width || inside.clientWidth, height: HEIGHT });
+    queueMicrotask(() => follow(loomfmu.position));
+  };
+  const repaint = () => { for (const { plot } of plots.values()) plot.redraw(false, true); };
+  let width = 0;
+  new ResizeObserver(() => {
+    if (home.clientWidth !== width && !printing) { width = home.clientWidth; fit(); }
+  }).observe(home);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+  function print(now) {
+    printing = now;
+    root.classList.toggle("paper", now); // light colours, also in the dark
+    fit(now ? PAPER : 0);
+    repaint();
+  }
+  addEventListener("beforeprint", () => print(true));
+  addEventListener("afterprint", () => print(false));
+
+  for (const box of boxes) box.checked = first.includes(box.value);
+  for (const name of first) choose(name, true);
+})();

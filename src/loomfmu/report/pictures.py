@@ -1,0 +1,89 @@
+"""Single pictures: what files they may be, and plots of signals as such files."""
+
+from collections.abc import Sequence
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from ..errors import LoomfmuError
+from ..files import Kind, check_target, starts_with, write_file
+from ..traces import Trace, plotting
+from .section import labels
+
+PICTURES = {
+    ".svg": starts_with("an SVG picture", b"<svg", b"<?xml"),
+    ".png": starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n"),
+    ".pdf": starts_with("a PDF", b"%PDF"),
+}
+WIDTH, PANEL, REST = 8.0, 2.6, 0.6  # of a picture of one panel or more [in]
+
+
+def kind(path: Path) -> Kind:
+    """The kind of picture that a file is to be. Raises LoomfmuError for another suffix."""
+    if path.suffix not in PICTURES:
+        found = f"{path.suffix!r} is not a suffix of a picture" if path.suffix else "the file has no suffix"
+        raise LoomfmuError(f"{path}: {found}; use .svg, .png or .pdf")
+    return PICTURES[path.suffix]
+
+
+def content(figure: Any, suffix: str, title: str) -> bytes:
+    """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
+    drawn = BytesIO()
+    dateless = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}[suffix]
+    figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **dateless})
+    return drawn.getvalue()
+
+
+def plot(
+    traces: Sequence[Trace],
+    signals: Sequence[str],
+    output: Path | None = None,
+    over: str | None = None,
+    fold: bool = False,
+    overwrite: bool = False,
+) -> Path:
+    """Write a picture of signals, a panel for each unit, and return its path.
+
+    Args:
+        traces: the traces, laid over one another
+        signals: such as `belt.margin`
+        output: `.png`, `.svg` or `.pdf`; `TRACE_plot.png` beside the first trace by default
+        over: `"angle"` or `"time"`; the shaft's angle if a shaft turns, by default
+        fold: lay the revolutions over one another, at 0 to 360 deg
+        overwrite: also replace a file that is not such a picture
+
+    Raises:
+        LoomfmuError: a signal is not recorded, no shaft turns, the file cannot be written, or matplotlib is
+            not installed
+    """
+    if not signals:
+        raise LoomfmuError("name at least one signal to plot, such as belt.margin")
+    first = traces[0].path
+    path = output or first.with_name(f"{first.stem}_plot.png")
+    inputs = [trace.path for trace in traces]
+    check_target(path, kind(path), inputs, overwrite)
+    over = plotting.checked(traces[0], over, fold)
+    for trace in traces[1:]:
+        plotting.checked(trace, over, fold)
+    title = str(traces[0].attributes["title"])
+    drawn = content(_figure(traces, signals, over, fold, title), path.suffix, title)
+    return write_file(path, drawn, kind(path), inputs, overwrite)
+
+
+def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bool, title: str) -> Any:
+    panels: dict[str, list[str]] = {}
+    for name in signals:
+        unit = traces[0].displayed(name)[1]
+        panels.setdefault(name if unit == "1" else unit, []).append(name)  # pure numbers have nothing in common
+    figure = plotting.figure((WIDTH, PANEL * len(panels) + REST))
+    all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+    for axes, names in zip(all_axes, panels.values(), strict=True):
+        curves = [
+            (trace, name, " ".join(([name] if len(names) > 1 else []) + ([label] if len(traces) > 1 else [])))
+            for name in names
+            for trace, label in zip(traces, labels(traces), strict=True)
+        ]
+        plotting.draw(axes, curves, over, fold)
+        axes.label_outer()
+    figure.suptitle(title, fontsize=11)
+    return figure

@@ -1,0 +1,159 @@
+"""Plots of the recorded signals: thinned so that no extreme is lost, in the units that people read.
+
+A signal is read block by block and not kept: of a long run, only time and shaft angle are in memory. What the
+page draws has 24 bits, an error of 6e-8 of a value; a screen shows 1e-3.
+"""
+
+import math
+from base64 import b64encode
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..traces import Trace
+from .section import Section, Subject, labels
+from .templates import template
+
+Floats = NDArray[np.float64]
+MOST_POINTS = 2000  # of a curve
+ALL_POINTS = 250_000  # of all curves of a report, about 2.7 MB
+FEWEST_POINTS = 200
+READ = 65_536  # samples that are read at a time
+ALONG = 2000  # points between which the page interpolates time over shaft angle
+
+
+@dataclass(frozen=True)
+class Outline:
+    """What a plot needs of a signal: a few of its samples, extremes among them, values in the file's unit."""
+
+    places: NDArray[np.int64]
+    values: Floats
+    lowest: float
+    highest: float
+    last: float
+    continuous: bool
+
+
+def outline(trace: Trace, signal: str, points: int) -> Outline:
+    """The lowest and the highest sample of each of so many buckets, and the first and last of all."""
+    size = max(1, math.ceil(trace.rows / max(1, points // 2 - 1)))
+    parts, start, last, kind = [], 0, math.nan, "f"
+    for block in trace.blocks(signal, size * max(1, READ // size)):
+        kind = block.dtype.kind
+        values = block.astype(np.float64)
+        picked = extremes(values, size)
+        parts.append((picked + start, values[picked]))
+        start, last = start + len(values), float(values[-1])
+    places, values = (np.concatenate(column) for column in zip(*parts, strict=True))
+    known = values[~np.isnan(values)]
+    low, high = (float(known.min()), float(known.max())) if len(known) else (math.nan, math.nan)
+    kept = bends(values)
+    return Outline(places[kept], values[kept], low, high, last, kind == "f")
+
+
+def extremes(values: Floats, size: int) -> NDArray[np.int64]:
+    """Places of the lowest and the highest value of each `size` values, of the first and the last of all.
+
+    >>> extremes(np.array([0.0, 5.0, 1.0, 2.0, 3.0, -7.0, 2.0]), 3).tolist()
+    [0, 1, 3, 5, 6]
+    """
+    padded = np.concatenate([values, np.full(-len(values) % size, np.nan)]).reshape(-1, size)
+    starts = np.arange(len(padded)) * size
+    gaps = np.isnan(padded)
+    lowest = starts + np.where(gaps, np.inf, padded).argmin(axis=1)
+    highest = starts + np.where(gaps, -np.inf, padded).argmax(axis=1)
+    return np.unique(np.concatenate([[0], lowest, highest, [len(values) - 1]]))
+
+
+def bends(values: Floats) -> NDArray[np.int64]:
+    """Places of the values that a line needs: not those within a row of equal ones.
+
+    >>> bends(np.array([1.0, 1.0, 1.0, 2.0, 2.0])).tolist()
+    [0, 2, 3, 4]
+    """
+    equal = (values[1:] == values[:-1]) | (np.isnan(values[1:]) & np.isnan(values[:-1]))
+    inside = np.concatenate([[False], equal[:-1] & equal[1:], [False]])[: len(values)]
+    return np.flatnonzero(~inside)
+
+
+def section(subject: Subject) -> Section | None:
+    """All signals to choose from, those of the claims shown; None if nothing is recorded."""
+    names = list(dict.fromkeys(name for trace in subject.traces for name in trace))
+    if not names:
+        return None
+    claimed = [
+        name for name in dict.fromkeys(each.signal for each in subject.trace.verdicts) if name in names
+    ]
+    curves = sum(name in trace for name in names for trace in subject.traces)
+    points = min(MOST_POINTS, max(FEWEST_POINTS, ALL_POINTS // curves))
+    rows, signals = [], {}
+    for name in names:
+        row, signals[name] = _signal(subject, name, points)
+        rows.append(row | {"chosen": name in claimed})
+    html = template("plots.html.j2").render(
+        turns=subject.turns,
+        groups=[(name, list(found)) for name, found in groupby(rows, lambda row: row["instance"])],
+        count=len(names),
+        several=len(subject.traces) > 1,
+        labels=labels(subject.traces),
+    )
+    data = {
+        "traces": [_along(subject, trace) for trace in subject.traces],
+        "labels": labels(subject.traces),
+        "signals": signals,
+        "first": claimed or names[:1],
+    }
+    return Section("plots", "Plots", html, "plots.js", data, "uplot/uPlot")
+
+
+def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """A signal as a row of the table, and what the page draws of it."""
+    source = next(trace for trace in subject.traces if name in trace)
+    factor, unit = source.displayed(name)
+    drawn: list[Any] = []
+    summaries = []
+    continuous = True
+    for label, trace in zip(labels(subject.traces), subject.traces, strict=True):
+        if name not in trace:
+            drawn.append(None)
+            continue
+        found = outline(trace, name, points)
+        continuous = found.continuous
+        along = trace.shaft_angle if trace.turns else trace.time
+        drawn.append([_packed(along[found.places]), _packed(found.values / factor)])
+        numbers = (f"{value / factor:.6g}" for value in (found.lowest, found.highest, found.last))
+        summaries.append((label, *numbers))
+    instance, _, variable = name.partition(".")
+    about = source.description(name)
+    row = {"name": name, "instance": instance, "variable": variable, "unit": "" if unit == "1" else unit,
+           "about": about, "summaries": summaries}  # fmt: skip
+    bounds = [
+        {"value": each.bound / factor, "text": f"bound {each.shown(each.bound)}", "holds": each.holds}
+        for each in subject.trace.verdicts
+        if each.signal == name and each.unit == source.unit(name) and math.isfinite(each.bound)
+    ]
+    return row, {
+        "unit": row["unit"],
+        "about": about,
+        "step": not continuous,
+        "bounds": bounds,
+        "curves": drawn,
+    }
+
+
+def _along(subject: Subject, trace: Trace) -> dict[str, Any]:
+    """How time follows the shaft angle in a trace: its curves lie along the angle if a shaft turns."""
+    places = np.unique(np.linspace(0, trace.rows - 1, min(trace.rows, ALONG)).round().astype(np.int64))
+    turns = trace.turns
+    return {"turns": turns, "times": _packed(trace.time[places]),
+            "positions": _packed((trace.shaft_angle if turns else trace.time)[places])}  # fmt: skip
+
+
+def _packed(values: Floats) -> str:
+    """Numbers as the page's script reads them: 32 bits each, as base64. What is not finite is a gap."""
+    limit = float(np.finfo(np.float32).max)
+    finite = np.where(np.abs(values) <= limit, values, np.nan)
+    return b64encode(finite.astype("<f4").tobytes()).decode()
