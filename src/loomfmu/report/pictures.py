@@ -74,7 +74,8 @@ def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bo
     panels: dict[str, list[str]] = {}
     for name in signals:
         unit = traces[0].displayed(name)[1]
-        panels.setdefault(name if unit == "1" else unit, []).append(name)  # pure numbers have nothing in common
+        key = name if unit == "1" else unit  # pure numbers have no scale in common
+        panels.setdefault(key, []).append(name)
     figure = plotting.figure((WIDTH, PANEL * len(panels) + REST))
     all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, names in zip(all_axes, panels.values(), strict=True):

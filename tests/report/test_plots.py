@@ -1,0 +1,266 @@
+"""Plots of signals: no extreme is lost, they follow the page's cursor, and they are written as pictures."""
+
+import hashlib
+import os
+import tracemalloc
+from base64 import b64decode
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from browser import NARROW, until
+
+import loomfmu
+from loomfmu import LoomfmuError, report
+from loomfmu.cli import main
+from loomfmu.report import plots
+from loomfmu.report.section import Subject
+from loomfmu.report.templates import text
+from loomfmu.traces import Channel, Trace, TraceWriter
+
+Open = Callable[..., Any]
+SIMS = Path(__file__).parents[2] / "sims"
+
+
+@pytest.fixture(scope="module")
+def fast(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """The demo, too fast for its belt."""
+    output = tmp_path_factory.mktemp("fast") / "fast.h5"
+    return loomfmu.run(SIMS / "wl680_3600.toml", set={"shaft.speed": "700 rpm"}, output=output).trace
+
+
+@pytest.fixture
+def copied(demo: Trace, tmp_path: Path) -> Path:
+    os.link(demo.path, tmp_path / "demo.h5")
+    return tmp_path / "demo.h5"
+
+
+def recorded(path: Path, reals: np.ndarray, counts: np.ndarray) -> Trace:
+    """A trace of reals r0, r1, ... [mm] and a count, over time alone."""
+    channels = [Channel("a", f"r{k}", "m", "mm", "", k) for k in range(reals.shape[1])]
+    channels.append(Channel("a", "count", "1", "1", "", 0, real=False))
+    writer = TraceWriter(path, {"title": "t", "software": "s"}, channels, {"a": {"fmu": "A"}})
+    for start in range(0, len(reals), 50_000):
+        rows = slice(start, start + 50_000)
+        times = np.arange(len(reals))[rows] * 1e-3
+        writer.append(times, np.zeros(len(times)), reals[rows], counts[rows, None].astype("i4"))
+    return writer.complete([])
+
+
+def unpacked(packed: str) -> np.ndarray:
+    return np.frombuffer(b64decode(packed), "<f4")
+
+
+# ---- thinned
+
+
+@pytest.mark.parametrize("points", [4, 200, 5000])
+def test_every_bucket_keeps_its_extremes(tmp_path: Path, points: int) -> None:
+    random = np.random.default_rng(1)
+    values = random.normal(size=(100_001, 1))
+    values[70_000] = 50.0  # one sample
+    found = plots.outline(recorded(tmp_path / "r.h5", values, np.zeros(100_001)), "a.r0", points)
+    assert len(found.places) <= points + 2
+    np.testing.assert_array_equal(found.values, values[found.places, 0])
+    assert (found.lowest, found.highest, found.last) == (values.min(), 50.0, values[-1, 0])
+    size = -(-100_001 // max(1, points // 2 - 1))
+    for start in range(0, 100_001, size):
+        inside = values[start : start + size, 0]
+        kept = found.values[(found.places >= start) & (found.places < start + size)]
+        assert (kept.min(), kept.max()) == (inside.min(), inside.max())
+
+
+def test_a_count_changes_where_it_did_and_a_gap_stays(tmp_path: Path) -> None:
+    reals = np.arange(9000.0)[:, None]
+    reals[3000:6000] = np.nan
+    trace = recorded(tmp_path / "c.h5", reals, np.arange(9000) >= 4500)
+    count, real = (plots.outline(trace, f"a.{name}", 18_002) for name in ("count", "r0"))
+    assert count.places.tolist() == [0, 4499, 4500, 8999] and not count.continuous
+    assert np.isnan(real.values).sum() == 2 and (real.lowest, real.highest) == (0.0, 8999.0)
+
+
+def test_values_come_in_the_unit_that_people_read(tmp_path: Path) -> None:
+    trace = recorded(tmp_path / "u.h5", np.array([[0.25], [np.inf]]), np.zeros(2))
+    made = plots.section(Subject([trace]))
+    assert made is not None
+    signal = made.data["signals"]["a.r0"]
+    assert signal["unit"] == "mm"
+    np.testing.assert_array_equal(unpacked(signal["curves"][0][1]), [250.0, np.nan])
+
+
+def test_a_long_trace_is_read_in_bounded_memory(tmp_path: Path) -> None:
+    wave = np.sin(np.arange(1_000_000) * 0.01)
+    trace = recorded(tmp_path / "long.h5", np.repeat(wave[:, None], 12, axis=1), np.zeros(1_000_000))
+    tracemalloc.start()
+    made = plots.section(Subject([trace]))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert made is not None
+    # time and shaft angle are 16 MB, twelve signals would be 96 MB more; blocks take a few MB
+    assert peak < 32e6
+
+
+# ---- on the page
+
+
+@pytest.fixture
+def page(demo: Trace, fast: Trace, tmp_path: Path, opened: Open) -> Any:
+    return opened(report.write([demo, fast], tmp_path / "both.html"))
+
+
+def line(page: Any, name: str) -> float:
+    """Where the cursor's line is in a plot [px]."""
+    found = page.locator(f"figure[data-name='{name}'] .cursor-line").evaluate("e => e.style.transform")
+    return float(found.removeprefix("translateX(").removesuffix("px)"))
+
+
+def test_signals_of_claims_are_shown_first(page: Any, demo: Trace) -> None:
+    names = page.locator("#plots figure").evaluate_all("all => all.map(each => each.dataset.name)")
+    assert names == list(dict.fromkeys(verdict.signal for verdict in demo.verdicts))
+
+
+def test_plots_and_cursor_move_one_another(page: Any, demo: Trace) -> None:
+    plot = page.locator("figure[data-name='belt.lowest_margin'] .u-over")
+    box = plot.bounding_box()
+    page.evaluate("loomfmu.seek(3 * Math.PI)")
+    assert line(page, "belt.lowest_margin") == pytest.approx(box["width"] / 2, abs=1.0)  # pixels
+    plot.click(position={"x": box["width"] / 3, "y": 30})
+    # 6 pi over some 1000 pixels: a click is right to a pixel
+    assert page.evaluate("loomfmu.position") == pytest.approx(2 * np.pi, abs=0.03)
+    value = page.inner_text("figure[data-name='belt.lowest_margin'] output").split(" | ")[0]
+    assert float(value) == pytest.approx(demo["belt.lowest_margin"][-1], rel=1e-4)  # five digits are shown
+
+
+def test_dragging_zooms_all_plots_and_leaves_the_cursor(page: Any) -> None:
+    page.evaluate("document.getElementById('plots').scrollIntoView()")
+    box = page.locator("figure[data-name='belt.lowest_margin'] .u-over").bounding_box()
+    before = line(page, "heald_1.lift")
+    page.mouse.move(box["x"] + 5, box["y"] + 30)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 3, box["y"] + 30, steps=3)
+    page.mouse.up()
+    until(page, lambda: line(page, "heald_1.lift") != before)
+    assert page.evaluate("loomfmu.position") == 0.0
+    page.get_by_role("button", name="Whole run").click()
+    until(page, lambda: line(page, "heald_1.lift") == before)
+
+
+def test_over_time_the_cursor_is_at_its_time(page: Any, demo: Trace, fast: Trace) -> None:
+    page.get_by_label("time", exact=True).check()
+    page.evaluate("loomfmu.seek(3 * Math.PI)")
+    width = page.locator("figure[data-name='heald_1.lift'] .u-over").bounding_box()["width"]
+    assert line(page, "heald_1.lift") == pytest.approx(width / 2, abs=1.0)
+    shown = page.inner_text("figure[data-name='heald_1.lift'] output").split(" | ")
+    at = demo.time[-1] / 2
+    for trace, value in zip((demo, fast), shown, strict=True):
+        expected = np.interp(at, trace.time, 1000.0 * trace["heald_1.lift"])
+        assert float(value.removesuffix(" mm")) == pytest.approx(expected, abs=0.01)  # mm: five digits
+
+
+def test_any_signal_is_found_and_chosen_by_keyboard(page: Any) -> None:
+    page.locator("#plots-choice summary").press("Enter")
+    page.locator("#plots-search").fill("rapier travel")
+    boxes = page.locator("#plots-choice input[type=checkbox]:visible")
+    until(page, lambda: boxes.count() == 1)
+    boxes.press("Space")
+    assert page.locator("figure[data-name='weft.travel'] canvas").count() == 1
+    boxes.press("Space")
+    assert page.locator("figure[data-name='weft.travel']").count() == 0
+
+
+def test_several_traces_have_a_legend_and_numbers(page: Any, fast: Trace) -> None:
+    assert page.inner_text("#plots-legend").split() == ["demo.h5", "fast.h5"]
+    page.locator("#plots-choice summary").click()
+    row = page.locator("tr[data-name='belt.lowest_margin']").nth(1)
+    assert f"{fast['belt.lowest_margin'].min():.6g}" in row.inner_text()
+
+
+def test_colours_follow_the_system(demo: Trace, tmp_path: Path, opened: Open) -> None:
+    page = opened(report.write([demo], tmp_path / "demo.html"), NARROW)
+    canvas = page.locator("figure canvas").first
+    light = canvas.evaluate("each => each.toDataURL()")
+    page.emulate_media(color_scheme="dark")
+    until(page, lambda: canvas.evaluate("each => each.toDataURL()") != light)
+    page.emulate_media(color_scheme="light")
+    until(page, lambda: canvas.evaluate("each => each.toDataURL()") == light)
+
+
+def test_the_library_is_the_published_one() -> None:
+    licence, _, script = text("uplot/uPlot.js").partition("*/\n")
+    assert "Copyright (c) 2022 Leon Sorokin" in licence
+    published = "19c8d4c6ad88929a79f4ae49d6f7161566dfd0ba3d15cc495e974f787eb78f1f"  # of uplot 1.6.32 on npm
+    assert hashlib.sha256(script.encode()).hexdigest() == published
+
+
+# ---- pictures
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
+    output = copied.with_name(f"picture{suffix}")
+    arguments = ["plot", str(copied), "belt.margin", "heald_1.lift", "--fold", "--output", str(output)]
+    assert main(arguments) == 0
+    first = output.read_bytes()
+    if suffix == ".svg":
+        ElementTree.fromstring(first)
+    assert main(arguments) == 0  # ours is replaced
+    assert output.read_bytes()[:4] == first[:4]
+
+
+def test_a_picture_lies_beside_its_trace(
+    copied: Path, fast: Trace, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plot", str(copied), str(fast.path), "belt.margin", "--over", "time"]) == 0
+    assert capsys.readouterr().out.strip() == str(copied.with_name("demo_plot.png"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["belt.marign"], "no signal 'belt.marign' is recorded; did you mean 'belt.margin'?"),
+        (["nothing.h5", "belt.margin"], "nothing.h5: there is no such file"),
+        (["belt.margin", "--output", "x.gif"], "x.gif: '.gif' is not a suffix of a picture; use .svg, .png"),
+        (["belt.margin", "--over", "time", "--fold"], "can be folded, not one over time"),
+        (["belt.margin", "--output", "demo.h5"], "use .svg, .png or .pdf"),
+    ],
+)
+def test_a_mistake_is_one_line(
+    copied: Path, arguments: list[str], reason: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plot", str(copied), *arguments]) == 2
+    printed = capsys.readouterr().err.strip()
+    assert reason in printed and "\n" not in printed
+
+
+def test_axes_of_matplotlib_have_display_units(demo: Trace) -> None:
+    from matplotlib.figure import Figure
+
+    axes = demo.plot("heald_1.lift", "heald_2.lift", over="angle", axes=Figure().subplots())
+    assert axes.get_xlabel() == "Shaft angle [deg]" and axes.get_ylabel() == "[mm]"
+    one, other = axes.get_lines()
+    assert one.get_linestyle() != other.get_linestyle()
+    np.testing.assert_allclose(one.get_ydata(), 1000.0 * demo["heald_1.lift"], rtol=1e-15)  # one rounding
+    np.testing.assert_array_equal(one.get_xdata(), np.degrees(demo.shaft_angle))
+
+
+def test_a_folded_curve_stays_within_a_revolution(demo: Trace) -> None:
+    from matplotlib.figure import Figure
+
+    axes = demo.plot("weft.travel", fold=True, axes=Figure().subplots())
+    along = axes.get_lines()[0].get_xdata()
+    assert np.nanmin(along) == 0.0 and np.nanmax(along) == 360.0
+    steps = np.diff(along)
+    assert np.nanmin(steps) >= 0.0 and np.nanmax(steps) < 0.26  # samples are a quarter degree apart
+
+
+def test_what_cannot_be_plotted_is_said(demo: Trace, tmp_path: Path) -> None:
+    still = recorded(tmp_path / "still.h5", np.zeros((3, 1)), np.zeros(3))
+    with pytest.raises(LoomfmuError, match="no shaft turns"):
+        still.plot("a.r0", over="angle")
+    with pytest.raises(LoomfmuError, match=r"heald_1\.lift is in mm and belt\.axial_force in N"):
+        demo.plot("heald_1.lift", "belt.axial_force")
+    with pytest.raises(LoomfmuError, match='choose "angle" or "time"'):
+        demo.plot("heald_1.lift", over="speed")
