@@ -18,9 +18,8 @@ from .section import Section, Subject, labels
 from .templates import template
 
 Floats = NDArray[np.float64]
-MOST_POINTS = 2000  # of a curve
-ALL_POINTS = 250_000  # of all curves of a report, about 2.7 MB
-FEWEST_POINTS = 200
+MOST_POINTS, FEWEST_POINTS = 10_000, 200  # of a curve
+SHARE = 150_000  # points of the signals of claims, and of all others: 1.6 MB of a report
 READ = 65_536  # samples that are read at a time
 ALONG = 2000  # points between which the page interpolates time over shaft angle
 
@@ -87,11 +86,11 @@ def section(subject: Subject) -> Section | None:
     claimed = [
         name for name in dict.fromkeys(each.signal for each in subject.trace.verdicts) if name in names
     ]
-    curves = sum(name in trace for name in names for trace in subject.traces)
-    points = min(MOST_POINTS, max(FEWEST_POINTS, ALL_POINTS // curves))
+    finer = _points(subject, claimed)
+    coarser = _points(subject, [name for name in names if name not in claimed])
     rows, signals = [], {}
     for name in names:
-        row, signals[name] = _signal(subject, name, points)
+        row, signals[name] = _signal(subject, name, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
     html = template("plots.html.j2").render(
         turns=subject.turns,
@@ -107,6 +106,12 @@ def section(subject: Subject) -> Section | None:
         "first": claimed or names[:1],
     }
     return Section("plots", "Plots", html, "plots.js", data, "uplot/uPlot")
+
+
+def _points(subject: Subject, names: list[str]) -> int:
+    """How many points each curve of such signals may have."""
+    curves = sum(name in trace for name in names for trace in subject.traces)
+    return min(MOST_POINTS, max(FEWEST_POINTS, SHARE // max(1, curves)))
 
 
 def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], dict[str, Any]]:
