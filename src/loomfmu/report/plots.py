@@ -57,7 +57,7 @@ def extremes(values: Floats, size: int) -> NDArray[np.int64]:
     """Places of the lowest and the highest value of each `size` values, of the first and the last of all.
 
     >>> extremes(np.array([0.0, 5.0, 1.0, 2.0, 3.0, -7.0, 2.0]), 3).tolist()
-    [0, 1, 3, 5, 6]
+    [0, 1, 4, 5, 6]
     """
     padded = np.concatenate([values, np.full(-len(values) % size, np.nan)]).reshape(-1, size)
     starts = np.arange(len(padded)) * size
