@@ -220,7 +220,7 @@ def test_a_picture_lies_beside_its_trace(
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (["belt.marign"], "no signal 'belt.marign' is recorded; did you mean 'belt.margin'?"),
+        (["belt.marign"], "signal 'belt.marign' is not recorded; did you mean 'belt.margin'?"),
         (["nothing.h5", "belt.margin"], "nothing.h5: there is no such file"),
         (["belt.margin", "--output", "x.gif"], "x.gif: '.gif' is not a suffix of a picture; use .svg, .png"),
         (["belt.margin", "--over", "time", "--fold"], "can be folded, not one over time"),
