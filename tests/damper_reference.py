@@ -168,13 +168,13 @@ def simulated(
     """The component's trace, fed with the exact motion of the frame at the end of each step."""
     damper.inputs_at_step_end = True
     damper.lift, damper.velocity, damper.acceleration = frame(0.0, speed, law)
-    damper.warp_force = load(0.0)
+    damper.warp_force = float(load(0.0))
     assert damper.initialize(0.0) == 0
     step = 2.0 * pi / speed / steps
     rows = [(damper.displacement, damper.rate, damper.transmitted_force)]
     for n in range(turns * steps):
         damper.lift, damper.velocity, damper.acceleration = frame((n + 1) * step, speed, law)
-        damper.warp_force = load((n + 1) * step)
+        damper.warp_force = float(load((n + 1) * step))
         assert damper.step(n * step, step) == 0
         rows.append((damper.displacement, damper.rate, damper.transmitted_force))
     return Trace(*np.array(rows).T, damper.stop_contacts), damper

@@ -30,11 +30,14 @@ class Variable:
     derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
     names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
-    instance's own number, and in an array with * for every instance that has such an output; `lowest_of` and
-    `highest_of` name the output whose extreme so far this one holds; `when` and `unless` name the yes-or-no
-    parameter with which, or without which alone, it has an effect; `pole` says that an output grows without
-    bound at the edges of its component's windows; `element` is its place in an array, such as `table[35]` for
-    `table_36`; `carried` says that outputs beside extremes follow from what it held before the step.
+    instance's own number, and in an array with * for every instance that has such an output; of a parameter
+    it is that of another instance whose value it takes unless it is given one; with `source_for` an input is
+    wired to the first of its sources, parted by |, that there is, and only where that output is taken;
+    `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `when` and `unless`
+    name the yes-or-no parameter with which, or without which alone, it has an effect; `pole` says that an
+    output grows without bound at the edges of its component's windows; `element` is its place in an array,
+    such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
+    before the step.
     """
 
     name: str
@@ -54,6 +57,7 @@ class Variable:
     choices: tuple[str, ...] = ()
     indicator: bool = False
     source: str | None = None
+    source_for: str | None = None
     lowest_of: str | None = None
     highest_of: str | None = None
     when: str | None = None
@@ -199,6 +203,7 @@ def parameter(
     maximum: float | None = None,
     nominal: float | None = None,
     choices: tuple[str, ...] = (),
+    source: str | None = None,
     when: str | None = None,
     unless: str | None = None,
 ) -> Any:
@@ -207,7 +212,7 @@ def parameter(
         minimum, maximum = 1, len(choices)
     return _declare(
         "parameter", "fixed", unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, when=when,
+        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, source=source, when=when,
         unless=unless,
     )  # fmt: skip
 
@@ -231,6 +236,7 @@ def input_(
     unbounded: bool = False,
     rate: str | None = None,
     source: str | None = None,
+    source_for: str | None = None,
     when: str | None = None,
     unless: str | None = None,
 ) -> Any:
@@ -239,7 +245,7 @@ def input_(
     return _declare(
         "input", variability, unit, start, description, display,
         minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate, source=source,
-        when=when, unless=unless,
+        source_for=source_for, when=when, unless=unless,
     )  # fmt: skip
 
 

@@ -137,7 +137,7 @@ def passes(level, z, v, duration, start=0.0):
     """Where an undamped oscillator of frequency 1 first passes a level upwards."""
     bend = sqrt(z**2 + v**2)
     return first_change(
-        LEVEL, level, 1.0, 0.0, -1.0, bend, z, v, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, start, duration
+        LEVEL, level, 0.0, 0.0, 1.0, 0.0, -1.0, bend, z, v, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, start, duration
     )
 
 
@@ -147,7 +147,7 @@ def turns(k, c, z, v, drive, duration):
     _a, jerk, snap = rate_bounds(a, drive[1] - k * v - c * a, k, c, drive[2], drive[3], duration)
     found, time = [], 0.0
     while len(found) < 6:
-        time = next_turn(0.0, k, c, k * jerk + c * snap, z, v, k, c, *drive, time, duration)
+        time = next_turn(0.0, 0.0, 0.0, k, c, k * jerk + c * snap, z, v, k, c, *drive, time, duration)
         if time < 0.0:
             break
         found.append(time)
@@ -176,7 +176,7 @@ def test_located_turn():
     # z = sin(t + asin 0.6)
     assert turns(1.0, 0.0, 0.6, 0.8, (0.0, 0.0, 0.0, 0.0), 1.0) == [pytest.approx(acos(0.6), abs=2e-15)]
     (found,) = turns(1.0, 0.5, 0.6, 0.8, (0.0, 0.0, 0.0, 0.0), 0.5)
-    value, _slope = gauge_at(SLOPE, 0.0, 1.0, 0.5, 0.6, 0.8, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, found)
+    value, _slope = gauge_at(SLOPE, 0.0, 0.0, 0.0, 1.0, 0.5, 0.6, 0.8, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, found)
     assert value == pytest.approx(0.0, abs=1e-15)
 
 
@@ -195,7 +195,7 @@ def test_every_turn_of_a_piece_is_found(wanted, elastic, viscous):
     _a, jerk, _snap = rate_bounds(a, j, k, c, drive[2], drive[3], 1.0)
     found, time = [], 0.0
     while len(found) < 6:
-        time = next_turn(0.0, 1.0, 0.0, jerk, 0.0, rate(0.0), k, c, *drive, time, 1.0)
+        time = next_turn(0.0, 0.0, 0.0, 1.0, 0.0, jerk, 0.0, rate(0.0), k, c, *drive, time, 1.0)
         if time < 0.0:
             break
         found.append(time)

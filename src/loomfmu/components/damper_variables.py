@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..variables import Component, Problem, Terminal, at_step_end, input_, output, parameter, state
-from .terminals import FRAME
+from ..variables import Problem, Terminal, at_step_end, input_, output, parameter, state
+from .terminals import CARRIER, FRAME
+from .threads import Threads
 
 
 @dataclass(slots=True)
-class DamperVariables(Component):
+class DamperVariables(Threads):
     """Variables of the damper, and what it declares of itself."""
 
     problems: ClassVar[tuple[Problem, ...]] = (
@@ -22,11 +23,20 @@ class DamperVariables(Component):
             " free_travel = {free_travel}"
         ),
     )
-    terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        FRAME.of("lift", "velocity", "acceleration"),
+        CARRIER.of("carrier_lift", "carrier_velocity", "carrier_acceleration"),
+    )
+
+    thread_count: int = parameter(
+        "1", 0, "Number of threads that the carrier lifts; 0 for no warp", minimum=0, maximum=1000000,
+        source="warp_#.thread_count",
+    )  # fmt: skip
 
     carrier_mass: float = parameter(
-        "kg", 15.0, "Mass of the heald carrier", minimum=1e-3, maximum=1e3, nominal=10.0
-    )
+        "kg", 7.5, "Mass of the heald carrier with its healds (assumed: half of the published 15 kg)",
+        minimum=1e-3, maximum=1e3, nominal=10.0,
+    )  # fmt: skip
     spring_stiffness: float = parameter(
         "N/m", 5960.0, "Stiffness of one of the four springs", display="N/mm", minimum=0.0, maximum=1e12,
         nominal=1e4,
@@ -64,8 +74,8 @@ class DamperVariables(Component):
         "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
     )
     warp_force: float = input_(
-        "N", 0.0, "Load of the warp on the carrier, upwards", nominal=100.0, minimum=-1e12, maximum=1e12,
-        source="warp_#.frame_load",
+        "N", 0.0, "Further load on the carrier, upwards, such as a warp model of your own", nominal=100.0,
+        minimum=-1e12, maximum=1e12,
     )  # fmt: skip
     displacement: float = output(
         "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
@@ -76,7 +86,13 @@ class DamperVariables(Component):
     transmitted_force: float = output(
         "N", "Force of the carrier on the frame: springs, damping, stops", nominal=1000.0
     )
+    carrier_lift: float = output(
+        "m", "Lift of the carrier, that of its frame and its displacement", display="mm", nominal=0.1,
+        rate="carrier_velocity",
+    )  # fmt: skip
+    carrier_velocity: float = output("m/s", "Velocity of the carrier in space", rate="carrier_acceleration")
     carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
+    warp_load: float = output("N", "Load of the threads on the carrier, positive upwards", nominal=100.0)
     stop_contacts: int = output("1", "Contacts with a stop so far", start=0, variability="discrete")
     peak_load: float = output(
         "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0
@@ -100,7 +116,8 @@ class DamperVariables(Component):
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
-    sampled_force: float = state("N", "Warp load at the last sample")
+    sampled_force: float = state("N", "Further load at the last sample")
+    thread_force: float = state("N", "Force of all threads above their pretension")
     largest_lift: float = state("m", "Largest absolute lift so far, the measure of its rounding", minimum=0.0)
     peak_carrier: float = state("m/s2", "Largest acceleration of the carrier so far", minimum=0.0)
     peak_frame: float = state("m/s2", "Largest acceleration of the frame so far", minimum=0.0)

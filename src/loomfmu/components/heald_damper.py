@@ -3,24 +3,22 @@
 from dataclasses import dataclass
 from math import fabs, sqrt
 
-from ..physics.damper import propagate, stop_damping_ratio
-from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
+from ..physics.damper import stop_damping_ratio
+from ..physics.hung_warp import warp_load
 from ..physics.numerics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
-from .damper_variables import DamperVariables
+from ..physics.shaft import carried
+from ..physics.warp import thread_extension
+from .damper_motion import DamperMotion
 
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
 SHORTEST = 1e-15
-# Pieces of motion in one step: some 10 us each in Python
-MOST_PIECES = 10000
 # Largest acceleration [m/s2] of a frame at rest: some hundred roundings of the motion of a loom, and little
 # enough for one that turns once in a quarter of an hour. Against less than that no ratio can be told.
 RESTING = 1e-12
-MOST_TURNS = 6  # of a load in one piece: four, and two by rounding where it starts at one
-MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 
 
 @dataclass(slots=True)
-class HealdDamper(DamperVariables):
+class HealdDamper(DamperMotion):
     """Heald-frame damper: the carrier on four springs, free between two stops, driven by its frame.
 
     Exact between two samples of the inputs, whatever the step: the frame moves on the quintic that
@@ -51,9 +49,13 @@ class HealdDamper(DamperVariables):
         self.peak_carrier = 0.0
         self.peak_frame = fabs(self.acceleration)
         self.largest_lift = fabs(self.lift)
+        extension, _rate, _second = thread_extension(
+            self.lift + self.eye_offset() + self.displacement, 0.0, 0.0, self.front_length, self.back_length
+        )
+        self.thread_force = self.thread_count * self.thread_stiffness * extension
         self.remember()
-        self.show(self.acceleration, self.warp_force)
-        self.show_energies(0.0)
+        self.show(0.0)
+        self.show_energies()
         return 0
 
     def remember(self) -> None:
@@ -71,18 +73,22 @@ class HealdDamper(DamperVariables):
         a1 = 0.0
         a2 = 0.0
         a3 = 0.0
+        lift = self.lift
+        velocity = self.velocity
         load = self.warp_force
         load_rate = 0.0
         if self.inputs_at_step_end and step_size > SHORTEST:
             a0, a1, a2, a3 = self.frame_between(time, step_size)
+            lift = self.sampled_lift
+            velocity = self.sampled_velocity
             load = self.sampled_force
             load_rate = (self.warp_force - self.sampled_force) / step_size
         elif fabs(self.acceleration) > self.peak_frame:
             self.peak_frame = fabs(self.acceleration)
-        problem = self.move(step_size, a0, a1, a2, a3, load, load_rate)
+        problem = self.move(step_size, lift, velocity, a0, a1, a2, a3, load, load_rate)
         self.remember()
-        self.show(self.acceleration, self.warp_force)
-        self.show_energies(0.0 if self.inputs_at_step_end else step_size)
+        self.show(0.0 if self.inputs_at_step_end else step_size)
+        self.show_energies()
         return problem
 
     def frame_between(self, time: float, h: float) -> tuple[float, float, float, float]:
@@ -122,125 +128,8 @@ class HealdDamper(DamperVariables):
         if frame > self.peak_frame:
             self.peak_frame = frame
 
-    def on_stop(self) -> float:
-        """1 or -1 while the carrier presses on the upper or lower stop, else 0."""
-        if self.contact == 1 or self.contact == -1:
-            return 1.0 * self.contact
-        return 0.0
-
-    def move(
-        self, duration: float, a0: float, a1: float, a2: float, a3: float, load: float, load_rate: float
-    ) -> int:
-        """Move the carrier piece by piece: short against its own motion, one contact each."""
-        mass = self.carrier_mass
-        elapsed = 0.0
-        pieces = 0
-        own = sqrt(4.0 * self.spring_stiffness / mass) + self.damping / mass
-        if own * duration > 0.5 * MOST_PIECES:
-            return 1  # it would need more even if it never met a stop
-        while elapsed < duration:
-            pieces = pieces + 1
-            if pieces > MOST_PIECES:
-                return 1
-            side = self.on_stop()
-            stiffness = (4.0 * self.spring_stiffness + side * side * self.stop_stiffness) / mass
-            damping = (self.damping + side * side * self.stop_damping) / mass
-            preload = side * self.stop_stiffness * self.free_travel / mass
-            piece = duration - elapsed
-            rest = piece
-            own = sqrt(stiffness) + damping
-            if own * piece > 0.5:
-                piece = 0.5 / own
-            weight = load + load_rate * elapsed
-            changed = self.move_piece(
-                stiffness, damping, preload,
-                preload + weight / mass - (a0 + elapsed * (a1 + elapsed * (a2 + elapsed * a3))),
-                load_rate / mass - (a1 + elapsed * (2.0 * a2 + elapsed * 3.0 * a3)),
-                -(a2 + 3.0 * a3 * elapsed),
-                -a3,
-                weight, load_rate, piece,
-            )  # fmt: skip
-            if changed >= rest:
-                elapsed = duration
-            else:
-                elapsed = elapsed + changed
-        return 0
-
-    def move_piece(
-        self, stiffness: float, damping: float, preload: float,
-        u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float, piece: float,
-    ) -> float:  # fmt: skip
-        """Move over one piece, or up to the change of contact within it; the time that took."""
-        position = self.displacement
-        rate = self.rate
-        acceleration = u0 - stiffness * position - damping * rate
-        jerk = u1 - stiffness * rate - damping * acceleration
-        most_acceleration, most_jerk, most_snap = rate_bounds(
-            acceleration, jerk, stiffness, damping, u2, u3, piece
-        )
-        taken = piece
-        farthest = fabs(position) + piece * (fabs(rate) + 0.5 * piece * most_acceleration)
-        before = self.contact
-        if before != 0 or farthest >= self.free_travel:
-            taken, self.contact = contact_change(
-                before, position, rate, stiffness, damping, u0, u1, u2, u3,
-                self.free_travel, self.stop_stiffness, self.stop_damping, most_acceleration, most_jerk, piece,
-            )  # fmt: skip
-            if before == 0 and self.contact != 0 and self.stop_contacts < MOST_CONTACTS:
-                self.stop_contacts = self.stop_contacts + 1
-        self.displacement, self.rate = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, taken)
-        first = stiffness * position + damping * rate - preload
-        last = stiffness * self.displacement + damping * self.rate - preload
-        # the curve lies no farther than that beyond the line between its ends
-        bulge = 0.125 * taken * taken * (stiffness * most_acceleration + damping * most_jerk)
-        bend = stiffness * most_jerk + damping * most_snap
-        if self.carrier_mass * (larger(first, last) + bulge) > self.peak_load:
-            self.note_turns(
-                0.0, bend, position, rate, stiffness, damping, preload, u0, u1, u2, u3, load, load_rate, taken
-            )
-        pull = load / self.carrier_mass
-        growth = load_rate / self.carrier_mass
-        if larger(pull - first, pull + growth * taken - last) + bulge > self.peak_carrier:
-            self.note_turns(
-                growth, bend, position, rate, stiffness, damping, preload, u0, u1, u2, u3, load, load_rate,
-                taken,
-            )  # fmt: skip
-        return taken
-
-    def note_turns(
-        self, growth: float, bend: float, position: float, rate: float, stiffness: float, damping: float,
-        preload: float, u0: float, u1: float, u2: float, u3: float, load: float, load_rate: float,
-        taken: float,
-    ) -> None:  # fmt: skip
-        """Keep the loads at the ends of a piece and where the transmitted one, less a growing one, turns.
-
-        Its slope is a sum of five functions, which has four zeros at most on so short a piece.
-        """
-        self.note_load(self.carrier_mass * (stiffness * position + damping * rate - preload), load)
-        transmitted = self.carrier_mass * (stiffness * self.displacement + damping * self.rate - preload)
-        self.note_load(transmitted, load + load_rate * taken)
-        turn = 0.0
-        for _ in range(MOST_TURNS):
-            turn = next_turn(
-                growth, stiffness, damping, bend, position, rate, stiffness, damping, u0, u1, u2, u3,
-                turn, taken,
-            )  # fmt: skip
-            if turn < 0.0:
-                break
-            z, v = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, turn)
-            transmitted = self.carrier_mass * (stiffness * z + damping * v - preload)
-            self.note_load(transmitted, load + load_rate * turn)
-
-    def note_load(self, transmitted: float, load: float) -> None:
-        """Keep the largest transmitted force and carrier acceleration."""
-        if fabs(transmitted) > self.peak_load:
-            self.peak_load = fabs(transmitted)
-        carrier = fabs(load - transmitted) / self.carrier_mass
-        if carrier > self.peak_carrier:
-            self.peak_carrier = carrier
-
-    def show(self, acceleration: float, load: float) -> None:
-        """Outputs that follow from the carrier's state."""
+    def show(self, lead: float) -> None:
+        """Outputs that follow from the carrier's state, the inputs carried over `lead`."""
         side = self.on_stop()
         self.spring_force = 4.0 * self.spring_stiffness * self.displacement
         self.stop_force = (
@@ -252,18 +141,32 @@ class HealdDamper(DamperVariables):
             )
         )
         self.transmitted_force = self.spring_force + self.damping * self.rate + self.stop_force
+        self.carrier_lift = carried(self.lift, self.velocity, self.acceleration, lead) + self.displacement
+        self.carrier_velocity = self.velocity + self.acceleration * lead + self.rate
+        self.warp_load = self.threads_load()
+        load = self.warp_force + self.warp_load
         self.note_load(self.transmitted_force, load)
         self.carrier_acceleration = (load - self.transmitted_force) / self.carrier_mass
         self.acceleration_ratio = 0.0
         if self.peak_frame > RESTING:
             self.acceleration_ratio = self.peak_carrier / self.peak_frame
 
-    def show_energies(self, lead: float) -> None:
-        """Energies of the carrier's state, the frame's velocity carried over `lead`."""
+    def threads_load(self) -> float:
+        """Load of the threads on the carrier as it is shown."""
+        if self.thread_count == 0:
+            return 0.0
+        load, _rate = warp_load(
+            self.carrier_lift + self.eye_offset(), self.carrier_velocity, self.thread_force,
+            self.thread_count * self.pretension, self.thread_count * self.thread_stiffness, self.creep_rate,
+            self.relaxation_rate, self.front_length, self.back_length,
+        )  # fmt: skip
+        return load
+
+    def show_energies(self) -> None:
+        """Energies of the carrier's state; those of its threads are outputs of `WarpTension`."""
         side = self.on_stop()
         pressed = side * side * (self.displacement - side * self.free_travel)
-        velocity = self.velocity + self.acceleration * lead + self.rate
-        self.kinetic_energy = 0.5 * self.carrier_mass * velocity * velocity
+        self.kinetic_energy = 0.5 * self.carrier_mass * self.carrier_velocity * self.carrier_velocity
         self.potential_energy = (
             2.0 * self.spring_stiffness * self.displacement * self.displacement
             + 0.5 * self.stop_stiffness * pressed * pressed

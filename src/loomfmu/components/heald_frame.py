@@ -35,7 +35,10 @@ class HealdFrame(Component):
     it changes if peg k + 1 differs, and holds if not. The pattern repeats after `pattern_length` picks.
     """
 
-    problems: ClassVar[tuple[Problem, ...]] = (turned_too_far("rotor"),)
+    problems: ClassVar[tuple[Problem, ...]] = (
+        turned_too_far("rotor"),
+        Problem("sprung_mass = {sprung_mass} is part of frame_mass = {frame_mass} and cannot be more"),
+    )
     keeps: ClassVar[str] = NOTHING
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
@@ -49,7 +52,13 @@ class HealdFrame(Component):
     stroke: float = parameter(
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
     )
-    frame_mass: float = parameter("kg", 15.0, "Mass of the frame", minimum=0.0, maximum=1e3, nominal=10.0)
+    frame_mass: float = parameter(
+        "kg", 15.0, "Mass of the frame with all that it holds", minimum=0.0, maximum=1e3, nominal=10.0
+    )
+    sprung_mass: float = parameter(
+        "kg", 0.0, "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
+        minimum=0.0, maximum=1e3, nominal=10.0, source="damper_#.carrier_mass",
+    )  # fmt: skip
     gravity: float = parameter(
         "m/s2", 9.80665, "Gravity on the frame; 0 if springs carry its weight", minimum=0.0, maximum=100.0,
         nominal=10.0,
@@ -105,6 +114,7 @@ class HealdFrame(Component):
     load: float = input_(
         "N", 0.0, "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
         nominal=100.0, minimum=-1e12, maximum=1e12,
+        source="damper_#.transmitted_force|warp_#.frame_load", source_for="shaft_torque",
     )  # fmt: skip
     lift: float = output(
         "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity",
@@ -116,7 +126,9 @@ class HealdFrame(Component):
         "m", "Height of the warp above the closed shed, at the rapier", display="mm", nominal=0.01,
         depends=_OF_ROTOR,
     )  # fmt: skip
-    inertia_force: float = output("N", "Inertia force of the frame", nominal=100.0, depends=_OF_ROTOR)
+    inertia_force: float = output(
+        "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=_OF_ROTOR
+    )
     moving: bool = output("1", "The frame changes position between the current slow points", start=False,
                           variability="discrete", depends=_OF_ROTOR)  # fmt: skip
     drive_force: float = output(
@@ -126,7 +138,9 @@ class HealdFrame(Component):
     shaft_torque: float = output(
         "N.m", "Torque of the frame on the main shaft through the dobby, braking", nominal=10.0
     )
-    kinetic_energy: float = output("J", "Kinetic energy of the frame", nominal=10.0, depends=_OF_ROTOR)
+    kinetic_energy: float = output(
+        "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=_OF_ROTOR
+    )
     potential_energy: float = output(
         "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
     )
@@ -172,8 +186,17 @@ class HealdFrame(Component):
             return 0.0, by_shaft
         return by_shaft / self.rotor_ratio, by_shaft
 
+    def check(self) -> int:
+        """Whether the frame holds what hangs in it."""
+        if self.sprung_mass > self.frame_mass:
+            return 2
+        return 0
+
     def initialize(self, time: float) -> int:
         """Place the frame."""
+        problem = self.check()
+        if problem != 0:
+            return problem
         return self.step(time, 0.0)
 
     def step(self, time: float, step_size: float) -> int:
@@ -200,7 +223,7 @@ class HealdFrame(Component):
         self.velocity = self.stroke * rate
         self.acceleration = self.stroke * second
         self.warp_height = self.warp_ratio * (self.lift - 0.5 * self.stroke)
-        self.inertia_force = self.frame_mass * self.acceleration
+        self.inertia_force = (self.frame_mass - self.sprung_mass) * self.acceleration
         self.moving = change != 0
         by_rotor, by_shaft = self.slopes(pick, angle - 2.0 * pi * pick, change)
         weight = self.frame_mass * self.gravity
@@ -208,7 +231,7 @@ class HealdFrame(Component):
         self.rotor_torque = self.drive_force * self.stroke * by_rotor
         self.shaft_torque = self.drive_force * self.stroke * by_shaft
         self.passed_torque = -self.load * self.stroke * by_shaft
-        self.kinetic_energy = 0.5 * self.frame_mass * self.velocity * self.velocity
+        self.kinetic_energy = 0.5 * (self.frame_mass - self.sprung_mass) * self.velocity * self.velocity
         self.potential_energy = weight * self.lift
         self.shaft_work = self.kinetic_energy + self.potential_energy
         return 0

@@ -1,5 +1,7 @@
 """What one connection carries from component to component: `terminals` of a component are made of these."""
 
+from dataclasses import replace
+
 from ..variables import Terminal
 
 SHAFT = Terminal("shaft", "Motion of the main shaft", ("angle", "velocity", "acceleration"))
@@ -10,3 +12,5 @@ ROTOR = Terminal(
     ("angle", "velocity", "acceleration", "lift_fraction", "lift_rate", "lift_acceleration"),
 )
 FRAME = Terminal("frame", "Motion of a heald frame", ("lift", "velocity", "acceleration"))
+# a frame in a frame: fits what a frame lifts
+CARRIER = replace(FRAME, name="carrier.frame", description="Motion of the heald carrier in its frame")

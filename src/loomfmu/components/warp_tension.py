@@ -15,12 +15,13 @@ from ..physics.warp import (
     thread_locate,
     turns_once,
 )
-from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
+from ..variables import Terminal, at_step_end, input_, output, state
 from .terminals import FRAME
+from .threads import Threads
 
 
 @dataclass(slots=True)
-class WarpTension(Component):
+class WarpTension(Threads):
     """Warp tension: viscoelastic threads, stretched by the shed, and their load on the heald carrier.
 
     Exact between two samples of the inputs, whatever the step: the extension runs on the quintic that
@@ -31,33 +32,6 @@ class WarpTension(Component):
 
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
 
-    thread_count: int = parameter("1", 1260, "Number of threads in the frame", minimum=1, maximum=1000000)
-    stroke: float = parameter(
-        "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
-    )
-    shed_offset: float = parameter(
-        "m", 0.0018, "Height of the heald eyes above the warp line with the frame half-way (assumed)",
-        display="mm", minimum=-1.0, maximum=1.0, nominal=0.001,
-    )  # fmt: skip
-    front_length: float = parameter(
-        "m", 0.25, "Length of warp from the cloth's fell to the healds (assumed)", display="mm",
-        minimum=1e-3, maximum=100.0,
-    )  # fmt: skip
-    back_length: float = parameter(
-        "m", 0.5, "Length of warp, healds to back rest (assumed)", display="mm", minimum=1e-3, maximum=100.0
-    )
-    pretension: float = parameter(
-        "N", 0.15, "Tension of a thread at rest in the closed shed", display="cN", minimum=0.0, maximum=1e3
-    )
-    thread_stiffness: float = parameter(
-        "N/m", 67.0, "Stiffness b of a thread (assumed)", minimum=0.0, maximum=1e9, nominal=100.0
-    )
-    creep_rate: float = parameter(
-        "1/s", 5.0, "Creep rate n of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0
-    )
-    relaxation_rate: float = parameter(
-        "1/s", 10.0, "Relaxation rate r of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0
-    )
     inputs_at_step_end: bool = at_step_end()
     lift: float = input_(
         "m", 0.098, "Lift of the frame", display="mm", nominal=0.1, rate="velocity", minimum=-1e3, maximum=1e3

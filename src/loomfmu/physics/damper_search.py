@@ -48,19 +48,20 @@ def rate_bounds(
 
 
 def gauge_at(
-    order: int, level: float, by_position: float, by_rate: float, position: float, rate: float,
-    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
-    time: float,
+    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
+    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
+    drive_2: float, drive_3: float, time: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Value and derivative at a time of the gauge `q (z - p) + r z'`, or of its slope `q z' + r z'' - p`.
 
     Args:
         order: LEVEL for the gauge, SLOPE for its slope
-        level, by_position, by_rate: p, q and r
+        level, level_1, level_2: p; of a slope it is `p + p1 t + p2 t^2`
+        by_position, by_rate: q and r
         position .. drive_3: as for `propagate`
         time: since the start [s]
 
-    >>> gauge_at(LEVEL, 0.25, 2.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    >>> gauge_at(LEVEL, 0.25, 0.0, 0.0, 2.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     (1.5, 1.0)
     """
     z, v = propagate(position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, time)
@@ -68,7 +69,10 @@ def gauge_at(
     if order == LEVEL:
         return by_position * (z - level) + by_rate * v, by_position * v + by_rate * a
     jerk = drive_1 + time * (2.0 * drive_2 + 3.0 * time * drive_3) - stiffness * v - damping * a
-    return by_position * v + by_rate * a - level, by_position * a + by_rate * jerk
+    return (
+        by_position * v + by_rate * a - (level + time * (level_1 + time * level_2)),
+        by_position * a + by_rate * jerk - (level_1 + 2.0 * time * level_2),
+    )
 
 
 def larger(one: float, other: float) -> float:
@@ -103,9 +107,9 @@ def safe_stride(value: float, slope: float, bend: float) -> float:
 
 
 def first_change(
-    order: int, level: float, by_position: float, by_rate: float, sign: float, bend: float, position: float,
-    rate: float, stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float,
-    drive_3: float, start: float, duration: float,
+    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
+    sign: float, bend: float, position: float, rate: float, stiffness: float, damping: float, drive: float,
+    drive_1: float, drive_2: float, drive_3: float, start: float, duration: float,
 ) -> float:  # fmt: skip
     """Time at which a gauge, or its slope, first leaves a sign; on the far side of the zero, to rounding.
 
@@ -113,7 +117,7 @@ def first_change(
     changes close together are not missed as they are where the ends of a piece alone are compared.
 
     Args:
-        order, level, by_position, by_rate: as for `gauge_at`
+        order .. by_rate: as for `gauge_at`
         sign: -1 or 1, what it leaves
         bend: bound of the second derivative of what is followed, up to the end
         position .. drive_3: as for `propagate`
@@ -123,13 +127,14 @@ def first_change(
         time [s], or -1 if it keeps its sign
 
     >>> # the lower of two zeros of 0.02 - t (0.3 - t), where both ends are positive
-    >>> t = first_change(LEVEL, 0.0, 1.0, 0.0, 1.0, 2.0, 0.02, -0.3, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    >>> motion = (0.02, -0.3, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
+    >>> t = first_change(LEVEL, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, *motion, 0.0, 1.0)
     >>> round(t, 12)
     0.1
     """
     low = start
     at_low, slope = gauge_at(
-        order, level, by_position, by_rate, position, rate, stiffness, damping,
+        order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
         drive, drive_1, drive_2, drive_3, low,
     )  # fmt: skip
     if sign * at_low < 0.0:
@@ -146,12 +151,12 @@ def first_change(
         if -sign * slope >= bend * rest or high > duration or n == MOST_STRIDES - 1:
             high = duration
         at_high, slope = gauge_at(
-            order, level, by_position, by_rate, position, rate, stiffness, damping,
+            order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
             drive, drive_1, drive_2, drive_3, high,
         )  # fmt: skip
         if sign * at_high < 0.0:
             return locate(
-                order, level, by_position, by_rate, position, rate, stiffness, damping,
+                order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
                 drive, drive_1, drive_2, drive_3, low, high, at_low, at_high,
             )  # fmt: skip
         low = high
@@ -160,9 +165,9 @@ def first_change(
 
 
 def locate(
-    order: int, level: float, by_position: float, by_rate: float, position: float, rate: float,
-    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
-    low: float, high: float, at_low: float, at_high: float,
+    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
+    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
+    drive_2: float, drive_3: float, low: float, high: float, at_low: float, at_high: float,
 ) -> float:  # fmt: skip
     """Time at which a gauge, or its slope, changes its sign in a bracket.
 
@@ -185,7 +190,7 @@ def locate(
         if t <= low or t >= high:
             t = 0.5 * (low + high)
         value, _slope = gauge_at(
-            order, level, by_position, by_rate, position, rate, stiffness, damping,
+            order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
             drive, drive_1, drive_2, drive_3, t,
         )  # fmt: skip
         if (value > 0.0) == (at_high > 0.0):
@@ -242,7 +247,7 @@ def contact_change(
         by_rate = -by_rate
         then = 2 * contact
     time = first_change(
-        LEVEL, level, by_position, by_rate, -1.0,
+        LEVEL, level, 0.0, 0.0, by_position, by_rate, -1.0,
         fabs(by_position) * most_acceleration + fabs(by_rate) * most_jerk,
         position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, 0.0, duration,
     )  # fmt: skip
@@ -252,7 +257,7 @@ def contact_change(
     if contact == 1 or contact == -1:
         return time, then
     other = first_change(
-        LEVEL, other_level, -side, 0.0, -1.0, most_acceleration,
+        LEVEL, other_level, 0.0, 0.0, -side, 0.0, -1.0, most_acceleration,
         position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, 0.0, time,
     )  # fmt: skip
     if other < 0.0:
@@ -261,27 +266,27 @@ def contact_change(
 
 
 def next_turn(
-    offset: float, by_position: float, by_rate: float, bend: float, position: float, rate: float,
-    stiffness: float, damping: float, drive: float, drive_1: float, drive_2: float, drive_3: float,
-    start: float, duration: float,
+    offset: float, offset_1: float, offset_2: float, by_position: float, by_rate: float, bend: float,
+    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
+    drive_2: float, drive_3: float, start: float, duration: float,
 ) -> float:  # fmt: skip
-    """Time at which the gauge `q z + r z' - p t` next turns round; -1 if it does not.
+    """Time at which the gauge `q z + r z' - p t - p1 t^2 / 2 - p2 t^3 / 3` next turns; -1 if it does not.
 
     Args:
-        offset, by_position, by_rate: p, q and r
+        offset, offset_1, offset_2, by_position, by_rate: p, p1, p2, q and r
         bend: bound of the third derivative of the gauge up to the end
         position .. drive_3: as for `propagate`
         start, duration: from and to these times [s]
 
-    >>> round(next_turn(0.0, 1.0, 0.0, 1.0, 0.0, 0.3, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
+    >>> round(next_turn(0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.3, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
     0.3
     """
     value, slope = gauge_at(
-        SLOPE, offset, by_position, by_rate, position, rate, stiffness, damping,
+        SLOPE, offset, offset_1, offset_2, by_position, by_rate, position, rate, stiffness, damping,
         drive, drive_1, drive_2, drive_3, start,
     )  # fmt: skip
     sign = 1.0 if value > 0.0 or (value == 0.0 and slope > 0.0) else -1.0
     return first_change(
-        SLOPE, offset, by_position, by_rate, sign, bend, position, rate, stiffness, damping,
-        drive, drive_1, drive_2, drive_3, start, duration,
+        SLOPE, offset, offset_1, offset_2, by_position, by_rate, sign, bend, position, rate, stiffness,
+        damping, drive, drive_1, drive_2, drive_3, start, duration,
     )  # fmt: skip

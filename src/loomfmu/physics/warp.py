@@ -27,6 +27,21 @@ def eye_pull(height: float, front: float, back: float) -> float:
     return height / sqrt(front * front + height * height) + height / sqrt(back * back + height * height)
 
 
+def eye_bend(height: float, front: float, back: float) -> float:
+    """Derivative of `eye_pull` by the height of the eye, `l1^2 / (l1^2 + y^2)^1.5 + l2^2 / (l2^2 + y^2)^1.5`.
+
+    Arguments as for `eye_pull`; returns 1/m.
+
+    >>> eye_bend(0.0, 0.5, 0.25)
+    6.0
+    """
+    to_fell = sqrt(front * front + height * height)
+    to_rest = sqrt(back * back + height * height)
+    share_1 = front / to_fell
+    share_2 = back / to_rest
+    return share_1 * share_1 / to_fell + share_2 * share_2 / to_rest
+
+
 def thread_extension(
     height: float, velocity: float, acceleration: float, front: float, back: float
 ) -> tuple[float, float, float]:
@@ -47,14 +62,11 @@ def thread_extension(
     square = height * height
     to_fell = sqrt(front * front + square)
     to_rest = sqrt(back * back + square)
-    share_1 = front / to_fell
-    share_2 = back / to_rest
-    slope = height / to_fell + height / to_rest
-    bend = share_1 * share_1 / to_fell + share_2 * share_2 / to_rest
+    slope = eye_pull(height, front, back)
     return (
         square / (to_fell + front) + square / (to_rest + back),
         slope * velocity,
-        bend * velocity * velocity + slope * acceleration,
+        eye_bend(height, front, back) * velocity * velocity + slope * acceleration,
     )
 
 

@@ -5,6 +5,7 @@ import math
 from ..components.dobby.drive import DobbyDrive
 from ..components.heald_damper import HealdDamper
 from ..components.heald_frame import HealdFrame
+from ..components.heald_play import HealdPlay
 from ..components.warp_tension import WarpTension
 from ..physics.rotor_laws.rotor import SLOPED_SINE
 
@@ -44,7 +45,7 @@ class HealdLine:
         self.heald.step(self.time, self.step_size)
         self.done += 1
 
-    def feed(self, follower: HealdDamper | WarpTension) -> None:
+    def feed(self, follower: HealdDamper | WarpTension | HealdPlay) -> None:
         """Give a follower the motion of the frame."""
         follower.lift = self.heald.lift
         follower.velocity = self.heald.velocity
@@ -56,19 +57,12 @@ def carrier(
 ) -> HealdDamper:
     """The default damper after some picks from the closed shed, with the default warp or without."""
     line = HealdLine(rpm, steps, law=law)
-    damper, threads = HealdDamper(inputs_at_step_end=True), WarpTension(inputs_at_step_end=True)
+    damper = HealdDamper(inputs_at_step_end=True, thread_count=WarpTension().thread_count if warp else 0)
     line.feed(damper)
-    line.feed(threads)
-    threads.initialize(0.0)
-    damper.warp_force = threads.frame_load if warp else 0.0
     damper.initialize(0.0)
     for _ in range(picks * steps):
         before = line.time
         line.advance()
-        if warp:
-            line.feed(threads)
-            threads.step(before, line.step_size)
-            damper.warp_force = threads.frame_load
         line.feed(damper)
         damper.step(before, line.step_size)
     return damper

@@ -48,7 +48,8 @@ class Instance:
     """One FMU of a scene with the values that are set at its start (SI).
 
     `published` are the machine and the head that its values come from, `doubts` warnings about its values.
-    `isolated` says whether it runs in a process of its own; where it does not, the scene decides.
+    `isolated` says whether it runs in a process of its own; where it does not, the scene decides. `inherited`
+    are the parameters that have the value of another instance, and that instance and its parameter.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Instance:
     published: dict[str, str] = field(default_factory=dict)
     doubts: dict[str, str] = field(default_factory=dict)
     isolated: bool | None = None
+    inherited: dict[str, tuple[str, str]] = field(default_factory=dict)
 
     def set(self, key: str, given: Any) -> None:
         """Set a parameter, the start of an input, or all parameters that a published name stands for.
@@ -117,6 +119,22 @@ class Instance:
             switch = declared[wire.sink[1]].when or ""
             if switch in self.fmu.ports:
                 self.values.setdefault(switch, True)
+
+    def inherit(self, others: Mapping[str, "Instance"]) -> None:
+        """Let parameters that are not set have the value of the instance that they usually take it from."""
+        number = self.name.removeprefix(standard_loom.stem(self.name))
+        for name, variable in self._declared().items():
+            if variable.causality != "parameter" or not variable.source or name in self.values:
+                continue
+            owner, _, parameter = variable.source.replace("_#", number).partition(".")
+            if owner in others and owner != self.name and parameter in others[owner].fmu.ports:
+                self.inherited[name] = (owner, parameter)
+                self.take(name, others)
+
+    def take(self, name: str, others: Mapping[str, "Instance"]) -> None:
+        """Give an inherited parameter the value of the instance that it is taken from."""
+        owner, parameter = self.inherited[name]
+        self.values[name] = others[owner].values.get(parameter, others[owner].fmu.ports[parameter].start or 0)
 
     def _declared(self) -> Mapping[str, Variable]:
         """The variables of our component; one that is not known here has those of its kind."""

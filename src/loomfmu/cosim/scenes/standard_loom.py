@@ -20,14 +20,16 @@ COMPONENT_OF = {
     "heald": "HealdFrame",
     "damper": "HealdDamper",
     "warp": "WarpTension",
+    "play": "HealdPlay",
     "reed": "ReedBeatUp",
     "lock": "PatternLock",
     "wrap": "BeltWrap",
     "roller": "DetachingRoller",
 }
 
-# kind of terminal -> the instance whose outputs it carries; # is the number of the instance that follows it
-SOURCES = {"shaft": "shaft", "head": "weft", "rotor": "dobby", "frame": "heald_#"}
+# kind of terminal -> the instances whose outputs it carries, the first one that the scene has; # is the
+# number of the instance that follows it. Where a frame has a damper, what it lifts hangs on the carrier.
+SOURCES = {"shaft": ("shaft",), "head": ("weft",), "rotor": ("dobby",), "frame": ("damper_#", "heald_#")}
 
 # input of a mechanism on the shaft -> output of the shaft that it follows
 FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
@@ -36,7 +38,7 @@ ALL = "*."  # in the place of an instance: the output of that name of every inst
 
 FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
 
-FRAME_FITTINGS = {"warps": "warp", "dampers": "damper"}  # one for each frame
+FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one for each frame
 LOOM_FITTINGS = {"reed": "reed", "locks": "lock"}  # one for the loom
 LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
 PICKS_IN_A_WORD = 16
@@ -64,7 +66,8 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
     (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
-    `warps` loads it with its threads, `reed` and `locks` add beat-up and pattern locks.
+    `warps` loads it with its threads, `play` adds the blows of its healds, `reed` and `locks` add beat-up and
+    pattern locks.
     """
     for key in table:
         if key not in LOOM_KEYS:
@@ -127,17 +130,18 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
     for name, component in components.items():
         for end in _terminals(component, "output"):
-            offered.setdefault((end.name, len(end.variables)), {})[name] = end.variables
+            offered.setdefault((end.kind, len(end.variables)), {})[name] = end.variables
     found: dict[str, str] = {}
     for name, component in components.items():
         number = name.removeprefix(stem(name))
         for v in variables_of(component):
-            if v.causality == "input" and v.source and not v.source.startswith(ALL):
+            if v.causality == "input" and v.source and not v.source_for and not v.source.startswith(ALL):
                 found[f"{name}.{v.name}"] = v.source.replace("_#", number)
         for terminal in _terminals(component, "input"):
             offering = offered.get((terminal.name, len(terminal.variables)), {})
             if terminal.name in SOURCES:
-                owner = SOURCES[terminal.name].replace("_#", number)
+                usual = [each.replace("_#", number) for each in SOURCES[terminal.name]]
+                owner = next((each for each in usual if each in offering and each != name), usual[-1])
                 # another vendor's FMU in its place has outputs of the same names
                 outputs = offering.get(owner, ()) if owner in components else _usual(terminal, owner)
             else:
@@ -145,6 +149,22 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
             pairs = zip(terminal.variables, outputs, strict=False)
             found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
     return found
+
+
+def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) -> dict[str, str]:
+    """Wires that bring an instance what its own outputs cause, such as the load on a frame.
+
+    They close a loop: each is made only where an output of `taken`, the sources of all wires, depends on it.
+    """
+    wires = {}
+    for name, component in components.items():
+        number = name.removeprefix(stem(name))
+        for v in variables_of(component):
+            if v.source_for and f"{name}.{v.source_for}" in taken:
+                sources = (v.source or "").replace("_#", number).split("|")
+                there = [each for each in sources if each.partition(".")[0] in components]
+                wires |= {f"{name}.{v.name}": each for each in there[:1]}
+    return wires
 
 
 def gathered(
@@ -184,7 +204,7 @@ def gathered(
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
     """The outputs that a terminal is wired to in a standard loom."""
     feeding = COMPONENTS[COMPONENT_OF[stem(owner)]]
-    return next(each.variables for each in _terminals(feeding, "output") if each.name == terminal.name)
+    return next(each.variables for each in _terminals(feeding, "output") if each.kind == terminal.name)
 
 
 def _terminals(component: type[Component], causality: str) -> list[Terminal]:

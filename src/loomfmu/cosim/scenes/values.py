@@ -68,14 +68,24 @@ class Values:
         Raises LoomfmuError for what must be read anew.
         """
         changed: dict[str, Instance] = {}
+
+        def copied(name: str) -> Instance:
+            if name not in changed:
+                old = self.scene.instances[name]
+                changed[name] = replace(old, values=dict(old.values), doubts=dict(old.doubts))
+            return changed[name]
+
+        own: set[tuple[str, str]] = set()
         for key, given in values.items():
             if not self.targets(key):
                 raise LoomfmuError(f"{key} is not a value")
             for name, variable in self.targets(key):
-                if name not in changed:
-                    old = self.scene.instances[name]
-                    changed[name] = replace(old, values=dict(old.values), doubts=dict(old.doubts))
-                changed[name].set(variable, given)
+                copied(name).set(variable, given)
+                own.add((name, variable))
+        for name, each in self.scene.instances.items():
+            for parameter, owner in each.inherited.items():
+                if owner in own and (name, parameter) not in own:
+                    copied(name).take(parameter, changed)
         for name, each in changed.items():
             if any(each.doubts.values()) or any(self.scene.instances[name].doubts.values()):
                 raise LoomfmuError(f"{name}: its values change what the scene warns of")

@@ -26,6 +26,8 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
     for name in components:
         sources |= standard_loom.gathered(name, components, sources | tables)
+    taken = {str(each) for each in (*sources.values(), *dotted(spelt_out).values())}
+    sources |= standard_loom.fed_back(components, taken)
     for sink, source in dotted(spelt_out).items():
         if source is False:
             if sources.pop(sink, None) is None:

@@ -163,6 +163,22 @@ def joined_rate(start_rate: float, a0: float, a1: float, a2: float, a3: float, s
     return start_rate + u * (a0 + u * (a1 / 2.0 + u * (a2 / 3.0 + u * a3 / 4.0)))
 
 
+def moved_on(
+    value: float, rate: float, a0: float, a1: float, a2: float, a3: float, time: float
+) -> tuple[float, float, float]:
+    """Value, rate and second rate after a time, the second rate a cubic in time.
+
+    >>> moved_on(1.0, 2.0, 6.0, 0.0, 0.0, 0.0, 0.5)
+    (2.75, 5.0, 6.0)
+    """
+    t = time
+    return (
+        value + t * (rate + t * (a0 / 2.0 + t * (a1 / 6.0 + t * (a2 / 12.0 + t * a3 / 20.0)))),
+        rate + t * (a0 + t * (a1 / 2.0 + t * (a2 / 3.0 + t * a3 / 4.0))),
+        a0 + t * (a1 + t * (a2 + t * a3)),
+    )
+
+
 def turns_of_cubic(a1: float, a2: float, a3: float) -> tuple[float, float]:
     """Where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` turns; -1 where it does not.
 

@@ -1,0 +1,56 @@
+"""HealdDamper with threads: against one integration of carrier and threads together."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hung_warp_reference import Hung, stepped
+from looms import RPM
+
+from loomfmu.components import HealdDamper, WarpTension
+
+
+@pytest.mark.parametrize(("rpm", "turns", "contacts"), [(200, 1, 0), (450, 2, 4)])
+def test_carrier_and_threads_against_a_monolithic_integration(rpm, turns, contacts):
+    speed, fine = rpm * RPM, 720
+    times = np.arange(turns * fine + 1) * (2.0 * pi / speed / fine)
+    times[-1] = 2.0 * pi * turns / speed
+    exact, counted = Hung(HealdDamper(thread_count=1260)).together(speed, turns, times)
+    assert counted == contacts
+    scale = np.max(np.abs(exact), axis=0)
+    errors = {}
+    for steps in (90, 720):
+        damper = HealdDamper(thread_count=1260)
+        rows = stepped(damper, speed, turns, steps)
+        errors[steps] = np.max(np.abs(rows - exact[:: fine // steps]) / scale)
+        assert damper.stop_contacts == counted
+        # the peak is found on the continuous curve; samples of the integration miss it by up to (w h)^2 / 8
+        assert damper.peak_load >= scale[4] * (1 - 1e-6)
+    # a cubic over a piece of 0.05 rad is off by (0.05)^4 / 384, 2e-8; every contact multiplies that
+    assert errors[90] < 5e-7
+    # fourth order: 8^4 times less, less what the jumps of the frame's third rate leave
+    assert errors[720] < 1e-8
+
+
+def test_a_damper_without_threads_is_as_before():
+    with_none, warped = HealdDamper(), HealdDamper(thread_count=1)
+    for damper in (with_none, warped):
+        damper.initialize(0.0)
+        damper.step(0.0, 0.01)
+    assert with_none.warp_load == 0.0
+    assert warped.warp_load != 0.0
+
+
+def test_the_load_is_that_of_the_threads_at_the_carrier():
+    # held still, the threads relax as WarpTension has them: the same law, solved in another component
+    held = {"lift": 0.098, "velocity": 0.0, "acceleration": 0.0}
+    damper = HealdDamper(inputs_at_step_end=True, thread_count=1260, spring_stiffness=1e9, **held)
+    damper.initialize(0.0)
+    warp = WarpTension(inputs_at_step_end=True, **held)
+    for n in range(50):
+        damper.step(1e-4 * n, 1e-4)
+    warp.lift = damper.carrier_lift
+    warp.initialize(0.0)
+    warp.step(0.0, 50e-4)
+    # the springs yield by 300 N / 4e9 N/m = 8e-8 m, which changes the load by 1e-5 at most while they swing
+    assert damper.warp_load == pytest.approx(warp.frame_load, rel=1e-5)
