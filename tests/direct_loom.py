@@ -16,7 +16,7 @@ from loomfmu.traces import Trace
 from loomfmu.variables import variables_of
 
 # sources before sinks, written down by hand
-STEMS = ("shaft", "weft", "belt", "dobby", "lock", "heald", "damper", "warp", "reed")
+STEMS = ("shaft", "weft", "belt", "dobby", "lock", "heald", "damper", "warp", "play", "reed")
 
 SMALL = """
 revolutions = {revolutions}

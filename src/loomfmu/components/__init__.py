@@ -15,6 +15,7 @@ MODULES = {
     "HealdFrame": "heald_frame",
     "HealdDamper": "heald_damper",
     "WarpTension": "warp_tension",
+    "HealdPlay": "heald_play",
     "PatternLock": "pattern_lock",
     "ReedBeatUp": "reed_beat_up",
     "BeltWrap": "belt_wrap",

@@ -12,6 +12,7 @@ from lxml import etree
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.description.terminals import FILE
 from loomfmu.fmi.native import builder as native_builder
+from loomfmu.variables import variables_of
 
 __all__ = ["fmu_cache"]
 
@@ -51,13 +52,21 @@ def test_members_are_variables_of_the_model_description(name: str) -> None:
         assert set(members.values()) <= known
 
 
+def outputs(name: str) -> set[str]:
+    """The outputs of a component."""
+    return {variable.name for variable in variables_of(COMPONENTS[name]) if variable.causality == "output"}
+
+
 def wires(source: str, sink: str) -> dict[str, str]:
     """What a connection of the terminals that fit wires, by the rule `plug`."""
     (joined,) = [
         (from_, to)
         for kind, from_ in terminals(source).values()
         for other, to in terminals(sink).values()
-        if kind == other and set(from_) == set(to)
+        if kind == other
+        and set(from_) == set(to)
+        and set(from_.values()) <= outputs(source)
+        and not set(to.values()) & outputs(sink)
     ]
     return {joined[1][member]: joined[0][member] for member in joined[0]}
 
@@ -83,6 +92,9 @@ def test_one_connection_wires_head_rotor_and_frame() -> None:
     assert wires("DobbyDrive", "HealdFrame") == {name: name for name in (*rotor, *lift)}
     for sink in ("HealdDamper", "WarpTension"):
         assert wires("HealdFrame", sink) == {n: n for n in ("lift", "velocity", "acceleration")}
+    for sink in ("WarpTension", "HealdPlay"):
+        carried = {n: f"carrier_{n}" for n in ("lift", "velocity", "acceleration")}
+        assert wires("HealdDamper", sink) == carried
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

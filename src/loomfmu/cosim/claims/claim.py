@@ -17,6 +17,7 @@ AT_LEAST, AT_MOST = 1, -1
 # units of what is judged: that of the numbers, and the one that people read them in
 ONE, PERCENT, ANGLE = ("1", "1"), ("1", "%"), ("rad", "deg")
 LENGTH, FORCE, SPEED, POWER = ("m", "mm"), ("N", "N"), ("rad/s", "rev/min"), ("W", "kW")
+VELOCITY = ("m/s", "m/s")
 
 # What a claim needs of the window grid: all equal steps, steps that land where `landings` says, or nothing,
 # since its component finds what is judged on its own continuous curve.

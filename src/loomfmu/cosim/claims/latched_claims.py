@@ -6,7 +6,7 @@ import numpy as np
 
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
-from .claim import AT_MOST, FORCE, LANDINGS, NOTHING, Claim, Landings
+from .claim import AT_MOST, FORCE, LANDINGS, NOTHING, VELOCITY, Claim, Landings
 from .curves import Floats
 
 ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
@@ -62,6 +62,23 @@ class StopContacts(Claim):
         worst = float(counted[-1])
         time = float(trace.time[np.argmax(counted == counted[-1])]) if worst > 0.0 else math.nan
         return self.verdict(trace, "stop contacts", counter, self.at_most, worst, time)
+
+
+class HealdBlows(Claim):
+    """No blow of a heald in its play is faster than that; the place is that of the hardest one."""
+
+    play: str = argument(Name())
+    at_most: float = argument(Quantity("m/s", low=0.0))
+
+    needs = ("play.hardest_blow", "play.blows")
+    sense, unit, grid = AT_MOST, VELOCITY, NOTHING
+
+    def judge(self, trace: Signals) -> Verdict:
+        latch = f"{self.play}.hardest_blow"
+        hardest, blows = trace[latch], int(trace[f"{self.play}.blows"][-1])
+        worst = float(hardest[-1])
+        time = float(trace.time[np.argmax(hardest == worst)]) if blows else math.nan
+        return self.verdict(trace, "hardest blow", latch, self.at_most, worst, time, f"{blows} blows")
 
 
 def _reached(trace: Signals, latch: str, followed: Floats) -> float:
