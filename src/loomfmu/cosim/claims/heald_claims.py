@@ -1,41 +1,72 @@
-"""Claims on heald frames: how long they dwell and leave the shed clear, by the angle that the shaft turns."""
+"""Claims on heald frames: how long they dwell and leave the shed clear, by the angle that the shaft turns.
+
+What lifts the warp is judged: the carrier where a frame has a damper. The note says what its frame does.
+"""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import ClassVar
 
 import numpy as np
 
+from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
 from .curves import Floats, Motion, Stretch, first_lowest, motion_of
+from .lifted import lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
 
 
-class _Span(Claim, kind=False):
+class _Lifted(Claim, kind=False):
+    """What is judged by the lift of a frame's warp: the carrier's, or with "frame" that of the frame."""
+
+    heald: str = argument(Name())
+    lifted_by: str = argument(Name(), "")
+
+    def signals(self, instances: Iterable[str]) -> list[str]:
+        return list(
+            dict.fromkeys((lift_of(self.heald, self.lifted_by, instances), *super().signals(instances)))
+        )
+
+    def _lift(self, trace: Signals) -> Motion:
+        """The lift that the warp has."""
+        return motion_of(trace, lift_of(self.heald, self.lifted_by, trace))
+
+
+class _Span(_Lifted, kind=False):
     """Whenever a frame is within a distance from an end of its stroke, it stays there for a shaft angle.
 
     Spans that begin and end within the run are judged, and those that an end of the run cuts off if what the
     run shows of them is long enough.
     """
 
-    heald: str = argument(Name())
     at_least: float = argument(Quantity("rad", "deg", usual=1.5, low=0.0))
 
     unit, grid = ANGLE, LANDINGS
+    both_ways: ClassVar[bool] = False  # whether a carrier that swings as far beyond the end is not near it
 
     def _distance(self, trace: Signals) -> float:
         """How near to an end of its stroke the frame is to be [m]."""
         raise NotImplementedError
 
-    def _judge(self, trace: Signals, text: str, signal: str) -> Verdict:
-        lift, turning = motion_of(trace, f"{self.heald}.lift"), shaft.needed_angle(trace)
-        stroke = trace.parameter(f"{self.heald}.stroke")
-        spans = _spans(lift, self._distance(trace), stroke)
+    def _judge(self, trace: Signals, text: str, of: str) -> Verdict:
+        """The verdict; `of` is what it names of a frame without a damper."""
+        signals = lifts(self.heald, self.lifted_by, trace)
+        found = [self._shortest(trace, motion_of(trace, signal)) for signal in signals]
+        worst, time, *notes = found[0]
+        notes += [f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:]]
+        signal = signals[0] if found[1:] else f"{self.heald}.{of}"
+        return self.verdict(trace, text, signal, self.at_least, worst, time, *notes)
+
+    def _shortest(self, trace: Signals, lift: Motion) -> tuple[float, float, str, str]:
+        """The least turn of the shaft during which a motion stays there, its time, and notes."""
+        turning, stroke = shaft.needed_angle(trace), trace.parameter(f"{self.heald}.stroke")
+        spans = _spans(lift, self._distance(trace), stroke, self.both_ways)
         turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
         judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
         note = ""
@@ -44,10 +75,10 @@ class _Span(Claim, kind=False):
         worst, time = math.nan, math.nan
         if judged:
             worst, time = first_lowest([turn for turn, _ in judged], [start for _, start in judged])
-        return self.verdict(trace, text, signal, self.at_least, worst, time, note, lift.note)
+        return worst, time, note, lift.note
 
     def landings(self, trace: Signals) -> Landings:
-        lift, distance = motion_of(trace, f"{self.heald}.lift"), self._distance(trace)
+        lift, distance = self._lift(trace), self._distance(trace)
         stroke = trace.parameter(f"{self.heald}.stroke")
         return Landings(lift.crossings(distance) + lift.crossings(stroke - distance), [])
 
@@ -58,13 +89,13 @@ class Dwell(_Span):
     tolerance: float = argument(SHARE, TOLERANCE)
 
     needs = ("heald.lift",)
+    both_ways = True
 
     def _distance(self, trace: Signals) -> float:
         return self.tolerance * trace.parameter(f"{self.heald}.stroke")
 
     def judge(self, trace: Signals) -> Verdict:
-        text = f"dwell within {100 * self.tolerance:g} % of the stroke"
-        return self._judge(trace, text, f"{self.heald}.lift")
+        return self._judge(trace, f"dwell within {100 * self.tolerance:g} % of the stroke", "lift")
 
 
 class ClearShed(_Span):
@@ -88,13 +119,12 @@ class ClearShed(_Span):
 
     def judge(self, trace: Signals) -> Verdict:
         self.check(trace.parameter)
-        return self._judge(trace, f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_height")
+        return self._judge(trace, f"warp beyond {1e3 * self.clearance:g} mm", "warp_height")
 
 
-class DwellContains(Claim):
+class DwellContains(_Lifted):
     """At these shaft angles of every revolution the frame is within a share of its stroke from an end."""
 
-    heald: str = argument(Name())
     angles: Sequence[float] = argument(Angles("rad", "deg"))
     tolerance: float = argument(SHARE, TOLERANCE)
 
@@ -102,30 +132,46 @@ class DwellContains(Claim):
     sense, unit, grid = AT_MOST, PERCENT, LANDINGS
 
     def judge(self, trace: Signals) -> Verdict:
-        signal = f"{self.heald}.lift"
-        stroke, lift = trace.parameter(f"{self.heald}.stroke"), motion_of(trace, signal)
-        times, note = np.array(self.landings(trace).times), lift.note
+        signals = lifts(self.heald, self.lifted_by, trace)
+        motions = [motion_of(trace, signal) for signal in signals]
+        times, notes = np.array(self.landings(trace).times), [motions[0].note]
         worst, time = math.nan, math.nan
         if len(times):
-            lifts = np.array([lift.at(time) for time in times.tolist()])
-            away = np.minimum(np.abs(lifts), np.abs(stroke - lifts)) / stroke
-            lowest, time = first_lowest(-away, times)
-            worst = -lowest
+            (worst, time), *others = [self._farthest(trace, lift, times) for lift in motions]
+            notes += [f"its frame: {100 * away:.7g} %" for away, _time in others]
         else:
-            note = "the run never reaches these angles"
+            notes = ["the run never reaches these angles"]
         text = f"dwell at {angles_text(self.angles)}"
-        return self.verdict(trace, text, signal, self.tolerance, worst, time, note)
+        return self.verdict(trace, text, signals[0], self.tolerance, worst, time, *notes)
+
+    def _farthest(self, trace: Signals, lift: Motion, times: Floats) -> tuple[float, float]:
+        """The largest distance from an end, as a share of the stroke, and its time."""
+        stroke = trace.parameter(f"{self.heald}.stroke")
+        lifts_there = np.array([lift.at(time) for time in times.tolist()])
+        away = np.minimum(np.abs(lifts_there), np.abs(stroke - lifts_there)) / stroke
+        lowest, time = first_lowest(-away, times)
+        return -lowest, time
 
     def landings(self, trace: Signals) -> Landings:
         return Landings([time for angle in self.angles for time in shaft.times_at(trace, angle)], [])
 
 
-def _spans(lift: Motion, distance: float, stroke: float) -> list[Stretch]:
+def _spans(lift: Motion, distance: float, stroke: float, both_ways: bool) -> list[Stretch]:
     """Times from entering to leaving a distance from the lower or the upper end.
 
     A frame that holds stays within: its span is as long as the picks it holds for.
     """
-    return sorted(lift.beyond(distance, -1.0) + lift.beyond(stroke - distance, 1.0))
+    lower, upper = lift.beyond(distance, -1.0), lift.beyond(stroke - distance, 1.0)
+    if both_ways:
+        lower = _common(lower, lift.beyond(-distance, 1.0), lift.time)
+        upper = _common(upper, lift.beyond(stroke + distance, -1.0), lift.time)
+    return sorted(lower + upper)
+
+
+def _common(some: list[Stretch], others: list[Stretch], time: Floats) -> list[Stretch]:
+    """What both have in common."""
+    pairs = ((max(one.start, two.start), min(one.end, two.end)) for one in some for two in others)
+    return [Stretch(low, high, low > time[0] and high < time[-1]) for low, high in pairs if low < high]
 
 
 def _cut_off(

@@ -1,16 +1,18 @@
 """Claims on the whole loom: its mechanisms keep out of each other's way."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import LoomfmuError
+from ... import units
+from ...errors import LoomfmuError, shown
 from ...traces import Signals, Verdict
 from .arguments import Name, Names, Quantity, argument
 from .claim import AT_LEAST, AT_MOST, LENGTH, ONE, SPEED, Claim
-from .curves import SAME, Motion, motion_of
+from .curves import SAME, Motion, Stretch, motion_of
+from .lifted import FRAME, lift_of
 
 NEVER = "the head never enters the shed in this run"
 
@@ -36,42 +38,60 @@ class RapierInOpenShed(_InShed):
 
     At the rapier's station each frame's warp must then be at least half the head's height above or below the
     closed shed. What is judged is twice the least distance of any frame, and 0 if its warp crosses the closed
-    shed meanwhile.
+    shed meanwhile. Where a frame has a damper, its warp is as high as the carrier lifts it, unless
+    `lifted_by` is "frame".
     """
 
     head_height: float = argument(Quantity("m", "mm", usual=0.03, low=0.0))
     healds: Sequence[str] = argument(Names(), ())
+    lifted_by: str = argument(Name(), "")
 
     def signals(self, instances: Iterable[str]) -> list[str]:
         frames = self.healds or [name for name in instances if name.startswith("heald_")]
         wanted = [f"{frame}.{variable}" for frame in frames for variable in ("lift", "warp_height")]
-        return [f"{self.weft}.travel", *wanted]
+        carriers = [lift_of(frame, self.lifted_by, instances) for frame in frames]
+        return list(dict.fromkeys([f"{self.weft}.travel", *wanted, *carriers]))
 
     def judge(self, trace: Signals) -> Verdict:
         frames = self.healds or sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
+        if self.lifted_by not in ("", FRAME):
+            raise LoomfmuError(
+                f'rapier_in_open_shed: lifted_by = {shown(self.lifted_by)} must be "frame" or left out'
+            )
         text, limit, travel = "the shed is open for the rapier head", self.head_height, self._travel(trace)
         in_shed = travel.beyond(self._idle(trace), 1.0)
+        warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}
         if not in_shed:
-            signal = _opening(frames[0])
+            signal = _opening(frames[0], warps[frames[0]])
             return self.verdict(trace, text, signal, limit, math.nan, math.nan, NEVER, travel.note)
-        lifts = [Motion(trace, f"{frame}.lift") for frame in frames]
-        openings, notes = [], [travel.note, *(lift.note for lift in lifts)]
-        for frame, lift in zip(frames, lifts, strict=True):
+        worst, time, signal, notes = self._least(trace, warps, in_shed)
+        if any(lift != f"{frame}.lift" for frame, lift in warps.items()):
+            frames_alone, *_rest = self._least(trace, {frame: f"{frame}.lift" for frame in frames}, in_shed)
+            notes.append(f"the frames: {units.show(frames_alone, 'mm')}")
+        return self.verdict(trace, text, signal, limit, worst, time, travel.note, *notes)
+
+    def _least(
+        self, trace: Signals, warps: Mapping[str, str], in_shed: Sequence[Stretch]
+    ) -> tuple[float, float, str, list[str]]:
+        """The least opening by the lifts of the frames' warps: value, time, whose, and notes."""
+        openings, notes = [], []
+        for frame, signal in warps.items():
+            lift = motion_of(trace, signal)
             stroke, ratio = trace.parameter(f"{frame}.stroke"), trace.parameter(f"{frame}.warp_ratio")
             nearest = lift.nearest(0.5 * stroke, in_shed)
-            openings.append((2.0 * ratio * nearest.value, nearest.time, _opening(frame)))
-            notes.append(nearest.note)
+            openings.append((2.0 * ratio * nearest.value, nearest.time, _opening(frame, signal)))
+            notes += [lift.note, nearest.note]
         worst = float(np.min([opening for opening, _time, _name in openings]))  # NaN if there is one
         equal = [each for each in openings if not each[0] > worst + SAME]
-        _value, time, signal = min(equal, key=lambda each: each[1])
-        return self.verdict(trace, text, signal, limit, worst, time, *notes)
+        _value, time, named = min(equal, key=lambda each: each[1])
+        return worst, time, named, notes
 
 
-def _opening(frame: str) -> str:
-    """What is judged of a frame."""
-    return f"2 |{frame}.warp_height|"
+def _opening(frame: str, lift: str) -> str:
+    """What is judged of a frame, or of the carrier in it."""
+    return f"2 |{frame}.warp_height|" if lift == f"{frame}.lift" else f"2 |warp height by {lift}|"
 
 
 class ReedClearOfRapier(_InShed):

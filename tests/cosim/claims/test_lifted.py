@@ -1,0 +1,70 @@
+"""Claims on shed and dwell follow what lifts the warp: the carrier where a frame has a damper."""
+
+import pytest
+from live_fmus import fmu_cache
+
+from loomfmu import LoomfmuError, evaluate
+from loomfmu.cosim.claims.lifted import lift_of
+
+__all__ = ["fmu_cache"]
+
+LOOM = """
+revolutions = 4
+steps_per_revolution = 360
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10"
+dampers = true
+warps = true
+[shaft]
+speed = "250 rev/min"
+"""
+ROOM = '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "1 mm"\n'
+DWELL = '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "40 deg"\n'
+AT = '[[claims]]\nkind = "dwell_contains"\nheald = "heald_1"\nangles = ["180 deg"]\n'
+
+
+def test_the_lift_is_the_carriers_where_there_is_one() -> None:
+    assert lift_of("heald_1", "", ["heald_1"]) == "heald_1.lift"
+    assert lift_of("heald_1", "", ["heald_1.lift", "damper_1.rate"]) == "damper_1.carrier_lift"
+    assert lift_of("heald_1", "", ["heald_1", "damper_2"]) == "heald_1.lift"
+    assert lift_of("left", "damper_left", ["left"]) == "damper_left.carrier_lift"
+    assert lift_of("left", "", ["left"]) == "left.lift"
+
+
+@pytest.mark.usefixtures("fmu_cache")
+def test_both_are_judged_and_the_carrier_decides(tmp_path) -> None:
+    path = tmp_path / "loom.toml"
+    frame = 'lifted_by = "frame"\n'
+    path.write_text(LOOM + ROOM + ROOM + frame + DWELL + DWELL + frame + AT + AT + frame)
+    result = evaluate(path)
+    for carrier, alone in zip(result.claims[::2], result.claims[1::2], strict=True):
+        assert "damper_1.carrier_lift" in carrier.signal
+        assert "heald_1" in alone.signal
+        assert carrier.worst != alone.worst
+        shown = carrier.note.partition("frame: ")[2] or carrier.note.partition("frames: ")[2]
+        # the note has seven digits
+        assert float(shown.split()[0]) == pytest.approx(alone.displayed(alone.worst), rel=1e-6)
+    room, frames, dwell, frames_dwell, *_ = result.claims
+    assert room.worst < frames.worst
+    assert not dwell
+    assert frames_dwell
+
+
+@pytest.mark.usefixtures("fmu_cache")
+def test_no_energy_is_lost_where_carriers_and_warp_load_a_driven_shaft(tmp_path) -> None:
+    path = tmp_path / "driven.toml"
+    loom = LOOM.replace("revolutions = 4", 'revolutions = 1\ncoupling = "iterated"')
+    loom = loom.replace("[shaft]", '[shaft]\ncomponent = "DrivenShaft"\ninertia = "5 kg.m2"')
+    path.write_text(loom + '[[claims]]\nkind = "energy_balance"\n')
+    (balance,) = evaluate(path).claims
+    assert balance, balance
+
+
+@pytest.mark.usefixtures("fmu_cache")
+def test_an_unknown_choice_is_rejected(tmp_path) -> None:
+    path = tmp_path / "loom.toml"
+    path.write_text(LOOM + ROOM + 'lifted_by = "carrier"\n')
+    with pytest.raises(LoomfmuError, match="carrier"):
+        evaluate(path)

@@ -1,0 +1,64 @@
+"""What instances of a standard loom share is set once, and the warp hangs on the carrier."""
+
+from loomfmu.cosim.scenes import scene as scenes
+
+LOOM = """
+[loom]
+weave = "10/01"
+dampers = true
+warps = true
+play = true
+[heald]
+stroke = "90 mm"
+[warp]
+thread_stiffness = 80
+[warp_2]
+thread_count = 600
+[damper]
+creep_rate = 3
+"""
+
+
+def test_parameters_that_are_not_set_are_those_of_the_instance_that_they_belong_to() -> None:
+    instances = scenes.parse(LOOM, overrides={"damper_1.carrier_mass": 5.0}).instances
+    assert [instances[name].values["stroke"] for name in ("warp_1", "damper_1", "damper_2")] == [0.09] * 3
+    assert instances["damper_1"].values["thread_stiffness"] == 80.0
+    assert [instances[f"{name}_2"].values["thread_count"] for name in ("damper", "play")] == [600, 600]
+    assert instances["damper_1"].values["thread_count"] == 1260
+    assert instances["damper_1"].values["creep_rate"] == 3.0  # its own value prevails
+    assert instances["heald_1"].values["sprung_mass"] == 5.0
+    assert instances["heald_2"].values["sprung_mass"] == 7.5
+
+
+def test_a_damper_without_warp_has_no_threads() -> None:
+    instances = scenes.parse('[loom]\nweave = "10"\ndampers = true\n').instances
+    assert instances["damper_1"].effective()["thread_count"] == 0
+
+
+def test_the_warp_and_the_healds_hang_on_the_carrier_and_no_wire_closes_a_loop() -> None:
+    scene = scenes.parse(LOOM)
+    wires = {".".join(wire.sink): ".".join(wire.source) for wire in scene.wires}
+    assert wires["warp_2.lift"] == wires["play_2.lift"] == "damper_2.carrier_lift"
+    assert wires["damper_2.lift"] == "heald_2.lift"
+    assert wires["play_2.warp_load"] == "warp_2.frame_load"
+    without = scenes.parse('[loom]\nweave = "10"\nwarps = true\n')
+    assert {".".join(w.source) for w in without.wires if w.sink == ("warp_1", "lift")} == {"heald_1.lift"}
+
+
+def load_of(text: str) -> list[str]:
+    return [".".join(wire.source) for wire in scenes.parse(text).wires if wire.sink == ("heald_1", "load")]
+
+
+def test_carrier_or_warp_load_a_frame_whose_torque_a_shaft_feels() -> None:
+    driven = '[shaft]\ncomponent = "DrivenShaft"\n[loom]\nweave = "10"\nwarps = true\n'
+    assert load_of(driven + "dampers = true\n") == ["damper_1.transmitted_force"]
+    assert load_of(driven) == ["warp_1.frame_load"]
+    assert load_of(driven + '[wires]\n"heald_1.load" = false\n') == []
+    # where nothing takes the torque, the wire would only close a loop
+    assert load_of('[loom]\nweave = "10"\nwarps = true\ndampers = true\n') == []
+
+
+def test_a_scene_may_hang_the_warp_on_the_frame() -> None:
+    scene = scenes.parse(LOOM + '[wires]\n"warp_1.lift" = "heald_1.lift"\n')
+    wires = {".".join(wire.sink): ".".join(wire.source) for wire in scene.wires}
+    assert wires["warp_1.lift"] == "heald_1.lift"
