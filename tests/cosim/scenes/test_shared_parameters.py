@@ -1,6 +1,7 @@
 """What instances of a standard loom share is set once, and the warp hangs on the carrier."""
 
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.values import Values
 
 LOOM = """
 [loom]
@@ -62,3 +63,17 @@ def test_a_scene_may_hang_the_warp_on_the_frame() -> None:
     scene = scenes.parse(LOOM + '[wires]\n"warp_1.lift" = "heald_1.lift"\n')
     wires = {".".join(wire.sink): ".".join(wire.source) for wire in scene.wires}
     assert wires["warp_1.lift"] == "heald_1.lift"
+
+
+def test_values_of_a_prepared_scene_reach_those_that_share_them() -> None:
+    for given in (
+        {"warp_1.thread_stiffness": 55.0, "damper.carrier_mass": 6.0, "heald_2.stroke": 0.08},
+        {"warp.thread_count": 900, "damper_1.thread_count": 100},
+    ):
+        read = scenes.parse(LOOM, overrides=given)
+        values = Values(scenes.parse(LOOM))
+        assert all(values.targets(key) for key in given)
+        found = values.set(given, given)
+        assert {n: e.values for n, e in found.instances.items()} == {
+            n: e.values for n, e in read.instances.items()
+        }

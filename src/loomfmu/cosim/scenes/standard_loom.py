@@ -156,7 +156,7 @@ def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) 
 
     They close a loop: each is made only where an output of `taken`, the sources of all wires, depends on it.
     """
-    wires = {}
+    wires: dict[str, str] = {}
     for name, component in components.items():
         number = name.removeprefix(stem(name))
         for v in variables_of(component):
