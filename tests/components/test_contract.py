@@ -143,13 +143,13 @@ def test_variables_refer_to_variables(component):
 
 @every_component
 def test_terminals_join_variables_that_fit(component):
-    # the same name at both ends: members and units alike, outputs at one end, inputs at the other
+    # the same kind at both ends: members and units alike, outputs at one end, inputs at the other
     for terminal in component.terminals:
         ends = []
         for other in COMPONENTS.values():
             known = {variable.name: variable for variable in declared(other)}
             for end in other.terminals:
-                if end.name == terminal.name:
+                if end.kind == terminal.kind:
                     variables = [known[name] for name in end.variables]
                     (causality,) = {variable.causality for variable in variables}
                     facts = [(variable.unit, variable.display, variable.type) for variable in variables]

@@ -70,7 +70,7 @@ def test_an_overcritical_carrier_does_not_overshoot(stiffness, ratio):
         spring_stiffness=stiffness, damping_ratio=ratio, acceleration=0.0, start_displacement=0.01
     )
     damper.initialize(0.0)
-    own = sqrt(4.0 * stiffness / 15.0)
+    own = sqrt(4.0 * stiffness / HealdDamper().carrier_mass)
     before = damper.displacement
     for n in range(300):
         assert damper.step(n / own, 1.0 / own) == 0
@@ -156,7 +156,11 @@ def test_the_work_of_the_frame_is_stored_or_lost(stiff, speed, ratio):
     mass = 15.0
     stiffness = stiff * mass * speed**2 / 4.0
     damper = HealdDamper(
-        spring_stiffness=stiffness, damping_ratio=ratio, free_travel=1.0, inputs_at_step_end=True
+        carrier_mass=mass,
+        spring_stiffness=stiffness,
+        damping_ratio=ratio,
+        free_travel=1.0,
+        inputs_at_step_end=True,
     )
     damper.lift, damper.velocity, damper.acceleration = frame(0.0, speed)
     damper.initialize(0.0)
@@ -212,7 +216,7 @@ def test_a_step_that_would_need_too_many_pieces_is_refused_at_once():
     assert (damper.displacement, damper.rate) == (0.0, 0.0)
     assert "more than 10,000 contacts or pieces" in HealdDamper.problems[0].text
     # and one that needs just fewer is made
-    own = sqrt(4.0 * 1e8 / 15.0)
+    own = sqrt(4.0 * 1e8 / HealdDamper().carrier_mass)
     problem, pieces, damper = step_of(
         0.01 * 0.499 * MOST_PIECES / own, spring_stiffness=1e8, damping_ratio=0.0
     )
