@@ -219,7 +219,7 @@ def residual(rows, step, stored, power):
 
 
 def test_carrier_holds_what_frame_and_warp_bring():
-    damper = HealdDamper(inputs_at_step_end=True, warp_force=-60.0)
+    damper = HealdDamper(inputs_at_step_end=True, carrier_mass=15.0, warp_force=-60.0)
 
     def power(row):
         brought = row["warp_force"] * (row["velocity"] + row["rate"])
