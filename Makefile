@@ -11,7 +11,7 @@ PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generat
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
 
-.PHONY: demo test check stress attack bench docs validation wheel pins clean
+.PHONY: demo test check stress attack bench docs site validation wheel pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
@@ -42,6 +42,10 @@ bench: .venv/installed-for-tests
 # the tables of variables in the READMEs of the FMUs, and their reference results
 docs: .venv/installed
 	$(BIN)/python docs/write_fmu_pages.py
+
+# the documentation site, in build/site: open index.html, no server is needed
+site: .venv/installed-for-tests
+	$(BIN)/python docs/build_site.py
 
 # the report that compares everything published with what is computed
 validation: .venv/installed-for-tests

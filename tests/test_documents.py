@@ -119,6 +119,26 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
 
 
+@pytest.mark.parametrize("name", ["tour", "report", "scenes", "traces"])
+def test_the_docs_can_be_followed(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
+) -> None:
+    page = HOUSE / "docs" / f"{name}.md"
+    monkeypatch.chdir(tmp_path)
+    if name != "tour":  # which begins in an empty folder
+        assert cli.main(["init", "--all"]) == 0
+        assert cli.main(["run", "wl680_3600.toml"]) == 0
+    for line in re.findall(r"^loomfmu .*$", "".join(blocks(page, "sh")), re.MULTILINE):
+        expected = 1 if line.endswith("# exit status 1") else 0
+        assert cli.main(shlex.split(line, comments=True)[1:]) == expected, line
+    if name == "tour":
+        assert blocks(page, "toml")[0] in Path("wl680_3600.toml").read_text()
+    shown: dict[str, Any] = {}
+    for text in blocks(page, "python"):
+        if "results/safe_speed" not in text:  # the traces of a sweep, which takes minutes
+            exec(text, shown)
+
+
 def test_the_table_of_fmus_names_all_components() -> None:
     table = (Path(__file__).parents[1] / "fmus" / "README.md").read_text()
     assert re.findall(r"^\| `(\w+)` \|", table, re.M) == list(COMPONENTS)

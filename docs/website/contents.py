@@ -1,0 +1,36 @@
+"""What is on the site and in which order: every page of the repository, with nothing to list twice."""
+
+from pathlib import Path
+
+from loomfmu.components import COMPONENTS
+from loomfmu.fmi.builder import folder
+
+ROOT = Path(__file__).parents[2]
+HOME, TOUR = "README.md", "docs/tour.md"
+REFERENCE = ("docs/command_line.md",)  # beside what `reference` generates
+GUIDES = ("docs/scenes.md", "docs/claims.md", "docs/report.md", "docs/traces.md", "docs/sweeps.md",
+          "docs/python.md", "docs/importing.md", "docs/own_mechanism.md")  # fmt: skip
+PROJECT = ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY.md")
+
+
+def sections(generated: list[str]) -> dict[str, list[str]]:
+    """The pages of each section, by their paths in the repository; `generated` are those of the reference.
+
+    A page in docs/ that no tuple names comes last among the guides.
+    """
+    docs = [page.relative_to(ROOT).as_posix() for page in sorted((ROOT / "docs").glob("*.md"))]
+    placed = {TOUR, *REFERENCE, *GUIDES}
+    mechanisms = [folder(each) / "README.md" for each in COMPONENTS.values()]
+    return {
+        "Start": [HOME, TOUR],
+        "Guides": [*GUIDES, *(page for page in docs if page not in placed)],
+        "Mechanisms": ["fmus/README.md", *(page.relative_to(ROOT).as_posix() for page in mechanisms)],
+        "Reference": [*REFERENCE, *generated],
+        "Evidence": ["results/validation.md", "results/benchmarks.md"],
+        "Project": list(PROJECT),
+    }
+
+
+def title(markdown: str) -> str:
+    """The heading of a page."""
+    return next(line[2:].strip() for line in markdown.splitlines() if line.startswith("# "))
