@@ -69,7 +69,8 @@ def test_init_writes_all_examples_and_overwrites_none(
     (tmp_path / "twill.toml").write_text("mine")
     assert main(["init", str(tmp_path), "--all"]) == 2
     error = capsys.readouterr().err
-    assert error == f"loomfmu: {tmp_path / 'twill.toml'} already exists; nothing was written\n"
+    reason = "already exists and differs; nothing was written: name another folder"
+    assert error == f"loomfmu: {tmp_path / 'twill.toml'} {reason}\n"
     assert [path.name for path in tmp_path.iterdir()] == ["twill.toml"]
     (tmp_path / "twill.toml").unlink()
     assert main(["init", str(tmp_path), "--all"]) == 0

@@ -50,13 +50,19 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
     found = sorted(path for path in source.rglob("*") if path.suffix in KINDS)
     chosen = found if everything else [source / name for name in STARTERS]
     targets = {path: directory / path.relative_to(source) for path in chosen}
-    for target in targets.values():
-        if target.exists() or target.is_symlink():
-            raise LoomfmuError(f"{target} already exists; nothing was written")
+    for path, target in targets.items():
+        if target.is_symlink() or (target.exists() and not _same(path, target)):
+            raise LoomfmuError(
+                f"{target} already exists and differs; nothing was written: name another folder"
+            )
     for path, target in targets.items():
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, target)
     return list(targets.values())
+
+
+def _same(path: Path, other: Path) -> bool:
+    return other.is_file() and path.read_bytes() == other.read_bytes()
 
 
 def components(names: Sequence[str]) -> list[type[Component]]:

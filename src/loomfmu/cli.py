@@ -142,6 +142,8 @@ def _run_here(options: argparse.Namespace) -> int:
         options.scene, output=options.output, progress=True,
         flavour="live" if options.live else "native", overwrite=options.force,
     )  # fmt: skip
+    # before anything is printed: the reader of our output may have had enough
+    page = _page_of(result.trace, options.force) if options.report else None
     for warning in result.warnings:
         complain(f"warning: {warning}")
     scene = result.scene
@@ -164,11 +166,15 @@ def _run_here(options: argparse.Namespace) -> int:
     path = str(result.path)
     summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
     say(f"trace: {path}    summary: {shlex.join(summary)}")
-    if options.report:
-        from . import report
-
-        say(f"report: {report.write([result.trace], overwrite=options.force)}")
+    if page:
+        say(f"report: {page}")
     return 0 if result.holds else 1
+
+
+def _page_of(trace: "Trace", overwrite: bool) -> Path:
+    from . import report
+
+    return report.write([trace], overwrite=overwrite)
 
 
 def _print_pace(result: "Result") -> None:

@@ -203,3 +203,11 @@ def test_each_run_has_a_new_instance_of_a_third_party_fmu(
         np.testing.assert_array_equal(loom.evaluate().trace["motor.flange_w"], first)
     assert made == ["motor"] * 3
     assert not any(slave.name == "motor" for each in pool._resting.values() for slave in each)
+
+
+def test_what_does_not_fit_in_memory_is_refused_in_one_line() -> None:
+    scene = loomfmu.prepare(scenes.parse('[loom]\nmachine = "WL680-3600"\n', "long"))
+    with pytest.raises(
+        LoomfmuError, match=r"^long: \d+ samples do not fit in memory; take fewer revolutions"
+    ):
+        scene.evaluate({"revolutions": 1e9})

@@ -8,10 +8,14 @@ from xml.etree import ElementTree
 
 import pytest
 
-from loomfmu import report
+import loomfmu
+from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.report import diagram
 from loomfmu.traces import Trace
 
+SIMS = Path(__file__).parents[2] / "sims"
 Open = Callable[..., Any]
 BEGINNINGS = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
@@ -70,3 +74,24 @@ def test_what_cannot_be_drawn_is_said_in_one_line(
     assert main(["diagram", str(copied), *arguments]) == 2
     said = capsys.readouterr().err.strip()
     assert reason in said and "\n" not in said
+
+
+@pytest.mark.parametrize(
+    ("steps", "shown"), [(24, "Not drawn: the samples are up to 15° apart"), (90, "up to 4.0° apart")]
+)
+def test_coarse_samples_are_not_shown_as_if_they_were_fine(
+    tmp_path: Path, opened: Open, steps: int, shown: str
+) -> None:
+    values = {"steps_per_revolution": steps, "revolutions": 1}
+    trace = loomfmu.run(SIMS / "wl680_3600.toml", set=values, output=tmp_path / "coarse.h5").trace
+    assert shown in opened(report.write([trace])).inner_text("#diagram")
+    if steps == 24:
+        with pytest.raises(LoomfmuError, match="there is no timing diagram: the samples are up to 15° apart"):
+            diagram.write(trace, tmp_path / "coarse.svg")
+
+
+def test_a_trace_without_mechanisms_says_what_a_diagram_needs(tmp_path: Path) -> None:
+    scene = scenes.parse('record = ["shaft.angle"]\nsteps_per_revolution = 90\n[shaft]\n')
+    trace = loomfmu.run(scene, output=tmp_path / "shaft.h5").trace
+    with pytest.raises(LoomfmuError, match=r'records nothing that it shows; add "weft.travel"'):
+        diagram.write(trace, tmp_path / "shaft.svg")

@@ -34,6 +34,8 @@ def test_a_click_on_a_place_moves_the_cursor_there(written: Path, opened: Open) 
     found = opened(written)
     found.locator("#claims .place").first.click()
     assert found.inner_text("#cursor-place").startswith("rev. 1, 100.1°")
+    found.keyboard.press("ArrowRight")  # the button that was clicked keeps only Space and Enter
+    assert found.inner_text("#cursor-place").startswith("rev. 1, 101.1°")
 
 
 def test_the_cursor_follows_slider_keys_and_play(written: Path, opened: Open) -> None:

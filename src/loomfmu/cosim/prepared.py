@@ -128,7 +128,11 @@ class Prepared:
         """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`."""
         with self._turn:
             pattern, scene = self._ready(set)
-            return pattern.evaluate(scene)
+            try:
+                return pattern.evaluate(scene)
+            except MemoryError:
+                too_many = f"{scene.steps + 1} samples do not fit in memory"
+                raise LoomfmuError(f"{scene.name}: {too_many}; take fewer revolutions or steps") from None
 
     def run(
         self, set: dict[str, Any] | None = None, *, output: str | Path | None = None,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 
 from ..errors import LoomfmuError
@@ -10,12 +11,14 @@ from ..files import write_file
 from ..traces import Trace, Verdict
 from . import pictures
 from .occasions import Bar, Occasions, Revolution, Row
-from .section import TURN, Section, Subject
+from .section import COARSEST, TURN, Section, Subject
 from .shapes import Drawing, Point, Shape, Text, file, on_circle, ring, svg
 from .templates import template
 
 LEFT, RIGHT, TOP, ROW, WIDTH = 110.0, 20.0, 34.0, 30.0, 900.0
 CENTRE, OUTER, INNER, SQUARE = (345.0, 345.0), 290.0, 90.0, 690.0
+COARSE = math.radians(1.0)  # between samples: beyond, the diagram says how far they are apart
+EXAMPLES = '"weft.travel", "belt.free_length" or "heald_1.lift"'
 MOST_DRAWN = 24  # revolutions that differ, in one report
 
 
@@ -33,8 +36,8 @@ def section(subject: Subject) -> Section | None:
     if not subject.turns:
         return None
     occasions = Occasions(subject)
-    if not occasions.rows:
-        return None
+    if reason := _not_drawn(subject, occasions):
+        return Section("diagram", "Timing diagram", f"<p>Not drawn: {escape(reason)}.</p>")
     drawn: list[Revolution] = []
     marks: list[list[Mark]] = []
     shown: dict[int, int] = {}
@@ -55,7 +58,7 @@ def section(subject: Subject) -> Section | None:
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
-        legend=_legend(occasions.rows),
+        legend=_legend(occasions.rows), coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
     )  # fmt: skip
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
     return Section("diagram", "Timing diagram", html, "diagram.js", data)
@@ -69,11 +72,10 @@ def write(
     Raises LoomfmuError where no shaft turns, there is no such revolution, or the file cannot be written.
     """
     subject = Subject([trace])
-    occasions = Occasions(subject) if subject.turns else None
-    if not occasions or not occasions.rows:
-        raise LoomfmuError(
-            f"{trace.path}: there is no timing diagram: no recorded mechanism turns with a shaft"
-        )
+    occasions = Occasions(subject)
+    reason = _not_drawn(subject, occasions) if subject.turns else "no shaft turns"
+    if reason:
+        raise LoomfmuError(f"{trace.path}: there is no timing diagram: {reason}")
     numbers = occasions.numbers
     number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
     if number not in numbers:
@@ -84,6 +86,16 @@ def write(
     title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
     kind = pictures.kind(output)
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
+
+
+def _not_drawn(subject: Subject, occasions: Occasions) -> str:
+    """Why there is no diagram of a shaft that turns; empty where there is one."""
+    if not occasions.rows:
+        return f"the trace records nothing that it shows; add {EXAMPLES} to record, or leave record out"
+    if subject.gap > COARSEST:
+        apart = f"{math.degrees(subject.gap):.0f}°"
+        return f"the samples are up to {apart} apart, too far to show when things happen"
+    return ""
 
 
 def marks_in(verdicts: Sequence[Verdict], number: int) -> list[Mark]:

@@ -194,7 +194,7 @@ def _shed(trace: Trace, dobby: str) -> Iterator[Row]:
         ],
         axis=0,
     )
-    yield Row(dobby, "Shed", (Bar("open: all frames near an end", "shed", closest),))
+    yield Row(dobby, "Shed", (Bar("all frames near their ends", "shed", closest),))
 
 
 def _reed(trace: Trace, reed: str) -> Iterator[Row]:

@@ -14,6 +14,7 @@ from ..traces import Trace, Verdict
 from .templates import text
 
 TURN = 2.0 * math.pi
+COARSEST = math.radians(10.0)  # between samples: beyond, neither motions nor intervals can be shown
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,11 @@ class Subject:
     def along(self, trace: Trace) -> NDArray[np.float64]:
         """Position of each sample of a trace."""
         return trace.shaft_angle if self.turns else trace.time
+
+    @cached_property
+    def gap(self) -> float:
+        """Largest distance between samples, as a position."""
+        return float(np.max(np.diff(self.positions), initial=0.0))
 
     def position(self, verdict: Verdict) -> float | None:
         """Where the worst value of a claim was; None if it has no place."""

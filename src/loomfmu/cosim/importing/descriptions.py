@@ -8,6 +8,7 @@ from typing import Any
 from ... import units
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
+from ...traces.signals import SHARED
 from ...variables import Component, Variable, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
@@ -104,15 +105,15 @@ def _check(variables: Iterable[Any]) -> None:
 def plain_names(names: Iterable[str]) -> list[str]:
     """Names of letters, digits and _, a letter first, all different.
 
-    >>> plain_names(["phi", "body.phi", "der(w)", "x[1]", "x_1", "time"])
-    ['phi', 'body_phi', 'der_w', 'x_1', 'x_1_2', 'time_']
+    >>> plain_names(["phi", "body.phi", "der(w)", "x[1]", "x_1", "time", "shaft.angle"])
+    ['phi', 'body_phi', 'der_w', 'x_1', 'x_1_2', 'time_', 'shaft_angle_']
     """
     found: dict[str, None] = {}
     numbers: dict[str, int] = {}  # the last one that was tried for a name
     for name in names:
         plain = re.sub("[^A-Za-z0-9_]+", "_", name).strip("_") or "unnamed"
         plain = plain if plain[0].isalpha() else f"v_{plain}"
-        plain = "time_" if plain == "time" else plain  # each group of a trace has a time of its own
+        plain = f"{plain}_" if plain in SHARED else plain  # each group of a trace has these of its own
         free = plain
         while free in found:
             numbers[plain] = numbers.get(plain, 1) + 1

@@ -9,6 +9,7 @@ from ...errors import LoomfmuError
 from .instances import TIMES
 from .tables import number
 
+SLOWEST = 1e-12  # rad/s: below, times overflow
 ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
 
 
@@ -69,6 +70,11 @@ def check_times(times: Times, speed: float | None) -> None:
         )
     if speed == 0.0:
         raise LoomfmuError("shaft.speed = 0 rev/min: the shaft's speed sets the step, so it must not be 0")
+    if abs(speed) < SLOWEST:
+        shown = f"{speed / units.unit('rev/min').factor:.7g} rev/min"
+        raise LoomfmuError(
+            f"shaft.speed = {shown}: one revolution would take {2.0 * math.pi / SLOWEST:.1g} s or more"
+        )
     if steps < 1:
         raise LoomfmuError(
             f"revolutions = {times.periods:g} at {times.steps_per_period} steps each is less than one step"

@@ -26,7 +26,14 @@ from .package import Package
 from .values import Given, apply, bound
 from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
 
-KEPT = ("title", "description", "record", "inputs", "claims")  # keys of a scene that no structure can hold
+KEPT = (
+    "title",
+    "description",
+    "coupling",
+    "record",
+    "inputs",
+    "claims",
+)  # keys of a scene that no structure can hold
 Names = Mapping[tuple[str, ...], str]
 
 

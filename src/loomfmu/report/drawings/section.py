@@ -2,9 +2,7 @@
 
 from math import degrees, floor, radians
 
-import numpy as np
-
-from ..section import TURN, Section, Subject
+from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
 from .belt import between, shapes, tracked, width
 from .drive import drive
@@ -14,7 +12,6 @@ from .shed import frames, shed
 from .sketch import Figure
 from .tracks import Tracks
 
-COARSEST = radians(10.0)  # between samples, for drawings that move
 DRAWN = {
     "WeftInsertion": ("travel",),
     "BeltMonitor": ("free_length", "deflection"),
@@ -28,9 +25,9 @@ def section(subject: Subject) -> Section | None:
     """Drawings of the first trace's mechanisms; None if it records none that can be drawn."""
     if not any(instances(subject.trace, fmu, *signals) for fmu, signals in DRAWN.items()):
         return None
-    gap = float(np.max(np.diff(subject.positions), initial=0.0))
-    if subject.turns and gap > COARSEST:
-        coarse = f"Not drawn: the samples are up to {degrees(gap):.0f}° apart, too far to show a motion."
+    if subject.turns and subject.gap > COARSEST:
+        apart = f"{degrees(subject.gap):.0f}°"
+        coarse = f"Not drawn: the samples are up to {apart} apart, too far to show a motion."
         return Section("motion", "The loom in motion", template("motion.html.j2").render(coarse=coarse))
     tracks = Tracks(subject, still(subject))
     figures = _figures(tracks)

@@ -79,8 +79,10 @@ const loomfmu = (() => {
     " ": toggle,
   };
   document.addEventListener("keydown", event => {
-    const taken = event.target.closest("button, a, summary, select, textarea, input:not(#cursor-slider)");
-    if (taken || event.ctrlKey || event.altKey || event.metaKey || !moves[event.key]) return;
+    // Space belongs to what it presses, all keys to what takes text
+    const text = event.target.closest("select, textarea, input:not(#cursor-slider):not([type=checkbox])");
+    const pressed = event.key === " " && event.target.closest("button, a, summary, input[type=checkbox]");
+    if (text || pressed || event.ctrlKey || event.altKey || event.metaKey || !moves[event.key]) return;
     event.preventDefault();
     if (event.key !== " ") pause();
     moves[event.key](event);
