@@ -104,13 +104,15 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.chdir(tmp_path)
     expected = {"shaft.speed=700rpm": 1, "belt.guide_clearance=0.5mm": 1}  # a claim fails there
     for arguments in commands(README):
-        if arguments[0] in ("build", "export", "sweep"):  # long; their own tests run them
+        if arguments[0] in ("build", "export", "sweep", "compare"):  # long, or of runs below
             continue
         status = next((code for value, code in expected.items() if value in arguments), 0)
         assert cli.main(arguments) == status, arguments
     Path("my_loom.toml").write_text(blocks(README, "toml")[0])
     assert cli.main(["run", "my_loom.toml"]) == 0
     assert cli.main(["run", "wl680_3600.toml"]) == 0
+    (compared,) = [arguments for arguments in commands(README) if arguments[0] == "compare"]
+    assert cli.main(compared) == 1
     shown: dict[str, Any] = {}
     for page in (README, HOUSE / "docs" / "python.md"):
         for text in blocks(page, "python"):

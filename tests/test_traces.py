@@ -105,6 +105,15 @@ def test_the_layout_is_flat_and_along_one_time(file: h5py.File, result: loomfmu.
                 assert list(dataset.dims[0].values()) == [file["time"]]
 
 
+def test_viewers_open_on_a_plot(file: h5py.File) -> None:
+    # the path that h5web follows: default, then NXdata with a signal and its axes, all numeric columns
+    assert (file.attrs["NX_class"], file.attrs["default"]) == ("NXroot", "belt")
+    assert file["belt"].attrs["signal"] == "lowest_margin"  # of the first claim
+    for group in (each for each in file.values() if isinstance(each, h5py.Group)):
+        assert group.attrs["NX_class"] == "NXdata"
+        assert group[group.attrs["axes"]].shape == group[group.attrs["signal"]].shape
+
+
 def test_every_dataset_is_chunked_compressed_and_described(file: h5py.File, result: loomfmu.Result) -> None:
     for name, instance in result.scene.instances.items():
         declared = {v.name: v for v in variables_of(fmus.COMPONENTS[instance.fmu.name])}
@@ -141,7 +150,7 @@ def test_some_units_spelt_out(file: h5py.File) -> None:
 def test_values_stand_as_they_ran(file: h5py.File, result: loomfmu.Result) -> None:
     assert file["heald_1"].attrs["stroke"] == 0.06
     assert file["belt"].attrs["head_length"] == 0.55
-    about = {"fmu", "machine", "head", "parameter_units"}
+    about = {"fmu", "machine", "head", "parameter_units", "NX_class", "signal", "axes"}
     fed = {wire.sink for wire in result.scene.wires}
     idle = {"shaft_angle", "shaft_velocity", "shaft_acceleration", "prescribed_length_factor"}
     idle |= {"lift_fraction", "lift_rate", "lift_acceleration"}

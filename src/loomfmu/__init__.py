@@ -1,8 +1,8 @@
 """The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
 
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
-runs, `sweep` runs it with many values;
-`Trace` reads a recorded run, `judge` judges a claim on it. `design` solves the same physics for a design.
+runs, `sweep` runs it with many values; `Trace` reads a recorded run, `judge` judges a claim on it, `compare`
+compares two. `design` solves the same physics for a design.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -21,11 +21,14 @@ if TYPE_CHECKING:
     from .errors import LoomfmuError as LoomfmuError
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
+    from .traces import Comparison as Comparison
     from .traces import Trace as Trace
     from .traces import Verdict as Verdict
+    from .traces import compare as compare
 
 # public name -> its module
 _HOMES = {
+    "Comparison": "traces",
     "Evaluation": "cosim.results",
     "LoomfmuError": "errors",
     "Prepared": "cosim.prepared",
@@ -33,6 +36,7 @@ _HOMES = {
     "Sweep": "sweeps.run",
     "Trace": "traces",
     "Verdict": "traces",
+    "compare": "traces",
     "design": "",
     "evaluate": "cosim.run",
     "prepare": "cosim.run",

@@ -47,6 +47,7 @@ def parser() -> argparse.ArgumentParser:
         _report,
         _diagram,
         _plot,
+        _compare,
         _sweep,
         _list,
         _init,
@@ -115,6 +116,30 @@ def _plot(commands: Any) -> None:
         "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
     )
     _add_force(plot, "the picture even if it is not one")
+
+
+def _compare(commands: Any) -> None:
+    compare = commands.add_parser(
+        "compare", help="report what differs between two traces, where first and by how much",
+        epilog="Exit status: 0 equal within the tolerance; 1 they differ; 2 bad input.",
+    )  # fmt: skip
+    compare.add_argument("first", metavar="A.h5")
+    compare.add_argument("second", metavar="B.h5")
+    compare.add_argument(
+        "--tolerance", action="append", default=[], metavar="SHARE|NAME=VALUE",
+        help="what may differ, as a share of each signal's largest magnitude (1e-9), such as 0.1%%; or, for"
+        " one signal, an amount with its unit, such as belt.free_length=0.1mm",
+    )  # fmt: skip
+    compare.add_argument(
+        "--ignore", action="append", default=[], metavar="NAME",
+        help="leave signals and values out, such as 'motor.*'",
+    )  # fmt: skip
+    compare.add_argument(
+        "--over", choices=("angle", "time"),
+        help="compare at equal shaft angles or at equal times; shaft angles by default if the shafts turn",
+    )  # fmt: skip
+    compare.add_argument("--report", metavar="FILE.html", help="also write a page that shows B over A")
+    _add_force(compare, "FILE.html even if it is not a report")
 
 
 def _sweep(commands: Any) -> None:

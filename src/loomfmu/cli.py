@@ -86,17 +86,18 @@ def _reason(error: BaseException) -> str:
     return f"{what} (a bug in loomfmu; please report it with the output of --debug)"
 
 
-def _overrides(options: argparse.Namespace) -> dict[str, Any]:
-    overrides: dict[str, Any] = {}
-    for text in options.overrides:
+def _pairs(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:
+    """The values by their names, as an option gives them."""
+    pairs: dict[str, Any] = {}
+    for text in texts:
         key, equals, value = text.partition("=")
         if not equals:
-            raise LoomfmuError(f"--set {text}: not of the form INSTANCE.VARIABLE=VALUE")
+            raise LoomfmuError(f"{option} {text}: not of the form INSTANCE.VARIABLE=VALUE")
         key = key.strip()
-        if key in overrides:
-            raise LoomfmuError(f"--set {key} is given twice: {overrides[key]} and {value.strip()}")
-        overrides[key] = value.strip()
-    return overrides
+        if key in pairs:
+            raise LoomfmuError(f"{option} {key} is given twice: {pairs[key]} and {value.strip()}")
+        pairs[key] = value.strip()
+    return pairs
 
 
 def _export(options: argparse.Namespace) -> int:
@@ -109,7 +110,7 @@ def _export(options: argparse.Namespace) -> int:
     if options.ssp and options.fmi:
         raise LoomfmuError("--fmi is for --fmu: a system package holds FMUs of FMI 2.0")
     platforms = _platforms(options)
-    loaded = scene.load(options.scene, _overrides(options))
+    loaded = scene.load(options.scene, _pairs(options.overrides))
     if options.fmu:
         warnings = whole.export(loaded, options.fmu, platforms, options.fmi or 2, options.force)
     else:
@@ -128,7 +129,7 @@ def _run(options: argparse.Namespace) -> int:
         from . import report
 
         report.check()  # before the run, not after it
-    options.scene = checked(options.scene, _overrides(options), "live" if options.live else "native")
+    options.scene = checked(options.scene, _pairs(options.overrides), "live" if options.live else "native")
     if unprotected := options.scene.unprotected:
         return supervised(lambda: _status(lambda: _run_here(options), options), unprotected)
     return _run_here(options)
@@ -342,6 +343,30 @@ def _plot(options: argparse.Namespace) -> int:
     return 0
 
 
+def _compare(options: argparse.Namespace) -> int:
+    from .traces import compare
+    from .traces.comparing import TOLERANCE
+    from .traces.damage import check
+
+    amounts = [text for text in options.tolerance if "=" in text]
+    shares = [text for text in options.tolerance if "=" not in text]
+    if len(shares) > 1:
+        raise LoomfmuError(f"--tolerance is given twice: {shares[0]} and {shares[1]}")
+    for path in (options.first, options.second):
+        check(Path(path))
+    found = compare(
+        options.first, options.second, ignore=options.ignore, over=options.over,
+        tolerance=units.parse(shares[0], "1") if shares else TOLERANCE,
+        absolute=_pairs(amounts, "--tolerance"),
+    )  # fmt: skip
+    found.show()
+    if options.report:
+        from . import report
+
+        say(f"report: {report.write([options.first, options.second], options.report, options.force)}")
+    return 0 if found else 1
+
+
 def _summarise(trace: "Trace") -> None:
     """Print what a trace says of the run, its signals, and the verdicts."""
     attributes = trace.attributes
@@ -379,17 +404,15 @@ def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
     if not verdicts:
         say("no claims")
         return
-    headings = ("verdict", "claim", "signal", "worst", "bound", "at", "note")
-    rows, entries = [], []
-    for verdict in verdicts:
-        worst, bound = verdict.shown(verdict.worst), verdict.shown(verdict.bound)
-        rows.append(
-            (verdict.word, verdict.claim, verdict.signal, worst, bound, verdict.place or "-", verdict.note)
-        )
-        place = f", at {verdict.place}" if verdict.place else ""
-        entry = f"{verdict.word}  {verdict.claim}", f"({verdict.signal})", f"{worst}, bound {bound}{place}"
-        entries.append((*entry, f"({verdict.note})") if verdict.note else entry)
-    printed.show(headings, rows, entries)
+    from .traces.verdict import HEADINGS
+
+    rows = [verdict.row for verdict in verdicts]
+    entries = []
+    for word, claim, name, worst, bound, place, note in rows:
+        at = f", at {place}" if place != "-" else ""
+        entry = f"{word}  {claim}", f"({name})", f"{worst}, bound {bound}{at}"
+        entries.append((*entry, f"({note})") if note else entry)
+    printed.show(HEADINGS, rows, entries)
 
 
 COMMANDS = {
@@ -404,6 +427,7 @@ COMMANDS = {
     "report": _report,
     "diagram": _diagram,
     "plot": _plot,
+    "compare": _compare,
     "cache": _cache,
     "validate": _validate,
 }

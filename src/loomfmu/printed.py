@@ -1,4 +1,4 @@
-"""All that is printed: one place where foreign text is made harmless, tables that fit, progress bars."""
+"""All that is printed: one place where foreign text is made harmless, tables that fit."""
 
 import contextlib
 import shutil
@@ -6,14 +6,12 @@ import sys
 import textwrap
 import traceback
 import unicodedata
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TextIO
 
 from .errors import LoomfmuError
 
 INDENT = "  "  # of the lines of an entry but the first
-Advance = Callable[[int], None]
 
 
 def safe(text: object) -> str:
@@ -115,19 +113,3 @@ def _coloured(line: str, stream: TextIO) -> str:
     with console.capture() as captured:
         console.print(text, soft_wrap=True, end="")
     return captured.get()
-
-
-@contextmanager
-def progress(title: str, total: int, done: int = 0, *, wanted: bool = True) -> Iterator[Advance]:
-    """A progress bar on standard error that takes how much more is done, where one is wanted and is seen."""
-    if not wanted or not sys.stderr.isatty():
-        yield lambda _more: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    words = TextColumn("{task.description}", markup=False)
-    columns = (words, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=2) as bar:
-        task = bar.add_task(safe(title), total=total, completed=done)
-        yield lambda more: bar.advance(task, more)

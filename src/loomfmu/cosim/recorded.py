@@ -7,6 +7,7 @@ from pathlib import Path
 from .. import printed
 from ..errors import LoomfmuError, why
 from ..files import cannot_write, check_target
+from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
 from .claims.claim import Claim
@@ -94,5 +95,5 @@ def bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
         shown = step
 
     long = plan.grid.steps >= LONG_RUN
-    with printed.progress(plan.scene.name, plan.grid.steps, wanted=wanted and long) as advance:
+    with progress_bar(plan.scene.name, plan.grid.steps, wanted=wanted and long) as advance:
         yield reached

@@ -3,7 +3,9 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .. import notebook
 from ..traces import Recording, Trace, Verdict
+from ..traces.verdict import HEADINGS
 from .scenes.scene import Scene
 
 
@@ -38,6 +40,16 @@ class Judged:
         listed = "".join(f"\n  {verdict}" for verdict in failing)
         return f"<{type(self).__name__} {self.scene.name}: {summary}{listed}>"
 
+    def _repr_html_(self) -> str:
+        failing = sum(not verdict for verdict in self.claims)
+        outcome = f"{failing} of {len(self.claims)} claims fail" if failing else "all claims hold"
+        notes = [f"ended by {self.ended}"] * bool(self.ended) + [f"warning: {each}" for each in self.warnings]
+        return notebook.block(
+            f"{self.scene.title}: {outcome if self.claims else 'no claims'}",
+            *([notebook.table(HEADINGS, [each.row for each in self.claims])] if self.claims else []),
+            *map(notebook.line, notes),
+        )  # fmt: skip
+
 
 @dataclass(frozen=True, repr=False)
 class Result(Judged):
@@ -49,6 +61,16 @@ class Result(Judged):
 
     path: Path
     trace: Trace = field(repr=False, compare=False)
+
+    def report(self, output: str | Path | None = None, overwrite: bool = False) -> Path:
+        """Write a page to look at, beside the trace unless `output` names it, and return its path.
+
+        Raises LoomfmuError as `loomfmu.report.write`, such as for a missing extra `report`.
+        """
+        from ..report import write
+
+        return write([self.trace], output, overwrite)
+
     seconds: float = field(default=0.0, kw_only=True, compare=False)
 
 

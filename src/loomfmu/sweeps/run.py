@@ -8,9 +8,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import printed
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, described, path_of, shown
+from ..progress import Advance
+from ..progress import progress as progress_bar
 from ..traces import TRACE
 from . import plan as plans
 from .plan import SweepPlan
@@ -175,7 +176,7 @@ def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
     left = store.left()
     count = sum(len(rows) for rows in left)
     title, total = store.plan.title, store.plan.rows
-    with printed.progress(title, total, total - count, wanted=progress) as advance:
+    with progress_bar(title, total, total - count, wanted=progress) as advance:
 
         def keep(rows: range, batch: Batch) -> None:
             store.write(rows, batch)
@@ -204,7 +205,7 @@ def _run_traces(
     paths = {row: store.trace_path(row) for row in traced_rows(table, limits.failures, limits.sample)}
     left = [row for row, path in paths.items() if not TRACE.ours(path)]
     tasks = [Task(row, run_trace, _traced(store, job, row, paths[row])) for row in left]
-    with printed.progress("traces", len(left), wanted=progress) as advance:
+    with progress_bar("traces", len(left), wanted=progress) as advance:
         failed = _do(tasks, pool, advance)
     return tuple(path for row, path in paths.items() if row not in failed), failed
 
@@ -213,7 +214,7 @@ def _traced(store: "Store", job: Job, row: int, path: Path) -> tuple[Any, ...]:
     return job, store.plan.settings(range(row, row + 1))[0], path
 
 
-def _do(tasks: list[Task], pool: Pool, advance: printed.Advance) -> dict[Any, str]:
+def _do(tasks: list[Task], pool: Pool, advance: Advance) -> dict[Any, str]:
     """Do tasks that give nothing back; why some failed, by their keys."""
     failed: dict[Any, str] = {}
     under_way = 0

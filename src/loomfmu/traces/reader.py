@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import notebook
 from ..errors import LoomfmuError, shown
 from ..files import source
 from ..units import UnitError
@@ -20,9 +21,10 @@ from .disk import superblock
 from .layout import Foreign, check_link, column, has, member
 from .places import place_of
 from .signals import SHARED, Floats, Signals
-from .verdict import Verdict
+from .verdict import HEADINGS, Verdict
 
 REQUIRED = ("title", "status", "software")  # attributes that every trace has
+ABOUT = ("parameter_units", "NX_class", "signal", "axes")  # attributes of a group that are not values
 
 
 class Trace(Signals):
@@ -55,6 +57,20 @@ class Trace(Signals):
 
     def __repr__(self) -> str:
         return f"<Trace {self.given}>"
+
+    def _repr_html_(self) -> str:
+        signals = notebook.table(
+            ("signal", "unit", "what it is"),
+            [(name, self.unit(name), self.description(name)) for name in self],
+        )
+        count = f"{len(self._signals)} signals, {self.rows} samples"
+        verdicts = (
+            [notebook.table(HEADINGS, [verdict.row for verdict in self.verdicts])] if self.judged else []
+        )
+        return notebook.block(
+            f"{self.attributes['title']} ({self.given}, {self.status})", *verdicts,
+            f"<details><summary>{count}</summary>{signals}</details>",
+        )  # fmt: skip
 
     @property
     def path(self) -> Path:
@@ -126,6 +142,10 @@ class Trace(Signals):
         except (OSError, RuntimeError) as error:
             raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
         return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
+
+    def read(self, signal: str) -> NDArray[Any]:
+        """The values of a signal, as `trace[signal]`, which this does not keep in memory."""
+        return self._cache[signal] if signal in self._cache else self._read(signal)
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
@@ -262,6 +282,31 @@ class Trace(Signals):
         name = self._text(signal, "rate")
         rate = f"{signal.split('.')[0]}.{name}"
         return rate if name and rate in self else None
+
+    def is_real(self, signal: str) -> bool:
+        """Whether a signal holds real numbers; whole numbers, choices and yes or no do not vary smoothly."""
+        with self._dataset(signal) as dataset:
+            return bool(dataset.dtype.kind == "f")
+
+    @cached_property
+    def parameters(self) -> dict[str, float | int | str]:
+        """The values of all instances by names such as `heald_1.stroke`: numbers in SI, and texts such as
+        `belt.head`."""
+        with self._opened() as file:
+            groups = {name: member(file, name) for name in file if name not in SHARED}
+            return {
+                f"{name}.{key}": value.item() if isinstance(value, np.generic) else str(value)
+                for name, group in groups.items()
+                for key, value in group.attrs.items()
+                if key not in ABOUT
+            }
+
+    def parameter_unit(self, name: str) -> str:
+        """Unit of a value in `parameters`; "1" for one without."""
+        instance, _, key = name.partition(".")
+        with self._opened() as file:
+            known = json.loads(member(file, instance).attrs.get("parameter_units", "{}"))
+            return str(known.get(key, "1"))
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance, or an input that was left at its start, such as `heald_1.stroke`."""

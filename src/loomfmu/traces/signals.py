@@ -95,6 +95,27 @@ class Signals(ABC):
         """What the claims on a run have in common, where it is kept: of a file it may be too large."""
         return {}
 
+    def to_xarray(self, *signals: str, fold: bool | int = False) -> Any:
+        """The signals, or these alone, as an xarray `Dataset`: in SI, with units and the shaft's angle.
+
+        Folded, there is a row for each whole revolution, along the angle within it [rad]: `fold` is the
+        number of angles, or True for as many as there are samples in a revolution.
+
+        Raises:
+            LoomfmuError: an unknown signal, a fold without a whole revolution, or no `loomfmu[xarray]`
+        """
+        from .datasets import dataset
+
+        return dataset(self, signals or tuple(self), fold)
+
+    def description(self, signal: str) -> str:
+        """What a signal is."""
+        return ""
+
+    def read(self, signal: str) -> NDArray[Any]:
+        """The values of a signal, as `signals[name]`, which this does not keep in memory."""
+        return self[signal]
+
     def _unknown(self, signal: object) -> LoomfmuError:
         return LoomfmuError(
             f"{self.name}: signal {shown(signal)} is not recorded{suggestion(str(signal), self)}"
@@ -174,6 +195,10 @@ class Recording(Signals):
     def display(self, signal: str) -> str:
         """Display unit of a signal."""
         return self._channel(signal).display
+
+    def description(self, signal: str) -> str:
+        """What a signal is."""
+        return self._channel(signal).description
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""

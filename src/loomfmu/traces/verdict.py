@@ -5,8 +5,10 @@ from dataclasses import MISSING, dataclass, fields
 from types import NoneType
 from typing import Any, Self
 
-from .. import units
+from .. import notebook, units
 from ..errors import shown
+
+HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "at", "note")
 
 # what JSON makes of the types of the fields
 JSON: dict[Any, tuple[type, ...]] = {
@@ -65,6 +67,15 @@ class Verdict:
     def word(self) -> str:
         """The outcome in one word."""
         return "holds" if self.holds else "FAILS"
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """The verdict as a row of a table below `HEADINGS`."""
+        worst, bound = self.shown(self.worst), self.shown(self.bound)
+        return self.word, self.claim, self.signal, worst, bound, self.place or "-", self.note
+
+    def _repr_html_(self) -> str:
+        return notebook.table(HEADINGS, [self.row])
 
     @property
     def place(self) -> str:

@@ -78,6 +78,8 @@ class TraceWriter:
             self._shared = Columns([self._time, self._angle], "f8")
             self._reals, self._real_columns = self._chosen(datasets, "f8", real=True)
             self._integers, self._integer_columns = self._chosen(datasets, "i4", real=False)
+            for channel in channels:
+                self._plotted(channel.instance, channel.variable)
             for instance, values in groups.items():
                 self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
@@ -131,6 +133,15 @@ class TraceWriter:
             dataset.attrs["flag_meanings"] = " ".join(channel.meanings)
         return dataset
 
+    def _plotted(self, instance: str, signal: str) -> None:
+        """Mark a group and the root as NeXus does, so that h5web opens on a plot; the first mark stays."""
+        self._file.attrs.setdefault("NX_class", "NXroot")
+        self._file.attrs.setdefault("default", instance)
+        marks = self._file[instance].attrs
+        marks.setdefault("NX_class", "NXdata")
+        marks.setdefault("signal", signal)
+        marks.setdefault("axes", "time")
+
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Write a block: values along the rows, signals along the columns."""
         reserve(self._file.id.get_vfd_handle(), self._file.id.get_filesize() + self._block)
@@ -151,7 +162,9 @@ class TraceWriter:
         """
         self.seal()
         ended = {"ended_by": ended_by} if ended_by else {}
-        self._annotate({"claims": json.dumps(verdicts), **ended, "status": "complete"})
+        self._annotate(
+            {"claims": json.dumps(verdicts), **ended, "status": "complete"}, self._claimed(verdicts)
+        )
         trace = Trace(self.partial)
         replace(self.partial, self.path)
         trace.given, trace.name = self.path, self.path.name
@@ -161,10 +174,18 @@ class TraceWriter:
                 kept.unlink()
         return trace
 
-    def _annotate(self, attributes: Mapping[str, str]) -> None:
-        """Write attributes of the closed file."""
+    def _claimed(self, verdicts: Sequence[dict[str, Any]]) -> str:
+        """The recorded signal that a claim is on, the first of them; empty if there is none."""
+        recorded = {f"{channel.instance}.{channel.variable}" for channel in self.channels}
+        return next((each["signal"] for each in verdicts if each["signal"] in recorded), "")
+
+    def _annotate(self, attributes: Mapping[str, str], plotted: str = "") -> None:
+        """Write attributes of the closed file, and which signal viewers show first."""
         with edited(self.partial) as file:
             file.attrs.update(attributes)
+            if plotted:
+                instance, _, variable = plotted.partition(".")
+                file.attrs["default"], file[instance].attrs["signal"] = instance, variable
 
     def abandon(self, status: str) -> Path:
         """Close what was written so far, marked with its status, and keep it; its path.

@@ -1,0 +1,153 @@
+"""What differs between two traces, as `compare` found it and as people read it."""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+from .. import notebook, printed, units
+
+SIGNAL_HEADINGS = ("signal", "first at", "", "", "largest difference", "relative", "at")
+CHANGE_HEADINGS = ("what", "name", "", "")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A sample: its time [s], the shaft's angle [rad] and the revolution; NaN and None without a shaft."""
+
+    time: float
+    angle: float
+    revolution: int | None
+
+    def __str__(self) -> str:
+        if self.revolution is None:
+            return f"{self.time:.6g} s"
+        return f"{self.time:.6g} s, {math.degrees(self.angle):.3f} deg, rev. {self.revolution}"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A signal that differs: where first, with the values of both traces there, and where most.
+
+    Values are in `unit`; people read them in `display`. `scale` is the largest magnitude of the signal in
+    either trace; `largest` is infinite where only one of them has a value.
+    """
+
+    signal: str
+    unit: str
+    display: str
+    first: Place
+    values: tuple[float, float]
+    largest: float
+    scale: float
+    at: Place
+
+    @property
+    def relative(self) -> float:
+        """The largest difference as a share of the signal's largest magnitude."""
+        return self.largest / self.scale if self.scale else math.inf
+
+    def shown(self, value: float) -> str:
+        """One of the values as people read it."""
+        if math.isnan(value):
+            return "no value"
+        known = self.display != "1" and self.unit in units.UNITS and self.display in units.UNITS
+        factor = units.unit(self.unit).factor / units.unit(self.display).factor if known else 1.0
+        label = self.display if known else self.unit
+        return f"{value * factor:.7g}" + ("" if label == "1" else f" {label}")
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """The difference as a row of a table."""
+        values = (self.shown(value) for value in self.values)
+        return (
+            self.signal, str(self.first), *values, self.shown(self.largest), f"{self.relative:.3g}",
+            str(self.at),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something else that differs: what it is, its name, and what it is in either trace."""
+
+    what: str
+    name: str
+    first: str
+    second: str
+
+    @property
+    def row(self) -> tuple[str, str, str, str]:
+        """The change as a row of a table."""
+        return self.what, self.name, self.first, self.second
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison:
+    """Two traces, compared; true if they are equal within the tolerance.
+
+    `differences` are the signals that differ, `changes` what else does: signals that only one trace has,
+    claims, values that were set, the length of the run. `how` says at which samples they were compared,
+    `notes` what may explain a difference, such as another version of an FMU, and counts as none.
+    """
+
+    names: tuple[str, str]
+    compared: int
+    how: str
+    tolerance: float
+    differences: tuple[Difference, ...]
+    changes: tuple[Change, ...]
+    notes: tuple[str, ...]
+
+    def __bool__(self) -> bool:
+        return not self.differences and not self.changes
+
+    @property
+    def equal(self) -> bool:
+        """Whether nothing differs."""
+        return bool(self)
+
+    @property
+    def summary(self) -> str:
+        """The outcome in a line."""
+        first, second = self.names
+        limit = f"{self.tolerance:g} of their largest magnitude"
+        if self:
+            equal = f"equal within {limit}" if self.tolerance else "exactly equal"
+            return f"{first} and {second}: {_counted(self.compared, 'signal')}, {equal}"
+        counts = Counter(change.what for change in self.changes)
+        parts = [f"{len(self.differences)} of {_counted(self.compared, 'signal')}"] * bool(self.differences)
+        parts += [f"{kind} ({count})" for kind, count in counts.items()]
+        beyond = f" by more than {limit}" if self.tolerance else ""
+        return f"{first} and {second} differ{beyond}: {', '.join(parts)}"
+
+    def __repr__(self) -> str:
+        lines = [" | ".join(each.row) for each in self._listed]
+        return "\n  ".join([f"<Comparison {self.summary}", *lines]) + ">"
+
+    @property
+    def _listed(self) -> tuple[Difference | Change, ...]:
+        return (*self.differences, *self.changes)
+
+    def _repr_html_(self) -> str:
+        tables = [notebook.table(headings, rows) for headings, rows in self._tables()]
+        return notebook.block(self.summary, *tables, *map(notebook.line, (self.how, *self.notes)))
+
+    def _tables(self) -> list[tuple[tuple[str, ...], list[tuple[str, ...]]]]:
+        """Headings and rows of the tables that are not empty."""
+        listed: list[tuple[tuple[str, ...], int, list[tuple[str, ...]]]] = [
+            (SIGNAL_HEADINGS, 2, [each.row for each in self.differences]),
+            (CHANGE_HEADINGS, 2, [each.row for each in self.changes]),
+        ]
+        return [((*head[:at], *self.names, *head[at + 2 :]), rows) for head, at, rows in listed if rows]
+
+    def show(self) -> None:
+        """Print it."""
+        printed.say(self.summary, self.how)
+        for headings, rows in self._tables():
+            labels = ["" if each == "name" else f"{each}: " for each in headings[1:]]
+            entries = [(row[0], *map("".join, zip(labels, row[1:], strict=True))) for row in rows]
+            printed.show(headings, rows, entries)
+        printed.say(*self.notes)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" + "s" * (count != 1)

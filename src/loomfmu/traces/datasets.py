@@ -1,0 +1,116 @@
+"""Signals as xarray datasets: along time, or folded onto one revolution of the main shaft."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import units
+from ..errors import LoomfmuError
+
+Floats = NDArray[np.float64]
+TURN = 2.0 * math.pi
+WHOLE = 1e-9  # of a revolution: what a sample may be beside its end
+
+
+class Signals(Protocol):
+    """What `traces.signals.Signals` has that a dataset needs."""
+
+    name: str
+
+    @property
+    def time(self) -> Floats: ...  # noqa: D102
+    @property
+    def shaft_angle(self) -> Floats: ...  # noqa: D102
+    def read(self, signal: str) -> NDArray[Any]: ...  # noqa: D102
+    def unit(self, signal: str) -> str: ...  # noqa: D102
+    def description(self, signal: str) -> str: ...  # noqa: D102
+
+
+def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
+    """The named signals as a dataset. Raises LoomfmuError as `Signals.to_xarray`."""
+    try:
+        import xarray
+    except ImportError:
+        raise LoomfmuError('to_xarray needs the extra "xarray": pip install "loomfmu[xarray]"') from None
+    values = {name: signals.read(name) for name in names}
+    about = {name: _attributes(signals, name) for name in names}
+    angle = {"units": "rad", "long_name": "shaft angle"}
+    time = {"units": "s", "long_name": "time"}
+    coordinates: dict[str, Any]
+    variables: dict[str, Any]
+    if not fold:
+        coordinates = {
+            "time": ("time", signals.time, time),
+            "shaft_angle": ("time", signals.shaft_angle, angle),
+        }
+        variables = {name: ("time", values[name], about[name]) for name in names}
+        return xarray.Dataset(variables, coordinates)
+    turned, way = _turned(signals)
+    first, last = math.ceil(turned[0] - WHOLE), math.floor(turned[-1] + WHOLE)
+    if last <= first:
+        raise LoomfmuError(f"{signals.name}: no whole revolution is recorded, so there is nothing to fold")
+    count = _count(turned, first, last) if fold is True else int(fold)
+    angles = np.arange(count) / count
+    places = (np.arange(first, last)[:, None] + (angles if way > 0 else 1.0 - angles)).ravel()
+    dims, shape = ("revolution", "angle"), (last - first, count)
+
+    def folded(each: NDArray[Any]) -> NDArray[Any]:
+        return _at(turned, each, places).reshape(shape)
+
+    begun = math.floor(turned[0] + WHOLE)
+    coordinates = {
+        "revolution": ("revolution", np.arange(first, last) - begun + 1),
+        "angle": ("angle", TURN * angles, angle),
+        "time": (dims, folded(signals.time), time),
+    }
+    variables = {name: (dims, folded(values[name]), about[name]) for name in names}
+    return xarray.Dataset(variables, coordinates)
+
+
+def _attributes(signals: Signals, name: str) -> dict[str, str]:
+    """The attributes that xarray itself reads from the file of a trace."""
+    unit = signals.unit(name)
+    about = {
+        "UNIT": unit,
+        "units": units.udunits(unit),
+        "long_name": name.partition(".")[2].replace("_", " "),
+    }
+    description = signals.description(name)
+    return about | ({"COMMENT": description} if description else {})
+
+
+def _turned(signals: Signals) -> tuple[Floats, int]:
+    """The shaft's angle in revolutions, counted the way that it turns. Raises LoomfmuError if it does not."""
+    angle = signals.shaft_angle
+    way = 1 if len(angle) and angle[-1] >= angle[0] else -1
+    turned = way * angle / TURN
+    if len(turned) < 2 or not np.all(np.diff(turned) > 0.0):
+        raise LoomfmuError(
+            f"{signals.name}: the shaft does not turn one way throughout, so there is nothing to fold"
+        )
+    return turned, way
+
+
+def _count(turned: Floats, first: int, last: int) -> int:
+    """Samples in a revolution, the most that one has."""
+    edges = np.searchsorted(turned, np.arange(first, last + 1) - WHOLE)
+    return int(np.max(np.diff(edges)))
+
+
+def _at(turned: Floats, values: NDArray[Any], places: Floats) -> NDArray[Any]:
+    """Values at these places: those of samples there, and between samples on the line that joins them.
+
+    What is not a real number holds until the next sample.
+    """
+    end = len(turned) - 1
+    after = np.clip(np.searchsorted(turned, places - WHOLE), 0, end)
+    there = np.abs(turned[after] - places) <= WHOLE
+    before = np.where(there, after, np.maximum(after - 1, 0))
+    if values.dtype.kind != "f":
+        return values[before]
+    found: NDArray[Any] = np.interp(places, turned, values)
+    found[there] = values[after[there]]
+    return found

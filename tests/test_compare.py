@@ -1,0 +1,164 @@
+"""Two traces compared: what counts as a difference, where it is, and what no grid can tell."""
+
+import math
+import tracemalloc
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import loomfmu
+from loomfmu import LoomfmuError, cli
+from loomfmu.traces import Channel, TraceWriter, Verdict
+
+RPM = 600.0
+SPEED = RPM * math.pi / 30.0
+
+
+def trace(
+    path: Path, values: Any = np.sin, steps: int = 720, turns: float = 2.0, unit: str = "m",
+    worst: float = 0.5, clearance: float = 3e-4, more: bool = False, speed: float = SPEED,
+) -> Path:  # fmt: skip
+    """A trace of one smooth signal over the shaft's angle, and a count of revolutions."""
+    angle = np.linspace(0.0, 2.0 * math.pi * turns, round(steps * turns) + 1)
+    channels = [
+        Channel("belt", "x", unit, unit, "X", 0),
+        Channel("belt", "pick", "1", "1", "Pick", 0, real=False),
+    ]
+    channels += [Channel("belt", "y", "m", "m", "Y", 0)] if more else []
+    about = {
+        "belt": {
+            "fmu": "BeltMonitor",
+            "guide_clearance": clearance,
+            "parameter_units": '{"guide_clearance": "m"}',
+        }
+    }
+    writer = TraceWriter(path, {"title": "made"}, channels, about)
+    picks = np.floor(angle / (2.0 * math.pi) + 1e-9).astype("i4")
+    writer.append(angle / speed, angle, values(angle)[:, None], picks[:, None])
+    verdict = Verdict("x stays", "belt.x", worst > 0.0, 0.0, worst, "m", "m", 0.1, 1.0, 1, sense=1)
+    writer.complete([verdict.as_dict()])
+    return path
+
+
+def test_equal_traces_are_equal_to_the_last_bit(tmp_path: Path) -> None:
+    found = loomfmu.compare(trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5"), tolerance=0.0)
+    assert found and found.equal and found.compared == 2
+    assert "exactly equal" in found.summary and found.how == "compared at equal shaft angles, at 1441 samples"
+
+
+def test_a_difference_is_found_where_it_begins_and_where_it_is_largest(tmp_path: Path) -> None:
+    def bumped(angle: Any) -> Any:
+        values = np.sin(angle)
+        values[800] += 0.01  # 40 deg of the second revolution
+        values[810] -= 0.03
+        return values
+
+    found = loomfmu.compare(trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5", bumped))
+    (one,) = found.differences
+    assert not found and not found.changes and one.signal == "belt.x"
+    assert (one.first.revolution, round(math.degrees(one.first.angle), 6)) == (2, 40.0)
+    assert one.first.time == pytest.approx(800 / 720 * 60.0 / RPM, rel=1e-12)
+    assert one.values[1] - one.values[0] == pytest.approx(0.01, rel=1e-9)
+    assert (one.largest, round(math.degrees(one.at.angle), 6)) == (pytest.approx(0.03), 45.0)
+    assert one.relative == pytest.approx(0.03, rel=1e-4) and one.scale == pytest.approx(1.0)
+    assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", tolerance=0.0301)
+    assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", absolute={"belt.?": "31 mm"})
+    assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", ignore=["belt.x"])
+    assert not loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", absolute={"belt.x": "29 mm"})
+
+
+def test_a_value_that_one_trace_lacks_is_a_difference_and_one_that_both_lack_is_not(tmp_path: Path) -> None:
+    def lacking(angle: Any) -> Any:
+        return np.where(angle > 7.0, np.nan, np.sin(angle))
+
+    assert loomfmu.compare(trace(tmp_path / "a.h5", lacking), trace(tmp_path / "b.h5", lacking))
+    found = loomfmu.compare(tmp_path / "a.h5", trace(tmp_path / "c.h5"), tolerance=1.0)
+    assert found.differences[0].largest == math.inf
+    assert "no value" in repr(found)
+
+
+def test_signals_claims_values_and_lengths_that_changed(tmp_path: Path) -> None:
+    a = trace(tmp_path / "a.h5")
+    b = trace(tmp_path / "b.h5", more=True, worst=-0.5, clearance=5e-4, turns=1.5)
+    changes = {change.what: change for change in loomfmu.compare(a, b).changes}
+    assert changes["signal"].row == ("signal", "belt.y", "missing", "recorded")
+    assert changes["claim"].row == ("claim", "x stays", "holds, 0.5 m, bound 0 m", "FAILS, -0.5 m, bound 0 m")
+    assert changes["value"].row == ("value", "belt.guide_clearance", "0.0003 m", "0.0005 m")
+    assert changes["run"].row == ("run", "shaft angle", "0 to 720 deg", "0 to 540 deg")
+
+
+def test_units_are_converted_or_do_not_fit(tmp_path: Path) -> None:
+    a, b = trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5", lambda angle: 1e3 * np.sin(angle), unit="mm")
+    assert loomfmu.compare(a, b)
+    found = loomfmu.compare(a, trace(tmp_path / "c.h5", unit="N"))
+    assert [change.row for change in found.changes] == [("unit", "belt.x", "m", "N")]
+
+
+def test_half_the_step_is_compared_without_interpolation(tmp_path: Path) -> None:
+    found = loomfmu.compare(trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5", steps=1440), tolerance=1e-12)
+    assert found and found.how.endswith(f"at the 1441 samples of {tmp_path}/a.h5")
+
+
+def test_other_grids_are_interpolated_and_refused_where_that_does_not_tell(tmp_path: Path) -> None:
+    a, b = trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5", steps=1000)
+    with pytest.raises(
+        LoomfmuError, match=r"cannot be compared that closely.*allow a tolerance of"
+    ) as refused:
+        loomfmu.compare(a, b)
+    needed = float(str(refused.value).rpartition(" ")[2])
+    # the line between samples of sin is off by h^2 / 8
+    assert (2.0 * math.pi / 1000) ** 2 / 8.0 < needed < (2.0 * math.pi / 1000) ** 2
+    found = loomfmu.compare(a, b, tolerance=needed)
+    assert found and "b.h5 is interpolated at" in found.how
+    off = trace(tmp_path / "c.h5", lambda angle: np.sin(angle) + 1e-3, steps=1000)
+    assert loomfmu.compare(a, off).differences[0].largest == pytest.approx(
+        1e-3, rel=0.01
+    )  # and the line's error
+
+
+def test_looms_of_other_speeds_are_compared_by_angle_or_by_time(tmp_path: Path) -> None:
+    a, b = trace(tmp_path / "a.h5"), trace(tmp_path / "b.h5", speed=1.1 * SPEED)
+    assert [each.signal for each in loomfmu.compare(a, b).differences] == ["time"]
+    by_time = {each.signal for each in loomfmu.compare(a, b, over="time").differences}
+    assert {"shaft_angle", "belt.x"} <= by_time
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    a, b = str(trace(tmp_path / "a.h5")), str(trace(tmp_path / "b.h5", lambda angle: 1.001 * np.sin(angle)))
+    assert cli.main(["compare", a, a]) == 0
+    assert cli.main(["compare", a, b]) == 1
+    assert "1 of 2 signals" in capsys.readouterr().out
+    assert cli.main(["compare", a, b, "--tolerance", "0.1%"]) == 0
+    assert cli.main(["compare", a, b, "--tolerance", "belt.x=1.1mm"]) == 0
+    assert cli.main(["compare", a, b, "--tolerance", "belt.x=1N"]) == 2
+    assert cli.main(["compare", a, b, "--tolerance", "nothing=1"]) == 2
+    assert cli.main(["compare", a, str(tmp_path / "none.h5")]) == 2
+    page = tmp_path / "page.html"
+    assert cli.main(["compare", a, b, "--report", str(page)]) == 1
+    assert page.read_text().startswith("<!DOCTYPE html>")
+
+
+def test_memory_holds_a_few_columns_whatever_the_number_of_signals(tmp_path: Path) -> None:
+    steps, count = 100_000, 20
+    channels = [Channel("belt", f"x{number}", "m", "m", "X", number) for number in range(count)]
+    for name in ("a.h5", "b.h5"):
+        writer = TraceWriter(tmp_path / name, {"title": "long"}, channels, {})
+        angle = np.linspace(0.0, 700.0, steps)
+        writer.append(angle, angle, np.tile(np.sin(angle)[:, None], count), np.zeros((steps, 0), dtype="i4"))
+        writer.complete([])
+    tracemalloc.start()
+    assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2 * count * 8 * steps / 1.5  # all columns of both would be 2 * count
+
+
+def test_a_notebook_shows_it_escaped(tmp_path: Path) -> None:
+    a, b = trace(tmp_path / "a<b>.h5"), trace(tmp_path / "b.h5", np.cos)
+    text = loomfmu.compare(a, b)._repr_html_()
+    assert "a&lt;b&gt;.h5" in text and "<b>" not in text
+    with h5py.File(a) as file:
+        assert file["belt"].attrs["signal"] == "x"
