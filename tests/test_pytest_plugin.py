@@ -42,7 +42,7 @@ def built(fmu_cache: None) -> None:
 
 def test_each_claim_is_a_test_and_nothing_is_written(pytester: pytest.Pytester) -> None:
     write(pytester, "slow.toml", SLOW)
-    result = pytester.runpytest("slow.toml", "-v", "-p", "no:cacheprovider")
+    result = pytester.runpytest_subprocess("slow.toml", "-v", "-p", "no:cacheprovider")
     result.assert_outcomes(passed=2)
     result.stdout.fnmatch_lines(["slow.toml::the belt does not buckle PASSED*", "slow.toml::above PASSED*"])
     assert [path.name for path in pytester.path.iterdir()] == ["slow.toml"]
@@ -50,7 +50,7 @@ def test_each_claim_is_a_test_and_nothing_is_written(pytester: pytest.Pytester) 
 
 def test_a_failure_says_where_and_how_to_repeat_it(pytester: pytest.Pytester) -> None:
     write(pytester, "sims/fast.toml", FAST)
-    result = pytester.runpytest("sims/fast.toml")
+    result = pytester.runpytest_subprocess("sims/fast.toml")
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(
         [
@@ -70,22 +70,25 @@ def test_a_failure_says_where_and_how_to_repeat_it(pytester: pytest.Pytester) ->
 def test_traces_and_reports_are_kept_where_wanted(pytester: pytest.Pytester) -> None:
     write(pytester, "sims/fast.toml", FAST)
     write(pytester, "sims/slow.toml", SLOW)
-    result = pytester.runpytest("sims/fast.toml", "sims/slow.toml", "--loomfmu-traces", "kept")
+    result = pytester.runpytest_subprocess("sims/fast.toml", "sims/slow.toml", "--loomfmu-traces", "kept")
     result.assert_outcomes(passed=3, failed=1)
     result.stdout.fnmatch_lines(["trace:        kept/sims/fast.h5", "report:       kept/sims/fast.html"])
     kept = sorted(path.name for path in (pytester.path / "kept" / "sims").iterdir())
     assert kept == ["fast.h5", "fast.html", "slow.h5"]
 
 
-def test_a_scene_runs_once(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
-    from loomfmu.cosim import run
-
-    runs = []
-    evaluate = run.evaluate
-    monkeypatch.setattr(run, "evaluate", lambda scene: runs.append(scene) or evaluate(scene))
+def test_a_scene_runs_once(pytester: pytest.Pytester) -> None:
+    pytester.makeconftest(
+        """
+        from loomfmu.cosim import run
+        evaluate = run.evaluate
+        run.evaluate = lambda scene: print("a run") or evaluate(scene)
+        """
+    )
     write(pytester, "slow.toml", SLOW)
-    pytester.runpytest_inprocess("slow.toml").assert_outcomes(passed=2)
-    assert len(runs) == 1
+    result = pytester.runpytest_subprocess("slow.toml", "-s")
+    result.assert_outcomes(passed=2)
+    assert result.stdout.str().count("a run") == 1
 
 
 @pytest.mark.parametrize(
@@ -100,7 +103,7 @@ def test_a_scene_that_cannot_be_read_is_an_error_of_one_line(
     pytester: pytest.Pytester, text: str, said: str
 ) -> None:
     write(pytester, "bad.toml", text)
-    result = pytester.runpytest("bad.toml")
+    result = pytester.runpytest_subprocess("bad.toml")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines([said])
     assert "Traceback" not in result.stdout.str()
@@ -110,23 +113,23 @@ def test_other_files_are_left_alone(pytester: pytest.Pytester) -> None:
     write(pytester, "pyproject.toml", "[project]\nname = 'theirs'\n")
     write(pytester, "slow.toml", SLOW)  # not named
     write(pytester, "test_theirs.py", "def test_it(): pass\n")
-    pytester.runpytest().assert_outcomes(passed=1)
-    theirs = pytester.runpytest("pyproject.toml")
-    theirs.stderr.fnmatch_lines(["ERROR: found no collectors for *pyproject.toml"])  # as without the plugin
+    pytester.runpytest_subprocess().assert_outcomes(passed=1)
+    theirs = pytester.runpytest_subprocess("pyproject.toml")
+    assert theirs.ret == pytest.ExitCode.USAGE_ERROR  # as without the plugin
 
 
 def test_the_configuration_names_scenes(pytester: pytest.Pytester) -> None:
     pytester.makeini("[pytest]\nloomfmu_scenes = sims/*.toml\n")
     for name in ("sims/slow.toml", "sims/sub/slow.toml", "slow.toml"):
         write(pytester, name, SLOW)
-    result = pytester.runpytest("--collect-only", "-q")
+    result = pytester.runpytest_subprocess("--collect-only", "-q")
     result.stdout.fnmatch_lines(["sims/slow.toml::the belt does not buckle", "sims/slow.toml::above"])
     assert "sub/" not in result.stdout.str() and "2 tests collected" in result.stdout.str()
 
 
 def test_a_scene_without_claims_is_tested_to_run(pytester: pytest.Pytester) -> None:
     write(pytester, "bare.toml", SLOW.partition("[[claims]]")[0])
-    result = pytester.runpytest("bare.toml", "-v")
+    result = pytester.runpytest_subprocess("bare.toml", "-v")
     result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["bare.toml::runs PASSED*"])
 

@@ -1,0 +1,108 @@
+"""What notebooks and xarray are given."""
+
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from live_fmus import fmu_cache
+
+import loomfmu
+from loomfmu import LoomfmuError, progress
+from loomfmu.traces import Verdict
+
+__all__ = ["fmu_cache"]
+
+SCENE = """
+title = "a <b>bold</b> title"
+revolutions = 2.5
+steps_per_revolution = 360
+record = ["belt.margin", "belt.at_risk", "heald_1.lift"]
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+[[claims]]
+name = "<script>"
+kind = "lowest_margin"
+bound = 0.1
+"""
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> loomfmu.Result:
+    path = tmp_path_factory.mktemp("notebook") / "loom.toml"
+    path.write_text(SCENE)
+    return loomfmu.run(path, output=path.with_suffix(".h5"))
+
+
+def test_a_dataset_has_units_and_the_shaft_angle(result: loomfmu.Result) -> None:
+    dataset = result.trace.to_xarray()
+    assert set(dataset.data_vars) == set(result.trace)
+    np.testing.assert_array_equal(dataset["belt.margin"], result.trace["belt.margin"])
+    assert dataset["belt.margin"].dims == ("time",) and "shaft_angle" in dataset["belt.margin"].coords
+    assert dataset["heald_1.lift"].attrs["units"] == "m" and dataset["shaft_angle"].attrs["units"] == "rad"
+    assert dataset["belt.at_risk"].dtype == bool
+    with pytest.raises(LoomfmuError, match=r"did you mean 'belt\.margin'"):
+        result.trace.to_xarray("belt.margn")
+    memory = loomfmu.evaluate(result.scene, values=["heald_1.lift"]).trace
+    assert memory.to_xarray("heald_1.lift")["heald_1.lift"].attrs["units"] == "m"
+
+
+def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
+    folded = result.trace.to_xarray("belt.margin", "belt.at_risk", fold=True)
+    assert dict(folded.sizes) == {"revolution": 2, "angle": 360}
+    np.testing.assert_array_equal(folded["revolution"], [1, 2])
+    # the samples themselves: nothing is interpolated
+    np.testing.assert_array_equal(folded["belt.margin"].values.ravel(), result.trace["belt.margin"][:720])
+    np.testing.assert_array_equal(folded["belt.at_risk"].values.ravel(), result.trace["belt.at_risk"][:720])
+    other = result.trace.to_xarray("heald_1.lift", fold=500)
+    exact = np.interp(
+        np.arange(1000) / 500, result.trace.shaft_angle / (2 * np.pi), result.trace["heald_1.lift"]
+    )
+    # angles are the same to rounding, and the frame moves by less than a metre in a revolution
+    np.testing.assert_allclose(other["heald_1.lift"].values.ravel(), exact, rtol=0, atol=1e-9)
+
+
+def test_what_is_shown_is_escaped(result: loomfmu.Result) -> None:
+    for shown in (result, result.trace, result.claims[0], loomfmu.evaluate(result.scene)):
+        text = shown._repr_html_()
+        assert "<script>" not in text and "<b>" not in text
+        assert "&lt;script&gt;" in text
+        assert "background" not in text  # the notebook's own, light or dark
+
+
+def test_a_result_writes_its_report(result: loomfmu.Result, tmp_path: Path) -> None:
+    assert result.report() == result.path.with_suffix(".html")
+    assert result.report(tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
+
+
+def test_a_verdict_is_a_row() -> None:
+    verdict = Verdict("c", "a.b", False, 1.0, 0.5, "m", "mm", 0.1, 1.0, 1, sense=1)
+    assert "✗" in verdict._repr_html_() and "500 mm" in verdict._repr_html_()
+
+
+def test_a_bar_is_seen_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+
+    class Handle:
+        def update(self, what: Any) -> None:
+            shown.append(what._repr_html_())
+
+    def display(what: Any, display_id: bool) -> Handle:
+        assert display_id
+        shown.append(what._repr_html_())
+        return Handle()
+
+    ipython, module = ModuleType("IPython"), ModuleType("IPython.display")
+    ipython.get_ipython = lambda: SimpleNamespace(kernel=1)  # type: ignore[attr-defined]
+    module.display = display  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", module)
+    monkeypatch.setattr(progress, "SECONDS", 0.0)
+    with progress.progress("<loom>", 10) as advance:
+        advance(4)
+    assert shown[0] == '<progress value="0" max="10"></progress> &lt;loom&gt;: 0 of 10'
+    assert 'value="4"' in shown[1] and shown[-1] == ""
