@@ -81,7 +81,7 @@ class SceneFile(pytest.File):
         """The scene, read and checked. Raises LoomfmuError."""
         from .cosim.reading import checked
 
-        return checked(_relative(self.path), None, "live")
+        return checked(_relative(self.path), None, "native")
 
     @cached_property
     def outcome(self) -> "Evaluation | Result | Exception":
