@@ -66,7 +66,8 @@ class TraceWriter:
         try:
             reserve(self._file.id.get_vfd_handle(), header)
             first = {"Conventions": "CF-1.11", "software": SOFTWARE}
-            self._file.attrs.update({**first, **attributes, "status": "running"})
+            plotted = {"NX_class": "NXroot", "default": channels[0].instance} if channels else {}
+            self._file.attrs.update({**first, **plotted, **attributes, "status": "running"})
             self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
             self._time.make_scale("time")
             self._angle = self._dataset(
@@ -78,8 +79,6 @@ class TraceWriter:
             self._shared = Columns([self._time, self._angle], "f8")
             self._reals, self._real_columns = self._chosen(datasets, "f8", real=True)
             self._integers, self._integer_columns = self._chosen(datasets, "i4", real=False)
-            for channel in channels:
-                self._plotted(channel.instance, channel.variable)
             for instance, values in groups.items():
                 self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
@@ -111,6 +110,8 @@ class TraceWriter:
         if "time" not in group:
             group["time"] = self._time  # hard links: without the time xarray loses the axis
             group["shaft_angle"] = self._angle
+            # NeXus: h5web opens the group on a plot of its first variable
+            group.attrs.update({"NX_class": "NXdata", "signal": channel.variable, "axes": "time"})
         dataset = self._dataset(
             f"/{channel.instance}/{channel.variable}",
             "f8" if channel.real else "i4",
@@ -132,15 +133,6 @@ class TraceWriter:
             dataset.attrs["flag_values"] = np.array(flags, dtype="i4")
             dataset.attrs["flag_meanings"] = " ".join(channel.meanings)
         return dataset
-
-    def _plotted(self, instance: str, signal: str) -> None:
-        """Mark a group and the root as NeXus does, so that h5web opens on a plot; the first mark stays."""
-        self._file.attrs.setdefault("NX_class", "NXroot")
-        self._file.attrs.setdefault("default", instance)
-        marks = self._file[instance].attrs
-        marks.setdefault("NX_class", "NXdata")
-        marks.setdefault("signal", signal)
-        marks.setdefault("axes", "time")
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Write a block: values along the rows, signals along the columns."""
