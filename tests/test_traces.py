@@ -696,8 +696,8 @@ def test_a_trace_that_does_not_fit_is_refused_before_the_run(tmp_path: Path, sma
 
 
 def test_a_disk_that_fills_up_is_told_in_one_line(tmp_path: Path, small_disk: Path) -> None:
-    script = "import sys; from loomfmu import cli; from loomfmu.cosim import run;"
-    script += "run.check_room = lambda *_: None; sys.exit(cli.main(sys.argv[1:]))"  # full only later
+    script = "import sys; from loomfmu import cli; from loomfmu.cosim import recorded;"
+    script += "recorded.check_room = lambda *_: None; sys.exit(cli.main(sys.argv[1:]))"  # full only later
     command = [sys.executable, "-c", script, *RUN[3:]]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.stderr == (
