@@ -65,7 +65,7 @@ def test_frame_takes_from_the_shaft_what_it_stores_and_hands_on(theta, speed, ac
     assert frame.potential_energy == pytest.approx(17.0 * 9.81 * frame.lift, rel=1e-15)
 
 
-@given(ANGLES, SPEEDS, ACCELERATIONS, st.integers(1, 9))
+@given(ANGLES, SPEEDS, ACCELERATIONS, st.sampled_from((1, 2, 3, 4, 5, 6, 7, 9)))  # 8 needs a table
 def test_rotor_takes_from_the_shaft_what_it_stores(theta, speed, acceleration, law):
     dobby = on_shaft(DobbyDrive(law=law, rotor_inertia=0.3, **SHAFT), theta, speed, acceleration)
     velocity, second = dobby.rotor_velocity, dobby.rotor_acceleration

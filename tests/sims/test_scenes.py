@@ -37,7 +37,9 @@ def test_the_readme_shows_what_the_demonstration_prints(tmp_path: Path) -> None:
     readme = (SIMS.parent / "README.md").read_text()
     lines = readme.split("ends like this:\n\n```text\n")[1].split("\n```")[0].splitlines()
     assert len(lines) > 4
-    assert [line for line in lines if line not in printed] == ["..."]
+    pace = "us each; "  # differs from run to run
+    assert [line for line in lines if line not in printed and pace not in line] == ["..."]
+    assert any(pace in line for line in lines) and any(pace in line for line in printed)
 
 
 BEYOND = sorted(path.name for path in (SIMS / "beyond_the_limit").glob("*.toml"))
