@@ -32,7 +32,8 @@ class Variable:
     output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
     instance's own number, and in an array with * for every instance that has such an output; of a parameter
     it is that of another instance whose value it takes unless it is given one; with `source_for` an input is
-    wired to the first of its sources, parted by |, that there is, and only where that output is taken;
+    wired to the first of its sources, parted by |, that there is, and only where that output is taken, and a
+    parameter takes its value only where that input is wired;
     `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `when` and `unless`
     name the yes-or-no parameter with which, or without which alone, it has an effect; `pole` says that an
     output grows without bound at the edges of its component's windows; `element` is its place in an array,
@@ -204,6 +205,7 @@ def parameter(
     nominal: float | None = None,
     choices: tuple[str, ...] = (),
     source: str | None = None,
+    source_for: str | None = None,
     when: str | None = None,
     unless: str | None = None,
 ) -> Any:
@@ -212,8 +214,8 @@ def parameter(
         minimum, maximum = 1, len(choices)
     return _declare(
         "parameter", "fixed", unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, source=source, when=when,
-        unless=unless,
+        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, source=source,
+        source_for=source_for, when=when, unless=unless,
     )  # fmt: skip
 
 

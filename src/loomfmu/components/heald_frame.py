@@ -57,7 +57,7 @@ class HealdFrame(Component):
     )
     sprung_mass: float = parameter(
         "kg", 0.0, "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
-        minimum=0.0, maximum=1e3, nominal=10.0, source="damper_#.carrier_mass",
+        minimum=0.0, maximum=1e3, nominal=10.0, source="damper_#.carrier_mass", source_for="load",
     )  # fmt: skip
     gravity: float = parameter(
         "m/s2", 9.80665, "Gravity on the frame; 0 if springs carry its weight", minimum=0.0, maximum=100.0,

@@ -21,7 +21,8 @@ creep_rate = 3
 
 
 def test_parameters_that_are_not_set_are_those_of_the_instance_that_they_belong_to() -> None:
-    instances = scenes.parse(LOOM, overrides={"damper_1.carrier_mass": 5.0}).instances
+    driven = '[shaft]\ncomponent = "DrivenShaft"\n' + LOOM
+    instances = scenes.parse(driven, overrides={"damper_1.carrier_mass": 5.0}).instances
     assert [instances[name].values["stroke"] for name in ("warp_1", "damper_1", "damper_2")] == [0.09] * 3
     assert instances["damper_1"].values["thread_stiffness"] == 80.0
     assert [instances[f"{name}_2"].values["thread_count"] for name in ("damper", "play")] == [600, 600]
@@ -29,6 +30,13 @@ def test_parameters_that_are_not_set_are_those_of_the_instance_that_they_belong_
     assert instances["damper_1"].values["creep_rate"] == 3.0  # its own value prevails
     assert instances["heald_1"].values["sprung_mass"] == 5.0
     assert instances["heald_2"].values["sprung_mass"] == 7.5
+
+
+def test_all_of_a_frame_moves_with_it_where_its_load_is_not_wired() -> None:
+    # at a constant speed nothing takes the torque: its carrier would neither move with it nor load it
+    assert "sprung_mass" not in scenes.parse(LOOM).instances["heald_1"].values
+    wired = LOOM + '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
+    assert scenes.parse(wired).instances["heald_1"].values["sprung_mass"] == 7.5
 
 
 def test_a_damper_without_warp_has_no_threads() -> None:

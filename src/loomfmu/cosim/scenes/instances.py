@@ -120,11 +120,16 @@ class Instance:
             if switch in self.fmu.ports:
                 self.values.setdefault(switch, True)
 
-    def inherit(self, others: Mapping[str, "Instance"]) -> None:
-        """Let parameters that are not set have the value of the instance that they usually take it from."""
+    def inherit(self, others: Mapping[str, "Instance"], fed: Collection[tuple[str, str]]) -> None:
+        """Let parameters that are not set have the value of the instance that they usually take it from.
+
+        `fed` are the wired inputs: some parameters have that value only with one of these.
+        """
         number = self.name.removeprefix(standard_loom.stem(self.name))
         for name, variable in self._declared().items():
             if variable.causality != "parameter" or not variable.source or name in self.values:
+                continue
+            if variable.source_for and (self.name, variable.source_for) not in fed:
                 continue
             owner, _, parameter = variable.source.replace("_#", number).partition(".")
             if owner in others and owner != self.name and parameter in others[owner].fmu.ports:

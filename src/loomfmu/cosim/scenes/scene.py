@@ -125,9 +125,10 @@ def parse(
     for key, value in rest.items():
         override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
-    for inheriting in instances.values():
-        inheriting.inherit(instances)
     wires = wires_of(instances, tables.get("wires", {}), tables.get("inputs"))
+    fed = {each.sink for each in wires}
+    for inheriting in instances.values():
+        inheriting.inherit(instances, fed)
     for each in wires:
         instances[each.sink[0]].follow(each)
     scene = assemble(tables, instances, wires, name, text, Path(directory))
