@@ -45,6 +45,7 @@ def parser() -> argparse.ArgumentParser:
         _run,
         _show,
         _report,
+        _page,
         _diagram,
         _plot,
         _compare,
@@ -86,6 +87,19 @@ def _report(commands: Any) -> None:
     report.add_argument("traces", nargs="+", metavar="FILE.h5", help="the trace; others are laid over it")
     report.add_argument("--output", metavar="FILE.html", help="beside the first trace by default")
     _add_force(report, "FILE.html even if it is not a report")
+
+
+def _page(commands: Any) -> None:
+    page = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
+    page.add_argument("scene", metavar="SCENE.toml")
+    page.add_argument(
+        "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        help="what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a"
+        " range 20 %% around the scene's value, or its choices; the shaft's speed by default",
+    )  # fmt: skip
+    _add_set(page)
+    page.add_argument("--output", metavar="FILE.html", help="results/SCENE_page.html by default")
+    _add_force(page, "FILE.html even if it is not such a page")
 
 
 def _diagram(commands: Any) -> None:

@@ -314,6 +314,13 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
+def _page(options: argparse.Namespace) -> int:
+    from .report import live
+
+    say(live.write(options.scene, options.vary, options.output, _pairs(options.overrides), options.force))
+    return 0
+
+
 def _diagram(options: argparse.Namespace) -> int:
     from .report import diagram
     from .traces import Trace
@@ -425,6 +432,7 @@ COMMANDS = {
     "new": _new,
     "show": _show,
     "report": _report,
+    "page": _page,
     "diagram": _diagram,
     "plot": _plot,
     "compare": _compare,

@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from html import escape
 from pathlib import Path
+from typing import Any
 
 from ..errors import LoomfmuError
 from ..files import write_file
@@ -62,6 +63,15 @@ def section(subject: Subject) -> Section | None:
     )  # fmt: skip
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
     return Section("diagram", "Timing diagram", html, "diagram.js", data)
+
+
+def layout(rows: Sequence[Row]) -> dict[str, Any]:
+    """What a script needs to draw the rows as this module does: their rules, places and sizes."""
+    width = (OUTER - INNER) / len(rows)
+    return {
+        "rows": [asdict(row) for row in rows],
+        "top": TOP, "row": ROW, "outer": OUTER, "width": width,
+    }  # fmt: skip
 
 
 def write(

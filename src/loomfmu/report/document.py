@@ -53,17 +53,22 @@ def write(
 
 def page(subject: Subject) -> str:
     """The whole page. Raises LoomfmuError if the extra `report` is not installed."""
-    made = [section for make in SECTIONS if (section := make(subject))]
+    return assembled(subject, [section for make in SECTIONS if (section := make(subject))])
+
+
+def assembled(subject: Subject, sections: Sequence[Section], mark: str = MARK, policy: str = "") -> str:
+    """A page of some sections; `policy` is what its scripts may do beside running inline."""
     trace = subject.trace
     body: str = template("page.html.j2").render(
         title=str(trace.attributes["title"]),
         software=str(trace.attributes["software"]),
-        sections=made,
-        style="\n".join([text("style.css"), *(section.style for section in made)]),
+        sections=sections,
+        policy=policy,
+        style="\n".join([text("style.css"), *(section.style for section in sections)]),
         cursor=text("cursor.js"),
         axis=embedded(_axis(subject)),
     )
-    return MARK + body
+    return mark + body
 
 
 def _axis(subject: Subject) -> dict[str, Any]:

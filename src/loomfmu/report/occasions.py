@@ -1,12 +1,14 @@
 """What happens when, over the main shaft: the rows of a timing diagram.
 
-A row has intervals in which a signal is positive, and a curve between 0 and 1 that shows how it moves.
-Edges are interpolated between the samples.
+A row has intervals in which a rule is positive, and a curve between 0 and 1 that shows how it moves.
+Edges are interpolated between the samples. Rules are data, which the script of a page evaluates, too: the
+name of a signal or of a parameter, a number, or an operation followed by its operands.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,25 +18,51 @@ from .section import TURN, Subject
 
 Floats = NDArray[np.float64]
 Interval = tuple[float, float]
+Rule = str | float | list[Any]
+SMALL = 1e-300  # so that nothing is divided by 0
+
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    "abs": np.abs,
+    "min": lambda *values: reduce(np.minimum, values),
+    "lowest": lambda *values: min(float(np.min(each)) for each in values),
+    "highest": lambda *values: max(float(np.max(each)) for each in values),
+}
+
+
+def evaluated(rule: Rule, of: Callable[[str], Any]) -> Any:
+    """The value of a rule; `of` gives those of names.
+
+    >>> evaluated(["-", "x", ["lowest", "x"]], {"x": np.array([1.0, 3.0])}.__getitem__).tolist()
+    [0.0, 2.0]
+    """
+    if isinstance(rule, str):
+        return of(rule)
+    if isinstance(rule, list):
+        operation, *operands = rule
+        return OPERATIONS[operation](*(evaluated(each, of) for each in operands))
+    return rule
 
 
 @dataclass(frozen=True)
 class Bar:
-    """Intervals of a row: where `values` are positive. `role` is what the style gives a colour."""
+    """Intervals of a row: where a rule is positive. `role` is what the style gives a colour."""
 
     label: str
     role: str
-    values: Floats
+    rule: Rule
 
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the diagram; `curve` is between 0 and 1, None for no curve."""
+    """A row of the diagram; `curve` is a rule with values from 0 to 1, or of NaN for no curve."""
 
     name: str
     label: str
     bars: tuple[Bar, ...]
-    curve: Floats | None = None
+    curve: Rule = float("nan")
 
 
 @dataclass(frozen=True)
@@ -76,6 +104,22 @@ class Occasions:
                 rows += make(trace, instance)
         return rows
 
+    def value(self, rule: Rule) -> Floats:
+        """The values of a rule at the samples."""
+        trace, samples = self.subject.trace, self.subject.positions
+        with np.errstate(invalid="ignore"):  # what does not move has no share of its range
+            found = evaluated(rule, lambda name: trace[name] if name in trace else trace.parameter(name))
+        return np.broadcast_to(np.asarray(found, dtype=float), samples.shape)
+
+    @cached_property
+    def _bars(self) -> dict[tuple[str, str], Floats]:
+        return {(row.name, bar.label): self.value(bar.rule) for row in self.rows for bar in row.bars}
+
+    @cached_property
+    def _curves(self) -> dict[str, Floats]:
+        curves = {row.name: self.value(row.curve) for row in self.rows}
+        return {name: curve for name, curve in curves.items() if np.isfinite(curve).all()}
+
     @property
     def numbers(self) -> range:
         """Numbers of the revolutions that the run touches."""
@@ -92,17 +136,15 @@ class Occasions:
         return Revolution(
             number,
             {
-                (row.name, bar.label): [
+                bar: [
                     (low - start, high - start)
-                    for low, high in positive(along, np.interp(along, positions, bar.values))
+                    for low, high in positive(along, np.interp(along, positions, values))
                 ]
-                for row in self.rows
-                for bar in row.bars
+                for bar, values in self._bars.items()
             },
             {
-                row.name: (along - start, np.interp(along, positions, row.curve))
-                for row in self.rows
-                if row.curve is not None
+                row: (along - start, np.interp(along, positions, values))
+                for row, values in self._curves.items()
             },
             (first - start, last - start),
         )
@@ -135,10 +177,19 @@ def positive(along: Floats, values: Floats) -> list[Interval]:
     return [pair for pair in zip(edges[::2], edges[1::2], strict=True) if pair[1] > pair[0]]
 
 
-def _share(values: Floats) -> Floats | None:
-    """Values between their lowest and highest, as 0 to 1; None if they do not move."""
-    low, high = float(np.min(values)), float(np.max(values))
-    return (values - low) / (high - low) if high > low else None
+def _share(rule: Rule) -> Rule:
+    """Values between their lowest and highest, as 0 to 1."""
+    return ["/", ["-", rule, ["lowest", rule]], ["-", ["highest", rule], ["lowest", rule]]]
+
+
+def _scaled(rule: Rule) -> Rule:
+    """A share of the scale, so that of several the interpolated edge is that of whichever ends first."""
+    return ["/", rule, ["highest", ["abs", rule], SMALL]]
+
+
+def _from_end(heald: str) -> Rule:
+    """How far a frame is from the nearer end of its stroke."""
+    return ["min", f"{heald}.lift", ["-", f"{heald}.stroke", f"{heald}.lift"]]
 
 
 def _has(trace: Trace, instance: str, *variables: str) -> bool:
@@ -146,72 +197,61 @@ def _has(trace: Trace, instance: str, *variables: str) -> bool:
 
 
 def _rapier(trace: Trace, weft: str) -> Iterator[Row]:
-    if not _has(trace, weft, "travel"):
+    travel = f"{weft}.travel"
+    if travel not in trace:
         return
-    travel = trace[f"{weft}.travel"]
     belts = [name for name, fmu in trace.fmus.items() if fmu == "BeltMonitor"]
-    bars = [Bar("in the shed", "weft", travel - trace.parameter(f"{belt}.idle_travel")) for belt in belts[:1]]
+    bars = [Bar("in the shed", "weft", ["-", travel, f"{belt}.idle_travel"]) for belt in belts[:1]]
     yield Row(weft, "Rapier head", tuple(bars), _share(travel))
 
 
 def _belt(trace: Trace, belt: str) -> Iterator[Row]:
-    if not _has(trace, belt, "free_length"):
+    free, force = f"{belt}.free_length", f"{belt}.axial_force"
+    if free not in trace:
         return
-    free = trace[f"{belt}.free_length"]
     bars = [Bar("outside its guide", "belt", free)]
-    if _has(trace, belt, "axial_force"):
-        # a share of their scale each, so that the interpolated edge is that of whichever ends first
-        force = trace[f"{belt}.axial_force"]
-        pressed = np.minimum(free / np.max(np.abs(free)), force / max(float(np.max(np.abs(force))), 1e-300))
-        bars.append(Bar("outside and compressed", "risk", pressed))
+    if force in trace:
+        bars.append(Bar("outside and compressed", "risk", ["min", _scaled(free), _scaled(force)]))
     yield Row(belt, "Belt", tuple(bars), _share(free))
 
 
 def _frame(trace: Trace, heald: str) -> Iterator[Row]:
     if not _has(trace, heald, "lift"):
         return
-    lift, stroke = trace[f"{heald}.lift"], trace.parameter(f"{heald}.stroke")
     dobbies = [name for name, fmu in trace.fmus.items() if fmu == "DobbyDrive"]
-    tolerance = trace.parameter(f"{dobbies[0]}.dwell_tolerance") if dobbies else 0.015
-    from_end = np.minimum(lift, stroke - lift)
+    share: Rule = f"{dobbies[0]}.dwell_tolerance" if dobbies else 0.015
+    within: Rule = ["*", share, f"{heald}.stroke"]
     bars = (
-        Bar("dwells", "dwell", tolerance * stroke - from_end),
-        Bar("changes", "change", from_end - tolerance * stroke),
+        Bar("dwells", "dwell", ["-", within, _from_end(heald)]),
+        Bar("changes", "change", ["-", _from_end(heald), within]),
     )
-    yield Row(heald, f"Frame {heald.rpartition('_')[2]}", bars, lift / stroke)
+    lifted: Rule = ["/", f"{heald}.lift", f"{heald}.stroke"]
+    yield Row(heald, f"Frame {heald.rpartition('_')[2]}", bars, lifted)
 
 
 def _shed(trace: Trace, dobby: str) -> Iterator[Row]:
     frames = [name for name, fmu in trace.fmus.items() if fmu == "HealdFrame" and _has(trace, name, "lift")]
     if not frames:
         return
-    share = trace.parameter(f"{dobby}.clear_fraction")
-    closest = np.min(
-        [
-            share - np.minimum(trace[f"{name}.lift"], stroke - trace[f"{name}.lift"]) / stroke
-            for name in frames
-            for stroke in [trace.parameter(f"{name}.stroke")]
-        ],
-        axis=0,
-    )
-    yield Row(dobby, "Shed", (Bar("all frames near their ends", "shed", closest),))
+    clear = [["-", f"{dobby}.clear_fraction", ["/", _from_end(name), f"{name}.stroke"]] for name in frames]
+    yield Row(dobby, "Shed", (Bar("all frames near their ends", "shed", ["min", *clear]),))
 
 
 def _reed(trace: Trace, reed: str) -> Iterator[Row]:
-    if not _has(trace, reed, "position"):
+    position = f"{reed}.position"
+    if position not in trace:
         return
-    position = trace[f"{reed}.position"]
-    low, high = float(np.min(position)), float(np.max(position))
-    bars = (Bar("in its front tenth", "reed", position - (high - 0.1 * (high - low))),) if high > low else ()
-    yield Row(reed, "Reed", bars, _share(position))
+    highest: Rule = ["highest", position]
+    front: Rule = ["-", highest, ["*", 0.1, ["-", highest, ["lowest", position]]]]
+    yield Row(reed, "Reed", (Bar("in its front tenth", "reed", ["-", position, front]),), _share(position))
 
 
 def _lock(trace: Trace, lock: str) -> Iterator[Row]:
     if not _has(trace, lock, "turn", "turn_velocity"):
         return
-    speed = np.abs(trace[f"{lock}.turn_velocity"])
-    bars = (Bar("pawl turns", "lock", speed - 1e-6 * float(np.max(speed))),)
-    yield Row(lock, "Pattern lock", bars, _share(trace[f"{lock}.turn"]))
+    speed: Rule = ["abs", f"{lock}.turn_velocity"]
+    bars = (Bar("pawl turns", "lock", ["-", speed, ["*", 1e-6, ["highest", speed]]]),)
+    yield Row(lock, "Pattern lock", bars, _share(f"{lock}.turn"))
 
 
 MAKERS: tuple[tuple[str, Callable[[Trace, str], Iterator[Row]]], ...] = (

@@ -35,7 +35,9 @@ COMMON_FILES = (
     "tables.h", "python_arithmetic.h", "grid.h", "instance.h", "messages.c", "instance.c", "values.c",
     "states.c", "solver.c",
 )  # fmt: skip
+PAGE = 0  # not a version of FMI: the shell of a page in a browser
 SHELL_FILES = {
+    PAGE: ("page.c",),
     2: (
         "carry.c", "fmi2.c", "fmi2_solver.c", "fmi2_values.c", "fmi2_steps.c",
         "fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h",
@@ -137,7 +139,7 @@ def sources(component: type[Component], fmi: int = 2) -> dict[str, str]:
 
 
 def with_shell(translated: Translation, model: str, fmi: int) -> dict[str, str]:
-    """A translation and the tables of its variables with the shell and the headers of the standard."""
+    """A translation and the tables of its variables with a shell, and the headers of its standard."""
     files = {"component.h": translated.header, "component.c": translated.code, "model.h": model}
     for file in (*COMMON_FILES, *SHELL_FILES[fmi]):
         place = SHELL if (SHELL / file).exists() else HEADERS

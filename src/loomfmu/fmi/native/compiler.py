@@ -20,6 +20,8 @@ from .platforms import COMPILER, PLATFORMS, SHIPPED, compiler, platform_of, stam
 # no fused multiply-add, as in Python; integers wrap alike in every build
 ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
 FLAGS = ("-shared", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
+# a module of WebAssembly without imports; it exports what its source says
+MODULE = ("wasm32-wasi", "-mexec-model=reactor", "-std=c99", *ARITHMETIC, "-g0", "-s", "-fno-sanitize=all")
 MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL beside our own
 
 # two more than cores: some wait for one that makes the system's libraries for the first time
@@ -38,6 +40,16 @@ def binaries(
     if found is None:
         found = _compiled(name, fmi, code, platforms)
     return {place: found[place] for place in places}
+
+
+def web_assembly(source: str, code: dict[str, str]) -> bytes:
+    """A file of some code as a module of WebAssembly. Raises LoomfmuError as `library`."""
+    with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
+        for file, text in code.items():
+            (Path(directory) / file).write_text(text, encoding="utf-8")
+        output = Path(source).with_suffix(".wasm")
+        _call([*MODULE, "-o", str(output), source], Path(directory), output.stem)
+        return (Path(directory) / output).read_bytes()
 
 
 def mingw_licence() -> bytes:
@@ -120,12 +132,16 @@ def _library_of(name: str, fmi: int, target: str, directory: Path) -> bytes:
 
 def _compile(source: str, output: Path, target: str, directory: Path) -> None:
     """Compile a file into a shared library. Paths are relative, so that none gets into it."""
-    _required()
     options = [option.format(name=output.stem) for option in platform_of(target).options]
-    call = [sys.executable, "-m", COMPILER, "cc", "-target", target, *FLAGS, "-o", str(output), source]
+    _call([target, *FLAGS, "-o", str(output), source, *options], directory, output.stem)
+
+
+def _call(arguments: list[str], directory: Path, name: str) -> None:
+    """Call the compiler in a directory, with a target and what follows it."""
+    _required()
     with _turns:
         run = subprocess.run(
-            [*call, *options],
+            [sys.executable, "-m", COMPILER, "cc", "-target", *arguments],
             cwd=directory,
             env=compiler_environment(),
             capture_output=True,
@@ -134,7 +150,7 @@ def _compile(source: str, output: Path, target: str, directory: Path) -> None:
         )
     if run.returncode != 0:
         reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
-        raise LoomfmuError(f"{output.stem} cannot be compiled for {target}: {reason}")
+        raise LoomfmuError(f"{name} cannot be compiled for {arguments[0]}: {reason}")
 
 
 def _required() -> Path:

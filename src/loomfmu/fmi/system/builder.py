@@ -11,6 +11,7 @@ from ..description import documentation
 from ..description.model_description import model_description
 from ..description.terminals import terminal_files
 from ..native import builder as native
+from ..native.compiler import web_assembly
 from ..native.tables import tables
 from .code import inner_step, stepped, translated
 from .system import STEP, STEPS, System, component_of
@@ -62,6 +63,13 @@ def contents(system: System, platforms: tuple[str, ...], fmi: int) -> dict[str, 
     # inputs are held over several steps, so that no derivative of them counts
     capabilities = {"canInterpolateInputs": "false"}
     return native.assembled(component, token, documents, code, platforms, fmi, capabilities)
+
+
+def module(system: System) -> bytes:
+    """The system as a module of WebAssembly for a page, see `shell/page.c`. Raises as `build_native`."""
+    translation = translated(system)
+    model = tables(component_of(system), "", stepped(system), inner_step(system))
+    return web_assembly("page.c", native.with_shell(translation, model, native.PAGE))
 
 
 def _token(component: type[Component], code: str) -> str:

@@ -1,3 +1,5 @@
 // A click on the place of a claim moves the cursor there.
-for (const button of document.querySelectorAll("#claims .place"))
-  button.addEventListener("click", () => loomfmu.seek(Number(button.dataset.position)));
+document.getElementById("claims").addEventListener("click", event => {
+  const button = event.target.closest(".place");
+  if (button) loomfmu.seek(Number(button.dataset.position));
+});

@@ -5,8 +5,8 @@
 const loomfmu = (() => {
   const DEGREE = Math.PI / 180, TURN = 2 * Math.PI, SECONDS_A_TURN = 6, SECONDS_A_RUN = 20;
   const data = name => JSON.parse(document.getElementById(`data-${name}`).textContent);
-  const axis = data("axis"), positions = axis.positions, times = axis.times;
-  const first = positions[0], last = positions[positions.length - 1];
+  const axis = data("axis");
+  let { positions, times } = axis, first = positions[0], last = positions[positions.length - 1];
   const slider = document.getElementById("cursor-slider"), place = document.getElementById("cursor-place");
   const button = document.getElementById("cursor-play");
   const listeners = [];
@@ -87,13 +87,22 @@ const loomfmu = (() => {
     if (event.key !== " ") pause();
     moves[event.key](event);
   });
+  /* Another axis, of another run; the cursor stays where it is if it can. */
+  function lay(along, at) {
+    [positions, times] = [along, at];
+    [first, last] = [positions[0], positions[positions.length - 1]];
+    slider.min = first;
+    slider.max = last;
+    seek(position);
+  }
+
   slider.min = first;
   slider.max = last;
   slider.addEventListener("input", () => { pause(); seek(Number(slider.value)); });
   button.addEventListener("click", toggle);
   addEventListener("load", () => seek(position));
 
-  return { data, locate, interpolate, label, seek, play, pause, turns: axis.turns, first, last,
+  return { data, locate, interpolate, label, seek, play, pause, lay, turns: axis.turns, get first() { return first; }, get last() { return last; },
            follow: listener => { listeners.push(listener); }, get position() { return position; } };
 })();
 window.loomfmu = loomfmu;

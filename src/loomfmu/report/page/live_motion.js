@@ -1,0 +1,142 @@
+/* Signals between their samples, as the claims of loomfmu take them: on each interval the polynomial that a
+ * signal and its recorded rates give, by its Bernstein points. See cosim/claims/curves.py and bernstein.py. */
+loomfmu.motion = (run, name) => {
+  const { time } = run, count = time.length, SAME = 1e-11, COARSE = 0.2, NOISE = 4 * 2 ** -52, HALVINGS = 60;
+  const values = [];
+  for (let each = name; each && values.length < 3; each = run.rate(each)) values.push(run.signal(each));
+  const own = values[0], largest = own.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+
+  function points(i) {
+    const h = time[i + 1] - time[i], y0 = own[i], y1 = own[i + 1];
+    if (values.length === 1) return [y0, y1];
+    const v0 = values[1][i] * h, v1 = values[1][i + 1] * h;
+    if (values.length === 2) return [y0, y0 + v0 / 3, y1 - v1 / 3, y1];
+    const a0 = values[2][i] * (h * h), a1 = values[2][i + 1] * (h * h);
+    return [y0, y0 + 0.2 * v0, y0 + 0.4 * v0 + 0.05 * a0, y1 - 0.4 * v1 + 0.05 * a1, y1 - 0.2 * v1, y1];
+  }
+
+  /* Lowest and highest of the points of each interval: the motion stays between them. */
+  const lows = new Float64Array(count - 1), highs = new Float64Array(count - 1);
+  for (let i = 0; i < count - 1; i++) {
+    const all = points(i);
+    [lows[i], highs[i]] = [Math.min(...all), Math.max(...all)];
+  }
+
+  function split(all, share) {
+    const left = [], right = [];
+    for (let some = all; some.length; some = some.slice(1).map((value, k) => some[k] + share * (value - some[k]))) {
+      left.push(some[0]);
+      right.unshift(some[some.length - 1]);
+    }
+    return [left, right];
+  }
+  const value = (all, share) => split(all, share)[1][0];
+
+  /* Lowest value of a piece, and the share of the way at which it is. */
+  function lowestOf(all) {
+    const end = all[all.length - 1], noise = NOISE * Math.max(...all.map(Math.abs));
+    let best = Math.min(all[0], end), share = end < all[0] ? 1 : 0;
+    const search = (some, begin, width, left) => {
+      if (!left || !(Math.min(...some) < best - noise)) return;
+      const [one, other] = split(some, 0.5), middle = begin + 0.5 * width;
+      if (other[0] < best) [best, share] = [other[0], middle];
+      search(one, begin, 0.5 * width, left - 1);
+      search(other, middle, 0.5 * width, left - 1);
+    };
+    search(all, 0, 1, HALVINGS);
+    return [best, share];
+  }
+
+  /* Shares of the way at which a piece changes its sign; 0 counts as positive. */
+  function changes(all, begin = 0, width = 1) {
+    const count = all.slice(1).filter((each, k) => (all[k] < 0) !== (each < 0)).length;
+    if (count === 0) return [];
+    if (count > 1 && width < 2 ** -HALVINGS) return (all[0] < 0) !== (all[all.length - 1] < 0) ? [begin] : [];
+    if (count > 1) {
+      const [left, right] = split(all, 0.5);
+      return [...changes(left, begin, 0.5 * width), ...changes(right, begin + 0.5 * width, 0.5 * width)];
+    }
+    let low = 0, high = 1;
+    for (let middle = 0.5; low < middle && middle < high; middle = 0.5 * (low + high))
+      if ((value(all, middle) < 0) === (all[0] < 0)) low = middle; else high = middle;
+    return [begin + width * high];
+  }
+
+  const intervalOf = moment => Math.min(loomfmu.locate(time, moment)[0], count - 2);
+  const moment = (i, share) => share < 1 ? time[i] + share * (time[i + 1] - time[i]) : time[i + 1];
+
+  function at(when) {
+    const i = intervalOf(when);
+    return value(points(i), (when - time[i]) / (time[i + 1] - time[i]));
+  }
+
+  function passages(level) {
+    const found = [];
+    for (let i = 0; i < count - 1; i++)
+      if (lows[i] - level < 0 && highs[i] - level >= 0)
+        for (const share of changes(points(i).map(each => each - level))) found.push(moment(i, share));
+    return found;
+  }
+
+  /* Stretches of time above a level, or with a negative sign below it: start, end, whether both are in the run. */
+  function beyond(level, sign) {
+    const found = [];
+    let inside = (own[0] >= level) === (sign > 0), begin = time[0], whole = false;
+    for (const when of passages(level)) {
+      if (inside) found.push({ start: begin, end: when, whole });
+      [inside, begin, whole] = [!inside, when, true];
+    }
+    if (inside) found.push({ start: begin, end: time[count - 1], whole: false });
+    return found;
+  }
+
+  /* The pieces in some stretches of time, whole or cut: index, points, shares at which it begins and ends. */
+  function* pieces(within) {
+    if (!within) { for (let i = 0; i < count - 1; i++) yield [i, points(i), 0, 1]; return; }
+    for (const { start, end } of within)
+      for (let i = intervalOf(start); i < count - 1 && (time[i] < end || start === end); i++) {
+        const h = time[i + 1] - time[i];
+        const low = Math.max((start - time[i]) / h, 0), high = Math.min((end - time[i]) / h, 1);
+        let all = points(i);
+        if (high < 1) all = split(all, high)[0];
+        if (low > 0) all = high > 0 ? split(all, Math.min(low / high, 1))[1] : all;
+        yield [i, all, low, high];
+        if (start === end) break;
+      }
+  }
+
+  /* Where `sign` times the motion is lowest: value, the first time of equal ones, whether samples are too coarse. */
+  function lowest(sign, within) {
+    let best = Infinity, found = [], sample = Infinity;
+    for (const [i, raw, low, high] of pieces(within)) {
+      const all = sign > 0 ? raw : raw.map(each => -each);
+      sample = Math.min(sample, all[0], all[all.length - 1]);
+      if (Math.min(...all) > best + SAME * largest) continue;
+      const [extreme, share] = values.length === 1 ? [Math.min(all[0], all[all.length - 1]), all[all.length - 1] < all[0] ? 1 : 0]
+        : lowestOf(all);
+      if (extreme <= best + SAME * largest) found.push([extreme, moment(i, low + share * (high - low)), i]);
+      best = Math.min(best, extreme);
+    }
+    if (!found.length) return { value: NaN, time: NaN, sample: NaN, coarse: false };
+    const [, when, i] = found.find(([extreme]) => extreme <= best + SAME * largest);
+    let top = -Infinity;
+    for (const each of own) top = Math.max(top, sign * each);
+    const off = Math.min(sign * own[i], sign * own[i + 1]) - best;
+    const coarse = off > Math.max(COARSE * (top - best), SAME * largest);
+    return { value: sign * best, time: when, sample: sign * sample, coarse };
+  }
+
+  /* How near the motion comes to a level in some stretches of time: 0 where it passes it. */
+  function nearest(level, within) {
+    const passed = passages(level).find(when => within.some(({ start, end }) => start <= when && when <= end));
+    if (passed !== undefined) return { value: 0, time: passed, coarse: false };
+    const found = [1, -1].map(sign => {
+      const side = within.filter(({ start, end }) => (at(0.5 * (start + end)) >= level) === (sign > 0));
+      const extreme = side.length ? lowest(sign, side) : null;
+      return extreme && { ...extreme, value: sign * (extreme.value - level) };
+    }).filter(Boolean);
+    return found.sort((one, other) => one.value - other.value)[0];
+  }
+
+  return { time, values: own, at, passages, beyond, lowest, nearest };
+};
