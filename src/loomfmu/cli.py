@@ -315,9 +315,9 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _page(options: argparse.Namespace) -> int:
-    from .report import live
+    from .live_page import write
 
-    say(live.write(options.scene, options.vary, options.output, _pairs(options.overrides), options.force))
+    say(write(options.scene, options.vary, options.output, _pairs(options.overrides), options.force))
     return 0
 
 

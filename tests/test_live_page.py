@@ -10,18 +10,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import NARROW, until
+from browser import NARROW, chromium, opened, until
 
 import loomfmu
-from loomfmu import LoomfmuError
+from loomfmu import LoomfmuError, live_page
 from loomfmu.cli import main
 from loomfmu.fmi.native import compiler
-from loomfmu.report import live
 from loomfmu.report.occasions import Occasions
 from loomfmu.report.section import Subject
 
 Open = Callable[..., Any]
-SIMS = Path(__file__).parents[2] / "sims"
+__all__ = ["chromium", "opened"]
+
+SIMS = Path(__file__).parents[1] / "sims"
 DEMO, WHOLE = SIMS / "wl680_3600.toml", SIMS / "full_loom.toml"
 # of the largest value: sin and its kin differ in the last bit between the page's module and this machine
 ALIKE = 1e-12
@@ -38,12 +39,12 @@ VALUES = """name => loomfmu.live.current.has(name) ? Array.from(loomfmu.live.cur
 @pytest.fixture(scope="session")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vary = ["shaft.speed=400rpm..800rpm", "belt.guide_clearance", "dobby.law"]
-    return live.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html")
+    return live_page.write(DEMO, vary, tmp_path_factory.mktemp("page") / "demo.html")
 
 
 @pytest.fixture(scope="session")
 def written_whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return live.write(WHOLE, [], tmp_path_factory.mktemp("page") / "whole.html")
+    return live_page.write(WHOLE, [], tmp_path_factory.mktemp("page") / "whole.html")
 
 
 def running(page: Any) -> Any:
@@ -203,13 +204,13 @@ def test_what_cannot_be_varied_is_said_in_one_line(
 
 def test_the_same_is_not_varied_twice() -> None:
     with pytest.raises(LoomfmuError, match=r"--vary shaft\.speed is given twice"):
-        live.write(DEMO, ["shaft.speed", "shaft.speed"])
+        live_page.write(DEMO, ["shaft.speed", "shaft.speed"])
 
 
 def test_without_a_compiler_there_is_no_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compiler, "compiler", lambda: None)
     with pytest.raises(LoomfmuError, match="pip install 'loomfmu\\[native\\]'"):
-        live.write(DEMO, [], tmp_path / "page.html")
+        live_page.write(DEMO, [], tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
 
 

@@ -22,14 +22,14 @@ from ..errors import path_of
 from ..files import check_target, starts_with, write_file
 from ..fmi.system.builder import module
 from ..fmi.system.system import component_of
+from ..report import claims, diagram, provenance
+from ..report.document import assembled
+from ..report.occasions import Occasions
+from ..report.section import Section, Subject
+from ..report.templates import check, template, text
 from ..traces import Trace
 from ..variables import Variable, variables_of
-from . import claims, diagram, provenance
-from .document import assembled
 from .knobs import Knob, knobs
-from .occasions import Occasions
-from .section import Section, Subject
-from .templates import check, template, text
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode())
