@@ -62,7 +62,7 @@ def test_an_output_depends_on_what_leads_to_it_from_outside(system: System) -> N
         places = each.get("dependencies", "").split()
         needs[listed[int(each.get("index", "")) - 1]] = [listed[int(place) - 1] for place in places]
     shaft = [f"weft.shaft_{name}" for name in ("angle", "velocity", "acceleration")]
-    rotor = {name for name in listed if name.startswith("heald_1.rotor_")}
+    rotor = {f"heald_1.rotor_{name}" for name in ("angle", "velocity", "acceleration")}
     assert needs[TRAVEL] == shaft
     assert set(shaft) <= set(needs[MARGIN])
     assert not [name for name in needs[MARGIN] if name in ("belt.travel", CLEARANCE)]

@@ -115,7 +115,7 @@ def test_random_parameters_inputs_and_steps(native, name):
     check()
 
 
-@pytest.mark.parametrize("law", range(1, 10))
+@pytest.mark.parametrize("law", [1, 2, 3, 4, 5, 6, 7, 9])  # 8 needs a table
 def test_every_law_of_the_dobby(native, law):
     given = {"law": law, "speed_reduction": 0.6, "speed": 31.0}
     component, instance = COMPONENTS["DobbyDrive"](**given), native("DobbyDrive").start(**given)

@@ -39,7 +39,7 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
 # to any speed from 0.001 to 5,000 rev/min
 AT_ONE_RADIAN: dict[str, dict[str, Any]] = {
     "BeltMonitor": {"bending_stiffness": 1.5e-3, "head_mass": 1.0},
-    "HealdFrame": {"frame_mass": 2.0, "pattern_length": 3},
+    "HealdFrame": {"frame_mass": 2.0, "gravity": 0.0, "pattern_length": 3},
     "WarpTension": {"pretension": 0.01, "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2},
     "HealdDamper": {"carrier_mass": 10.0, "spring_stiffness": 1.0, "stop_stiffness": 1e6},
     "PatternLock": {"spring_force": 2.0, "spring_stiffness": 2e3},

@@ -319,7 +319,8 @@ def test_a_sweep_varies_what_set_takes_and_nothing_else(tmp_path: Path, key: str
 
     shown = str(value).lower() if isinstance(value, bool) else repr(value)
     swept = taken(lambda: plan(tmp_path, f'[grid]\n"{key}" = [{shown}]\n'))
-    assert swept is taken(lambda: scenes.parse(SCENE, overrides={key: value}))
+    # a weave changes which FMUs there are: --set takes it, a sweep does not
+    assert swept is (key != "loom.weave" and taken(lambda: scenes.parse(SCENE, overrides={key: value})))
 
 
 def test_a_machine_for_the_whole_loom_goes_by_both_its_names(tmp_path: Path) -> None:

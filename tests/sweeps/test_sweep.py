@@ -124,7 +124,7 @@ def test_columns_have_units_and_the_table_its_texts(tmp_path: Path) -> None:
     about = {key.decode(): text.decode() for key, text in schema.metadata.items()}
     assert about["title"] == "Swept"
     assert about["sweep"] == path.read_text() and about["scene"] == SCENE
-    assert about["software"].startswith("loomfmu ") and about["flavour"] == "live"
+    assert about["software"].startswith("loomfmu ") and about["flavour"] == "native"
     labels = [(each["unit"], each["display_unit"]) for each in json.loads(about["claims"])]
     assert labels == [("1", "1"), ("rad/s", "rev/min")]
     frame = pandas.read_parquet(found.path)

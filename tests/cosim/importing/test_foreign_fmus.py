@@ -144,7 +144,7 @@ def test_claims_on_other_makers_signals(place: Path, tmp_path: Path) -> None:
     result = ran(place, text.format("winding", "150"), tmp_path)
     assert not result.holds and "winding, 200 K at 0 s" in str(result.claims[0])
     with pytest.raises(
-        LoomfmuError, match=r"^claim 'below': window is a shaft angle, and the scene has no sh"
+        LoomfmuError, match=r"^claim 'below': window is a shaft angle, but the scene has no sh"
     ):
         ran(place, text.format("winding", "150\nwindow = [0, 1]"), tmp_path)
 
@@ -276,7 +276,8 @@ def test_messages_with_arguments_are_told_whole_and_to_the_right_instance(
         for name, load in (("motor", "0.000"), ("second", "12.500"))
         for step in range(3)
     )
-    assert len(ran(place, text, tmp_path, duration="1 s").warnings) == 100  # the last fifty of each
+    # the last fifty of each, and how many came before
+    assert len(ran(place, text, tmp_path, duration="1 s").warnings) == 102
 
 
 def test_one_without_outputs_runs_for_what_it_does(tmp_path: Path) -> None:

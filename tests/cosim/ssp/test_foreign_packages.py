@@ -121,7 +121,7 @@ def test_it_runs_with_its_own_wires_parameters_and_step(tmp_path: Path) -> None:
     trace = result.trace
     np.testing.assert_allclose(trace["drive_motor.flange_phi"], exact(trace.time)[0], rtol=0, atol=1e-9)
     assert np.ptp(trace["left_head.travel"]) > 1.0
-    assert len(list(trace)) == 7 + 6  # all outputs
+    assert len(list(trace)) == 7 + 7  # all outputs
     assert trace.attributes["scene"].startswith("<?xml")
 
 

@@ -305,20 +305,21 @@ def test_a_package_of_the_form_before_is_still_read(demo: Path, tmp_path: Path) 
 
 
 def test_export_and_run_by_the_command(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     scene = str(SIMS / "worn_belt.toml")
     few = ["--set", "steps_per_revolution=90", "--set", "revolutions=2"]
     assert main(["export", scene, "--ssp", "deep/belt.ssp", "--flavour", "live", *few]) == 0
-    printed = capsys.readouterr()
+    printed = capfd.readouterr()
     assert printed.out == "deep/belt.ssp\n"
     assert printed.err == (
         "warning: belt.guide_clearance is driven along a table, which a system package cannot hold:"
         " other tools keep it at its first value\n"
     )
+    # its FMUs are files: they run in a child process
     assert main(["run", "deep/belt.ssp", "--set", "shaft.speed=500rpm"]) == 0
-    assert ": 2 revolutions at 500 rev/min, 180 steps" in capsys.readouterr().out
+    assert ": 2 revolutions at 500 rev/min, 180 steps" in capfd.readouterr().out
     with Trace("results/belt.h5") as trace:
         assert trace["belt.guide_clearance"][-1] > 0.3e-3
 
