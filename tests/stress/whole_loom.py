@@ -41,10 +41,13 @@ AT_ONE_RADIAN: dict[str, dict[str, Any]] = {
     "BeltMonitor": {"bending_stiffness": 1.5e-3, "head_mass": 1.0},
     "HealdFrame": {"frame_mass": 2.0, "gravity": 0.0, "pattern_length": 3},
     "WarpTension": {"pretension": 0.01, "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2},
-    "HealdDamper": {"carrier_mass": 10.0, "spring_stiffness": 1.0, "stop_stiffness": 1e6},
+    "HealdDamper": {
+        "carrier_mass": 10.0, "spring_stiffness": 1.0, "stop_stiffness": 1e6, "pretension": 0.01,
+        "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2,
+    },
     "PatternLock": {"spring_force": 2.0, "spring_stiffness": 2e3},
     "DetachingRoller": {"nip_load": 0.5, "largest_drafting_force": 0.1},
-}
+}  # fmt: skip
 
 
 def scale(unit: str, speed: float) -> float:
