@@ -315,6 +315,8 @@ def test_the_fmu_runs_in_a_scene_as_a_file_and_in_a_package(cam: Path) -> None:
     text = (cam / "cam.toml").read_text().replace("component = \"picking_cam.py:PickingCam\"",
                                                   'fmu = "PickingCam.fmu"')  # fmt: skip
     (cam / "file.toml").write_text(text)
+    (note,) = scenes.load(cam / "file.toml").notes
+    assert note.startswith("cam runs at its own constant speed")
     for flavour in ("live", "native"):
         package = cam / f"{flavour}.ssp"
         arguments = ["export", str(cam / "cam.toml"), "--ssp", str(package), "--flavour", flavour]

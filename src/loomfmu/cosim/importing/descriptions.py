@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from ... import units
@@ -37,7 +37,8 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     check_text(description.modelName or "", "modelName")
     _check(description.modelVariables)
     known = [v for v in description.modelVariables if v.type in KINDS and not v.dimensions]
-    names = dict(zip((v.name for v in known), plain_names(v.name for v in known), strict=True))
+    recorded = {v.name for v in known if v.causality == "output"}
+    names = dict(zip((v.name for v in known), plain_names((v.name for v in known), recorded), strict=True))
     if component is not None:
         declared = {v.structured: v.name for v in variables_of(component)}
         names = {name: declared.get(name, plain) for name, plain in names.items()}
@@ -102,10 +103,10 @@ def _check(variables: Iterable[Any]) -> None:
         names.add(name)
 
 
-def plain_names(names: Iterable[str]) -> list[str]:
-    """Names of letters, digits and _, a letter first, all different.
+def plain_names(names: Iterable[str], recorded: Collection[str] = ()) -> list[str]:
+    """Names of letters, digits and _, a letter first, all different; `recorded` are those that a trace holds.
 
-    >>> plain_names(["phi", "body.phi", "der(w)", "x[1]", "x_1", "time", "shaft.angle"])
+    >>> plain_names(["phi", "body.phi", "der(w)", "x[1]", "x_1", "time", "shaft.angle"], ["shaft.angle"])
     ['phi', 'body_phi', 'der_w', 'x_1', 'x_1_2', 'time_', 'shaft_angle_']
     """
     found: dict[str, None] = {}
@@ -113,7 +114,8 @@ def plain_names(names: Iterable[str]) -> list[str]:
     for name in names:
         plain = re.sub("[^A-Za-z0-9_]+", "_", name).strip("_") or "unnamed"
         plain = plain if plain[0].isalpha() else f"v_{plain}"
-        plain = f"{plain}_" if plain in SHARED else plain  # each group of a trace has these of its own
+        # each group of a trace has these of its own; an input `shaft_angle` keeps its name, for the wires
+        plain = f"{plain}_" if plain == "time" or (name in recorded and plain in SHARED) else plain
         free = plain
         while free in found:
             numbers[plain] = numbers.get(plain, 1) + 1
