@@ -27,9 +27,10 @@ class Variable:
     """One variable of a component, as it was declared.
 
     `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
-    derivative; `depends` the inputs that an output depends on (None: on all of them); `choices` the
-    names of an enumeration's values, counted from 1; `indicator` says that it changes its sign where an
-    output jumps; `source` is the output that an input is usually wired to, `instance.variable` with # for the
+    derivative; `depends` the inputs that an output depends on (None: on all of them; empty: on parameters
+    alone; TIME: on time alone); `choices` the names of an enumeration's values, counted from 1; `indicator`
+    says that it changes its sign where an output jumps; `source` is the output that an input is usually wired
+    to, `instance.variable` with # for the
     instance's own number, and in an array with * for every instance that has such an output; of a parameter
     it is that of another instance whose value it takes unless it is given one; with `source_for` an input is
     wired to the first of its sources, parted by |, that there is, and only where that output is taken, and a
@@ -148,6 +149,7 @@ class Problem:
 # What a component carries from step to step, where its inputs hold at the step's end: nothing, so that its
 # outputs are functions of time, parameters and inputs; nothing but extremes, so that all other outputs are;
 # or its motion, which integrates over its inputs, with extremes or without.
+TIME = "time"  # in the place of an input that an output depends on
 NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 

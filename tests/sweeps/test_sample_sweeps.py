@@ -42,8 +42,10 @@ def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
     assert main(["sweep", str(SWEEPS / "damper.toml"), "--output", str(output), "--processes", "1"]) == 1
     table = pq.read_table(output / "table.parquet")
     assert table.num_rows == 64 and table["error"].null_count == 64
-    soft = table.filter(pc.field("damper.spring_stiffness") < 2e3)["damper_1.stop_contacts"].to_pylist()
+    # resonance at 2 N/mm and 7.5 kg moves the carrier by less than 15 mm or so
+    short = table.filter(pc.field("damper.free_travel") < 0.015)
+    soft = short.filter(pc.field("damper.spring_stiffness") < 2e3)["damper_1.stop_contacts"].to_pylist()
     stiff = table.filter(pc.field("damper.spring_stiffness") > 15e3)["damper_1.stop_contacts"].to_pylist()
-    assert len(soft) > 5 and sum(map(bool, soft)) >= 3  # where the travel is short
+    assert len(soft) > 5 and min(soft) > 0
     assert len(stiff) > 5 and max(stiff) == 0
     assert (output / "map.png").stat().st_size > 10_000

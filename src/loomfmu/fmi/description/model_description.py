@@ -3,7 +3,7 @@
 from xml.etree.ElementTree import Element, SubElement
 
 from ... import units
-from ...variables import NOTHING, Component, Variable, variables_of
+from ...variables import NOTHING, TIME, Component, Variable, variables_of
 from ..live.live_slave import CATEGORIES
 from .references import FIRST_REFERENCE, FMI_TYPES
 from .xml_text import text_of
@@ -175,7 +175,8 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
         if variable.causality != "output":
             continue
         needed = inputs if variable.depends is None else variable.depends
-        dependencies = " ".join(str(index[name]) for name in sorted(needed, key=index.__getitem__))
+        # FMI 2.0 has no variable that is the time
+        dependencies = " ".join(map(str, sorted(index[name] for name in needed if name != TIME)))
         SubElement(outputs, "Unknown", index=str(index[variable.name]), dependencies=dependencies)
         SubElement(unknowns, "Unknown", index=str(index[variable.name]))
 

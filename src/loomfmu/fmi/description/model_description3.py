@@ -2,7 +2,7 @@
 
 from xml.etree.ElementTree import Element, SubElement
 
-from ...variables import NOTHING, Component, Variable, variables_of
+from ...variables import NOTHING, TIME, Component, Variable, variables_of
 from .model_description import (
     about,
     attributes_of,
@@ -70,13 +70,15 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
     references = {
         variable.name: reference for reference, variable in enumerate(variables, start=FIRST_REFERENCE)
     }
+    references[TIME] = _time_reference(variables)
     inputs = [variable.name for variable in variables if variable.causality == "input"]
     parameters = [variable.name for variable in variables if variable.causality == "parameter"]
     structure = SubElement(root, "ModelStructure")
     outputs = [variable for variable in variables if variable.causality == "output"]
     for variable in outputs:
-        needed = inputs if variable.depends is None else list(variable.depends)
-        found = [*sorted(references[name] for name in (*needed, *parameters)), _time_reference(variables)]
+        needed = inputs if variable.depends is None else variable.depends
+        timed = () if variable.depends == () else (TIME,)
+        found = sorted({references[name] for name in (*needed, *parameters, *timed)})
         SubElement(
             structure, "Output", valueReference=str(references[variable.name]),
             dependencies=" ".join(map(str, found)),

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from ...variables import Component, Problem, Terminal, Variable, variables_of
+from ...variables import TIME, Component, Problem, Terminal, Variable, variables_of
 
 Value = float | int | bool
 Reach = Callable[[str], tuple[str, ...]]
@@ -101,12 +101,18 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
         own = replace(
             each, name=name, element=f"{part.name}.{each.member}", causality=causality,
             start=each.type(part.values.get(each.name, each.start)), rate=dotted(each.rate),
-            depends=reach(name) if causality == "output" else None, indicator=False, source=None,
+            depends=(reach(name) or _of_time(each)) if causality == "output" else None, indicator=False,
+            source=None,
             lowest_of=dotted(each.lowest_of), highest_of=dotted(each.highest_of), when=dotted(each.when),
             unless=dotted(each.unless),
         )  # fmt: skip
         found.append(own)
     return found
+
+
+def _of_time(variable: Variable) -> tuple[str, ...]:
+    """On what an output depends that no open input leads to: on time, unless parameters alone give it."""
+    return () if variable.depends == () else (TIME,)
 
 
 def _dependencies(system: System) -> Reach:
