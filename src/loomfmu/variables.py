@@ -150,6 +150,7 @@ class Problem:
 # outputs are functions of time, parameters and inputs; nothing but extremes, so that all other outputs are;
 # or its motion, which integrates over its inputs, with extremes or without.
 TIME = "time"  # in the place of an input that an output depends on
+SHARED = (TIME, "shaft_angle")  # what all recorded signals lie along: none of them has such a name
 NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
 

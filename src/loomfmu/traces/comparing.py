@@ -11,10 +11,10 @@ import numpy as np
 
 from .. import units
 from ..errors import LoomfmuError, shown
+from ..variables import SHARED
 from .comparison import Change, Comparison, Difference
 from .meeting import Meeting, meet
 from .reader import Trace
-from .signals import SHARED
 from .verdict import Verdict
 
 TOLERANCE = 1e-9  # far above what compilers and C libraries round differently, far below what a loom feels

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..errors import LoomfmuError, shown
+from ..variables import SHARED
 from .comparison import Change, Place
 from .reader import Trace
-from .signals import SHARED, Floats
+from .signals import Floats
 
 SAME_PLACE = 1e-9  # share of a step
 ROUNDINGS = 8  # units in the last place of an angle or time, beside that share

@@ -17,10 +17,11 @@ from .. import notebook
 from ..errors import LoomfmuError, shown
 from ..files import source
 from ..units import UnitError
+from ..variables import SHARED
 from .disk import superblock
 from .layout import Foreign, check_link, column, has, member
 from .places import place_of
-from .signals import SHARED, Floats, Signals
+from .signals import Floats, Signals
 from .verdict import HEADINGS, Verdict
 
 REQUIRED = ("title", "status", "software")  # attributes that every trace has

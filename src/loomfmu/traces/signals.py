@@ -14,7 +14,6 @@ from ..units import unit
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
-SHARED = ("time", "shaft_angle")  # what all signals lie along
 
 
 @dataclass(frozen=True)

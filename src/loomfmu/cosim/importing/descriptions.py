@@ -8,8 +8,7 @@ from typing import Any
 from ... import units
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
-from ...traces.signals import SHARED
-from ...variables import Component, Variable, variables_of
+from ...variables import SHARED, Component, Variable, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
