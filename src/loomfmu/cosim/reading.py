@@ -52,7 +52,7 @@ def read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:
             return replace(made, file=scene.file)
         scene = scene.package
     if Path(scene).suffix.lower() == ".ssp":
-        from .ssp import read as ssp_read  # most scenes are no package
+        from .ssp import read as ssp_read  # most scenes are not packages
 
         return ssp_read.load(scene, overrides)
     return scenes.load(scene, overrides)

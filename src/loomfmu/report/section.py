@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -79,7 +79,6 @@ class Subject:
     """
 
     traces: Sequence[Trace]
-    signals: Sequence[str] = field(default=())
 
     @property
     def trace(self) -> Trace:

@@ -95,7 +95,7 @@ class Fmu:
 
     @property
     def no_native(self) -> str:
-        """Why there is no native one of it for this machine; empty if there is, or for a file."""
+        """Why this FMU has no native version on this machine; empty if it has one, or was given as a file."""
         if self.component is None or not self.built:
             return ""
         if not platforms.host():

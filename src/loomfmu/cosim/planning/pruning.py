@@ -22,8 +22,8 @@ from .requested import claims_of
 class Pruned:
     """A scene with only what some signals need.
 
-    `fetched` are the outputs to be read from the FMUs, `shafts` the shafts that need no FMU, `turning` the
-    shaft that an instance turns like without following it, `skipped` lines on what was left out and why.
+    `fetched` are the outputs to read from the FMUs, `shafts` the shafts that need no FMU, `turning` the shaft
+    whose motion an instance computes by itself, `skipped` lines that say what was left out and why.
     """
 
     scene: Scene

@@ -74,7 +74,7 @@ def build_library(source: Path, output: Path, platform: str) -> None:
 def library(source: Path, platform: str) -> bytes:
     """One C file as a shared library for all processors of a platform.
 
-    Raises LoomfmuError where there is no compiler, or it does not compile.
+    Raises LoomfmuError if there is no compiler, or if compilation fails.
     """
     suffix, targets = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
