@@ -1,10 +1,12 @@
 """What all tests share."""
 
 import pytest
+from browser import chromium, opened
 from hypothesis import settings
 from sharing import fmu_cache
 
-__all__ = ["fmu_cache"]
+# fixtures are named here alone: one that is imported into two files would be made twice in a process
+__all__ = ["chromium", "fmu_cache", "opened"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 

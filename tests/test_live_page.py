@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import NARROW, chromium, opened, until
+from browser import NARROW, until
 
 import loomfmu
 from loomfmu import LoomfmuError, live_page
@@ -20,7 +20,6 @@ from loomfmu.report.occasions import Occasions
 from loomfmu.report.section import Subject
 
 Open = Callable[..., Any]
-__all__ = ["chromium", "opened"]
 
 SIMS = Path(__file__).parents[1] / "sims"
 DEMO, WHOLE = SIMS / "wl680_3600.toml", SIMS / "full_loom.toml"

@@ -9,14 +9,11 @@ from typing import Any
 import build_site
 import markdown
 import pytest
-from browser import NARROW, chromium, opened, until
+from browser import NARROW, until
 from markdown_it import MarkdownIt
-from sharing import fmu_cache
 from website import assembly, contents, reference
 
 from loomfmu.cosim.claims.claim import Claim
-
-__all__ = ["chromium", "fmu_cache", "opened"]
 
 CDN = re.compile(r"https?://(?:unpkg|cdn|fonts|ajax)[.\w]*/[@\w.-]+")
 # by the theme's script, for pages with Mermaid diagrams and for browsers of before 2020

@@ -3,12 +3,9 @@
 from pathlib import Path
 
 import pytest
-from browser import chromium, opened
 
 import loomfmu
 from loomfmu.traces import Trace
-
-__all__ = ["chromium", "opened"]
 
 SIMS = Path(__file__).parents[2] / "sims"
 
