@@ -17,7 +17,6 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
-from sharing import fmu_cache as fmu_cache
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus

@@ -7,12 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu import LoomfmuError, evaluate, judge, run, sweep
-
-__all__ = ["fmu_cache"]
 
 SIMS = Path(__file__).parents[1] / "sims"
 DEMO: Any = SIMS / "wl680_3600.toml"

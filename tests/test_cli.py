@@ -10,14 +10,12 @@ from pathlib import Path
 
 import h5py
 import pytest
-from live_fmus import NAMES, fmu_cache
+from live_fmus import NAMES
 
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.cache import cache_directory
-
-__all__ = ["fmu_cache"]
 
 HEAD = 'title = "Small"\nrevolutions = 1\nsteps_per_revolution = 90\n'
 SHAFT = "[shaft]\n"

@@ -9,7 +9,6 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
-from live_fmus import fmu_cache
 
 from loomfmu import arguments as cli_arguments
 from loomfmu import cli
@@ -18,8 +17,6 @@ from loomfmu.cosim.claims.claims import KINDS
 from loomfmu.cosim.scenes import scene
 from loomfmu.sweeps import plan
 from loomfmu.variables import variables_of
-
-__all__ = ["fmu_cache"]
 
 HOUSE = Path(__file__).parents[1]
 README = HOUSE / "README.md"

@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu import LoomfmuError, progress
 from loomfmu.traces import Verdict
-
-__all__ = ["fmu_cache"]
 
 SCENE = """
 title = "a <b>bold</b> title"

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-from live_fmus import fmu_cache, in_a_process
+from live_fmus import in_a_process
 
-__all__ = ["fmu_cache"]
 pytest_plugins = ["pytester"]
 
 SCENE = """

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 import sdf
 import xarray
-from live_fmus import fmu_cache, in_a_process
+from live_fmus import in_a_process
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace, cli, units
@@ -27,8 +27,6 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.traces import ROWS, TRACE, Channel, TraceWriter, damage
 from loomfmu.variables import variables_of
-
-__all__ = ["fmu_cache"]
 
 SCENE = """
 title = "Two frames"

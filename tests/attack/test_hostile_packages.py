@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from foreign_motors import FIXED, FMI3, description2
 from hostile import LONG, SHORT, attacked, damaged, guarded, revalued
-from live_fmus import fmu_cache
 
 from loomfmu import LoomfmuError, files
 from loomfmu.cosim.importing import fmus
@@ -17,8 +16,6 @@ from loomfmu.cosim.ssp import export as ssp
 from loomfmu.cosim.ssp import package as packages
 from loomfmu.cosim.ssp import read as ssp_read
 from loomfmu.cosim.ssp.xml import NAMESPACES
-
-__all__ = ["fmu_cache"]
 
 SSD = "SystemStructure.ssd"
 SPACES = " ".join(f'xmlns:{key}="{NAMESPACES[key]}"' for key in ("ssd", "ssc", "ssv", "ssm", "osp"))

@@ -5,14 +5,11 @@ from pathlib import Path
 
 import pytest
 from hostile import LONG, SHORT, attacked, damaged, guarded, revalued
-from live_fmus import fmu_cache
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
-
-__all__ = ["fmu_cache"]
 
 FILES = sorted((Path(__file__).parents[2] / "sims").glob("*.toml"))
 LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01/10/01"\n'

@@ -8,13 +8,10 @@ import hostile_traces
 import numpy as np
 import pytest
 from attack_figures import record
-from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
-
-__all__ = ["fmu_cache"]
 
 SCENE = """title = "Small"
 revolutions = 1

@@ -10,14 +10,11 @@ import numpy as np
 import pytest
 from attack_figures import record
 from commands import started
-from live_fmus import fmu_cache
 from sweeps.sweep_files import NO_TRACES, written
 from sweeps.sweep_files import started as sweep_started
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace
-
-__all__ = ["fmu_cache"]
 
 SCENE = 'steps_per_revolution = 1440\nrecord = ["belt.*", "weft.travel"]\n[loom]\nmachine = "WL680-3600"\n'
 RUN = ("run", "scene.toml", "--set", "revolutions=20")

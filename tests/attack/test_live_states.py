@@ -7,9 +7,7 @@ import json
 
 import pytest
 from attack_figures import record
-from live_fmus import NAMES, fmu_cache, in_a_process
-
-__all__ = ["fmu_cache"]
+from live_fmus import NAMES, in_a_process
 
 ATTACK = """
 import json, logging, math, random, struct, sys, zlib

@@ -7,11 +7,8 @@ import numpy as np
 import pytest
 from attack_figures import record
 from commands import started
-from live_fmus import fmu_cache
 
 from loomfmu import Trace
-
-__all__ = ["fmu_cache"]
 
 SCENE = 'steps_per_revolution = 1440\nrecord = ["belt.margin"]\n[loom]\nmachine = "WL680-3600"\n'
 SPEEDS = (500.0, 650.0)

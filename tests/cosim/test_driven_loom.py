@@ -6,14 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from scipy.integrate import solve_ivp
 
 import loomfmu
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene as scenes
 
-__all__ = ["fmu_cache"]
 ROOT = Path(__file__).parents[2]
 GRAVITY = 9.80665
 ROTOR = (

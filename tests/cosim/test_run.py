@@ -6,13 +6,10 @@ from pathlib import Path
 
 import pytest
 from foreign_motors import FMI3, description2, library, motor2, motor3, packed
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, ran
 
 from loomfmu import Trace, evaluate, run
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 CLAIM = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
 

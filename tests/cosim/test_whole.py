@@ -13,7 +13,6 @@ import pytest
 from foreign_motors import motor2
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from live_fmus import fmu_cache
 from motor_scenes import MOTOR
 from whole_fmus import Signals, Whole, exported
 
@@ -21,8 +20,6 @@ from loomfmu import LoomfmuError, Result, run
 from loomfmu.cosim import whole
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
-
-__all__ = ["fmu_cache"]
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted([*SIMS.glob("*.toml"), *SIMS.glob("beyond_the_limit/*.toml")])

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import fromstring
 import fmpy
 import numpy as np
 import pytest
-from live_fmus import COMPONENTS, NAMES, fmu_cache, in_a_process
+from live_fmus import COMPONENTS, NAMES, in_a_process
 from write_fmu_pages import SAMPLES, STEP_SIZE, reference, write_references
 
 from loomfmu import LoomfmuError, components
@@ -23,8 +23,6 @@ from loomfmu.fmi import builder
 from loomfmu.fmi.description import documentation
 from loomfmu.fmi.source import SourceError, flatten
 from loomfmu.variables import Component, output, parameter, variables_of
-
-__all__ = ["fmu_cache"]
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 

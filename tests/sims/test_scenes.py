@@ -6,11 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from live_fmus import fmu_cache
 
 from loomfmu import Trace
-
-__all__ = ["fmu_cache"]
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted(path.relative_to(SIMS).as_posix() for path in SIMS.glob("*.toml"))

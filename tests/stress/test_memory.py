@@ -1,8 +1,6 @@
 """A thousand runs in one process."""
 
-from live_fmus import fmu_cache, in_a_process
-
-__all__ = ["fmu_cache"]
+from live_fmus import in_a_process
 
 RUNS, WARM_UP = 1000, 100
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import odd_tasks
 import pytest
-from live_fmus import fmu_cache
 from sweep_files import NO_TRACES, written
 
 import loomfmu
@@ -16,8 +15,6 @@ from loomfmu import LoomfmuError
 from loomfmu.cli import main
 
 distributed = pytest.importorskip("distributed")
-
-__all__ = ["fmu_cache"]
 
 SWEPT = (
     '[grid]\n"weft.coupler_length" = ["245 mm", "500 mm"]\n'

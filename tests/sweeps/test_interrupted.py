@@ -10,13 +10,10 @@ from typing import Any
 import psutil
 import pyarrow.parquet as pq
 import pytest
-from live_fmus import fmu_cache
 from sweep_files import NO_TRACES, started, written
 
 import loomfmu
 from loomfmu.cosim.master.master import Interrupted
-
-__all__ = ["fmu_cache"]
 
 SPEEDS = 41
 

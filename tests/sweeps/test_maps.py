@@ -5,15 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from PIL import Image
 from sweep_files import NO_TRACES, written
 
 import loomfmu
 from loomfmu.design import loom
 from loomfmu.sweeps import maps
-
-__all__ = ["fmu_cache"]
 
 SPEEDS = '"shaft.speed" = { from = "480 rpm", to = "780 rpm", count = 16 }\n'
 SPACING = 20.0  # rev/min

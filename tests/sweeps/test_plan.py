@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from scipy.stats import qmc
 from sweep_files import HEAD, SCENE, written
 
@@ -14,8 +13,6 @@ from loomfmu import LoomfmuError
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.machines import parameters
 from loomfmu.sweeps import plan as plans
-
-__all__ = ["fmu_cache"]
 
 RPM = math.pi / 30.0
 

@@ -6,12 +6,9 @@ import numpy as np
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
-from live_fmus import fmu_cache
 
 from loomfmu.cli import main
 from loomfmu.design import loom
-
-__all__ = ["fmu_cache"]
 
 SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
 

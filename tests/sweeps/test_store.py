@@ -13,7 +13,6 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from live_fmus import fmu_cache
 from sweep_files import written
 
 from loomfmu import LoomfmuError
@@ -22,8 +21,6 @@ from loomfmu.sweeps.plan import SweepPlan
 from loomfmu.sweeps.store import Store, opened
 from loomfmu.sweeps.tables import table_of, whole_table
 from loomfmu.sweeps.worker import Batch, Label
-
-__all__ = ["fmu_cache"]
 
 LABELS = (
     Label("first", "belt.lowest_margin", "1", "1"),

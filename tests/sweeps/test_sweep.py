@@ -14,7 +14,7 @@ import pandas
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from live_fmus import fmu_cache, in_a_process
+from live_fmus import in_a_process
 from sweep_files import HEAD, NO_TRACES, SCENE, written
 
 import loomfmu
@@ -25,8 +25,6 @@ from loomfmu.sweeps import plan as plans
 from loomfmu.sweeps import run as sweeps_run
 from loomfmu.sweeps.ranking import beyond, traced_rows, worst_rows
 from loomfmu.sweeps.worker import Job, identity
-
-__all__ = ["fmu_cache"]
 
 MACHINES = ["WL680-3600", "WL450-3600", "WL800-3600"]
 CLEARANCES = [0.3e-3, 0.8e-3]

@@ -10,7 +10,6 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 from direct_loom import traced
-from live_fmus import fmu_cache
 from scipy.optimize import brentq
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
@@ -26,8 +25,6 @@ from loomfmu.design import loom as loom_figures
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 from loomfmu.traces import Channel, Signals, TraceWriter
-
-__all__ = ["fmu_cache"]
 
 TURN = 2 * math.pi
 LOOM = 'revolutions = 3\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "{weave}"\n{rest}'

@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 SCENE = """
 revolutions = 3

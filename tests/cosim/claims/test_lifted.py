@@ -1,12 +1,9 @@
 """Claims on shed and dwell follow what lifts the warp: the carrier where a frame has a damper."""
 
 import pytest
-from live_fmus import fmu_cache
 
 from loomfmu import LoomfmuError, evaluate
 from loomfmu.cosim.claims.lifted import lift_of
-
-__all__ = ["fmu_cache"]
 
 LOOM = """
 revolutions = 4

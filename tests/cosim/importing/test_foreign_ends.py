@@ -5,15 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from foreign_motors import motor2, motor3
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran
 
 from loomfmu import Trace, evaluate
 from loomfmu.cli import main
 from loomfmu.cosim.master import steppers
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 SECOND, THIRD = MOTOR + WEFT, LENGTH + SHAFT3 + '[weft]\nmachine = "WL680-3600"\n'
 CLAIM = '[[claims]]\nkind = "below"\nsignal = "{}"\nbound = {}\n'

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from foreign_motors import description2, library, motor2, motor3, packed
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
 
 from loomfmu import LoomfmuError, Trace, evaluate, run
@@ -21,8 +20,6 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.drives import drive
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.machines import parameters
-
-__all__ = ["fmu_cache"]
 
 
 @pytest.fixture(scope="module")

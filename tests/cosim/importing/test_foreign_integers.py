@@ -6,13 +6,10 @@ import h5py
 import numpy as np
 import pytest
 from foreign_motors import BLANKS, HELD, WHOLE, motor2, motor3
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, ran, refused
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 INSIDE = ["isolated = false\n", ""]  # in this process the compiled stepper converts the values, else Python
 OTHER = '[other]\nfmu = "Motor3.fmu"\n'

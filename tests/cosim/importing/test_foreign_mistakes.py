@@ -6,14 +6,11 @@ from pathlib import Path
 import fmpy
 import pytest
 from foreign_motors import FIXED, FMI3, description2, library, motor2, motor3, packed
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, ran, refused
 
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 THIRD = FMI3.format(fixed=FIXED)
 FILES = {

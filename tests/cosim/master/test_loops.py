@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from odd_components import odd
 from scipy.integrate import solve_ivp
 
@@ -26,7 +25,7 @@ from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
 
-__all__ = ["fmu_cache", "odd"]
+__all__ = ["odd"]
 
 needs_compiler = pytest.mark.skipif(
     find_spec("ziglang") is None, reason="there is no compiler to build the stepper with"

@@ -11,7 +11,6 @@ from signal import SIGINT, getsignal
 import numpy as np
 import pytest
 from direct_loom import by_components, by_public_methods, small, traced
-from live_fmus import fmu_cache
 from odd_components import odd
 
 from loomfmu import LoomfmuError
@@ -24,7 +23,7 @@ from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi import builder
 from loomfmu.traces import ROWS, Trace
 
-__all__ = ["fmu_cache", "odd"]
+__all__ = ["odd"]
 
 SHAFTS = {
     "constant": {"shaft__speed": "600 rpm"},

@@ -5,13 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from foreign_motors import motor2, motor3
-from live_fmus import fmu_cache
 from motor_scenes import LENGTH, MOTOR, SHAFT3, exact, ran
 
 from loomfmu.components import WeftInsertion
 from loomfmu.machines import parameters
-
-__all__ = ["fmu_cache"]
 
 HELD = "follow_shaft = true\nshaft_angle = 1.0\nshaft_velocity = 0.0\n"  # rad: where the head feels it
 WEFT = f'[weft]\nmachine = "WL680-3600"\n{HELD}'

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from direct_loom import small
 from foreign_motors import WHOLE, motor3
-from live_fmus import fmu_cache
 from odd_components import odd
 
 import loomfmu
@@ -26,7 +25,7 @@ from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.cache_entries import CHECKSUM
 from loomfmu.fmi.native.libraries import library_of
 
-__all__ = ["fmu_cache", "odd"]
+__all__ = ["odd"]
 
 pytestmark = pytest.mark.skipif(
     find_spec("ziglang") is None or not sys.platform.startswith("linux"),

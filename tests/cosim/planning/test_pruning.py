@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from direct_loom import small
-from live_fmus import fmu_cache
 
 import loomfmu
 from loomfmu.cosim.importing import fmus, pool
@@ -16,8 +15,6 @@ from loomfmu.cosim.planning.pruning import Pruned, prune
 from loomfmu.cosim.planning.requested import judged_by, recorded
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
-
-__all__ = ["fmu_cache"]
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 MARGIN = """

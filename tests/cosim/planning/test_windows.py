@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from live_fmus import fmu_cache
 from scipy.optimize import minimize_scalar
 
 import loomfmu
@@ -14,8 +13,6 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.planning import windows
 from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
-
-__all__ = ["fmu_cache"]
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO, BELT = SIMS / "wl680_3600.toml", SIMS / "belt_alone.toml"

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from direct_loom import small, traced
-from live_fmus import fmu_cache
 
 from loomfmu import LoomfmuError, units
 from loomfmu.cosim.planning.requested import checked_claims
@@ -15,8 +14,6 @@ from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
 from loomfmu.machines import parameters
-
-__all__ = ["fmu_cache"]
 
 LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01/10/01"\ndampers = true\n'
 RPM = 2 * math.pi / 60

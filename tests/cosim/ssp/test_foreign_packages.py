@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from foreign_motors import motor2
-from live_fmus import fmu_cache
 from motor_scenes import MOTOR, WEFT, exact
 
 from loomfmu import LoomfmuError
@@ -15,8 +14,6 @@ from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
 from loomfmu.cosim.ssp.xml import NAMESPACES
-
-__all__ = ["fmu_cache"]
 
 DRIVE = """
 <ssd:System name="drive">

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from direct_loom import small
 from fmpy.ssp.ssd import read_ssd, read_ssv, validate_tree
-from live_fmus import fmu_cache
 from lxml import etree
 
 from loomfmu import LoomfmuError, Trace
@@ -21,8 +20,6 @@ from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.ssp import export as ssp
 from loomfmu.cosim.ssp import read as ssp_read
 from loomfmu.cosim.ssp.xml import NAMESPACES
-
-__all__ = ["fmu_cache"]
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = SIMS / "wl680_3600.toml"

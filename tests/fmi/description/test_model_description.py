@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element, fromstring
 
 import fmpy.validation
 import pytest
-from live_fmus import COMPONENTS, NAMES, excited, fmu_cache
+from live_fmus import COMPONENTS, NAMES, excited
 
 from loomfmu import units
 from loomfmu.cosim.importing import fmus
@@ -14,8 +14,6 @@ from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.live.live_slave import CATEGORIES
 from loomfmu.variables import Component, Variable, variables_of
 from loomfmu.version import __version__
-
-__all__ = ["fmu_cache"]
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 

@@ -6,13 +6,11 @@ from pathlib import Path
 import fmpy
 import fmpy.ssp.ssd
 import pytest
-from live_fmus import COMPONENTS, NAMES, fmu_cache
+from live_fmus import COMPONENTS, NAMES
 
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.description.parameter_sets import parameter_sets
 from loomfmu.machines import HEADS, MACHINES, parameters
-
-__all__ = ["fmu_cache"]
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 TYPES = {"Real": float, "Integer": int, "Boolean": lambda text: text == "true"}

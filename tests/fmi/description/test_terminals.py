@@ -6,15 +6,13 @@ from xml.etree.ElementTree import fromstring
 
 import fmpy
 import pytest
-from live_fmus import COMPONENTS, NAMES, fmu_cache
+from live_fmus import COMPONENTS, NAMES
 from lxml import etree
 
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.description.terminals import FILE
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.variables import variables_of
-
-__all__ = ["fmu_cache"]
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"

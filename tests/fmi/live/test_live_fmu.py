@@ -22,7 +22,6 @@ from live_fmus import (
     SPEED,
     Live,
     excited,
-    fmu_cache,
     in_a_process,
     live,
     outputs_of,
@@ -34,7 +33,7 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.live.live_slave import CATEGORIES, CAUSALITIES
 from loomfmu.variables import Variable, variables_of
 
-__all__ = ["fmu_cache", "live"]
+__all__ = ["live"]
 
 Open = Callable[..., Live]
 every_fmu = pytest.mark.parametrize("name", NAMES)
