@@ -390,6 +390,32 @@ def test_five_thousand_variables_along_one_time(tmp_path: Path) -> None:
         assert file["loom/signal_4999"].dims[0][0] == file["time"]
 
 
+# in a process of its own: where the writing failed, some runs ended with a corrupted heap
+MANY_INSTANCES = """
+import sys
+from pathlib import Path
+import numpy as np
+from loomfmu.traces import Channel, TraceWriter
+count, path = 3000, Path(sys.argv[1])
+channels = [Channel(f"loom{n % 100}", f"signal_{n}", "m", "m", "One of many", n) for n in range(count)]
+groups = {f"loom{n}": {f"p{each}": 1.0 for each in range(12)} for n in range(100)}
+writer = TraceWriter(path, {"title": "t"}, channels, groups)
+for block in range(3):
+    times = np.arange(3.0) + 3.0 * block
+    writer.append(times, times, np.arange(count) + times[:, None], np.zeros((3, 1), dtype="i4"))
+writer.complete([])
+"""
+
+
+def test_thousands_of_variables_of_many_instances(tmp_path: Path) -> None:
+    in_a_process(MANY_INSTANCES, str(tmp_path / "many.h5"))
+    with Trace(tmp_path / "many.h5") as trace:
+        assert len(list(trace)) == 3000
+        for number in (0, 1499, 2999):
+            found = trace[f"loom{number % 100}.signal_{number}"]
+            np.testing.assert_array_equal(found, number + np.arange(9.0))
+
+
 VERDICT = loomfmu.Verdict("c" * 1000, "a.x", False, 1.0, 2.0, "m", "mm", 0.5, 0.1, 1)
 
 

@@ -64,6 +64,7 @@ class TraceWriter:
         # no block is read again: by default HDF5 keeps 8 MB of each dataset in memory
         self._file = h5py.File(self.partial, "w", libver=("v110", "v110"), rdcc_nbytes=16 * ROWS)
         try:
+            self._keep_metadata()
             reserve(self._file.id.get_vfd_handle(), header)
             first = {"Conventions": "CF-1.11", "software": SOFTWARE}
             plotted = {"NX_class": "NXroot", "default": channels[0].instance} if channels else {}
@@ -87,6 +88,17 @@ class TraceWriter:
             self.partial.unlink(missing_ok=True)
             raise
         self._begun = self.partial.stat().st_mtime_ns
+
+    def _keep_metadata(self) -> None:
+        """Keep all metadata in memory, a kilobyte for each signal, until the file is closed.
+
+        By default HDF5 evicts what exceeds a few megabytes. With readers allowed, as here, it then loses track
+        of which entry depends on which: from about 2500 signals on, writing fails or corrupts the heap.
+        """
+        config = self._file.id.get_mdc_config()
+        config.evictions_enabled = False
+        config.incr_mode = config.flash_incr_mode = config.decr_mode = 0  # which that requires
+        self._file.id.set_mdc_config(config)
 
     def _chosen(self, datasets: Sequence[Any], kind: str, real: bool) -> tuple[Columns, list[int]]:
         """The datasets of one kind of channels, and the columns that go into them."""
@@ -141,6 +153,8 @@ class TraceWriter:
         self._shared.append(np.stack([time, angle]))
         self._reals.append(np.ascontiguousarray(reals.T[self._real_columns]))
         self._integers.append(np.ascontiguousarray(integers.T[self._integer_columns]))
+        for columns in (self._shared, self._reals, self._integers):
+            columns.flush()
         self._file.flush()
 
     def seal(self) -> None:
