@@ -13,6 +13,13 @@ from typing import Any
 from .errors import LoomfmuError, shown, why
 
 NOT_A_FILE = "it is a device or a pipe, not a file"
+TRACE = "; use loomfmu show {0} for a trace"
+INSTEAD = {  # what to do with a file that is given where text belongs
+    ".h5": TRACE,
+    ".hdf5": TRACE,
+    ".fmu": "; loomfmu list {0} shows an FMU; to run it, write a scene with a table such as [motor]"
+    ' and in it fmu = "{0}"',
+}
 
 
 def source(path: Path) -> Path:
@@ -150,7 +157,7 @@ def text_of(path: Path) -> str:
     except OSError as error:
         raise LoomfmuError(f"{path}: cannot be read ({why(error)})") from None
     except UnicodeDecodeError:
-        hint = f"; use loomfmu show {path} for a trace" if path.suffix in (".h5", ".hdf5") else ""
+        hint = INSTEAD.get(path.suffix.lower(), "").format(path)
         raise LoomfmuError(f"{path}: is not text in UTF-8{hint}") from None
 
 

@@ -35,27 +35,23 @@ def cache_directory() -> Path:
         if reason := _fault(place):
             raise LoomfmuError(f"LOOMFMU_CACHE = {place} {reason}; name a folder that only you can write to")
         return place
-    usual = _of_user("loomfmu")
-    if usual is None:
-        return _new_one()
-    if reason := _fault(usual, mend=True):
-        _warn(usual, reason)
+    usual, reason = _of_user("loomfmu")
+    if reason := reason or _fault(usual, mend=True):
+        # Python's own logging brings it to the standard error, if nothing else is set up
+        logging.getLogger("loomfmu.cache").warning(
+            "loomfmu: the cache %s %s; using a temporary one, which every run fills anew;"
+            " set LOOMFMU_CACHE to a folder that only you can write to", usual, reason,
+        )  # fmt: skip
         return _new_one()
     return usual
-
-
-def _warn(directory: Path, reason: str) -> None:
-    """Python's own logging brings it to the standard error, if nothing else is set up."""
-    logging.getLogger("loomfmu.cache").warning(
-        "loomfmu: the cache %s %s; using a temporary one, LOOMFMU_CACHE names another", directory, reason
-    )
 
 
 def compiler_environment() -> dict[str, str]:
     """What the compiler is started with: it waits for ever where it cannot write its own cache."""
     if os.environ.get("ZIG_GLOBAL_CACHE_DIR"):
         return dict(os.environ)
-    return os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(_of_user("zig") or cache_directory() / "zig")}
+    usual, reason = _of_user("zig")
+    return os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(cache_directory() / "zig" if reason else usual)}
 
 
 def is_private(status: os.stat_result) -> bool:
@@ -69,17 +65,19 @@ def _is_own(status: os.stat_result) -> bool:
     return not ON_UNIX or status.st_uid in (SYSTEM, os.getuid())
 
 
-def _of_user(name: str) -> Path | None:
-    """The user's cache directory for a program, if there is one that can be written."""
+def _of_user(name: str) -> tuple[Path, str]:
+    """The user's cache directory for a program, which is made, and why it cannot be used, empty if it can."""
+    directory = Path("~/.cache") / name
     try:
         directory = user_cache_path(name, appauthor=False)
         directory.mkdir(mode=0o700, parents=True, exist_ok=True)
     except FileExistsError:
-        _warn(directory, "is a file, not a folder")
-        return None
-    except (OSError, RuntimeError):  # also for a user without a home, as in some containers
-        return None
-    return directory if os.access(directory, os.W_OK | os.X_OK) else None
+        return directory, "is a file, not a folder"
+    except OSError as error:
+        return directory, f"cannot be used ({error.strerror})"
+    except RuntimeError as error:  # a user without a home, as in some containers
+        return directory, f"cannot be used ({error})"
+    return directory, "" if os.access(directory, os.W_OK | os.X_OK) else "cannot be written to"
 
 
 def _fault(directory: Path, mend: bool = False) -> str:
