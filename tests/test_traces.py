@@ -835,7 +835,16 @@ def test_damage_that_hdf5_loops_over_is_found(tmp_path: Path, monkeypatch: pytes
     zeroed(tmp_path / "run.h5", texts + 16, 4000)
     assert TRACE.ours(tmp_path / "run.h5")  # a new run may replace it, and does not read it for that
     monkeypatch.setattr(damage, "SECONDS", 2.0)
-    with pytest.raises(LoomfmuError, match=r"run\.h5: the file is damaged \(HDF5 has not finished"):
+    with pytest.raises(LoomfmuError, match=r"run\.h5: .* \(HDF5 has not finished .* 3 s of CPU time\)"):
+        damage.check(tmp_path / "run.h5")
+
+
+def test_a_busy_machine_is_not_taken_for_damage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(damage, "SECONDS", 0.5)
+    monkeypatch.setattr(damage, "READER", "import time; time.sleep(1.5)")  # it waits, it does not work
+    damage.check(tmp_path / "run.h5")
+    monkeypatch.setattr(damage, "PATIENCE", 1.0)
+    with pytest.raises(LoomfmuError, match=r"HDF5 has not finished reading its attributes after 1 s\)"):
         damage.check(tmp_path / "run.h5")
 
 

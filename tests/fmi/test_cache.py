@@ -156,8 +156,8 @@ def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
     )  # fmt: skip
     assert done.returncode == 0
     assert done.stderr == (
-        f"loomfmu: the cache {no_home}/.cache/loomfmu cannot be used (Not a directory); using a temporary one,"
-        f" {WHAT_TO_DO}\n"
+        f"loomfmu: the cache {no_home}/.cache/loomfmu cannot be used (Not a directory);"
+        f" using a temporary one, {WHAT_TO_DO}\n"
     )
     assert list((tmp_path / "temporary").iterdir()) == []  # it has cleared up
     assert sorted(path.name for path in tmp_path.iterdir()) == ["home", "temporary", "x.h5"]

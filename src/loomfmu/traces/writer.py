@@ -92,8 +92,8 @@ class TraceWriter:
     def _keep_metadata(self) -> None:
         """Keep all metadata in memory, a kilobyte for each signal, until the file is closed.
 
-        By default HDF5 evicts what exceeds a few megabytes. With readers allowed, as here, it then loses track
-        of which entry depends on which: from about 2500 signals on, writing fails or corrupts the heap.
+        By default HDF5 evicts what exceeds a few megabytes. With readers allowed, as here, it then mixes up
+        which entry depends on which: from about 2500 signals on, writing fails or corrupts the heap.
         """
         config = self._file.id.get_mdc_config()
         config.evictions_enabled = False
