@@ -14,7 +14,7 @@ class Foreign(Exception):
 
 def has(group: Any, name: str) -> bool:
     """Whether a group has something of that name, wherever it may lie."""
-    return group.get(name, getlink=True) is not None
+    return bool(group.id.links.exists(name.encode()))
 
 
 def member(group: Any, name: str) -> Any:
@@ -24,8 +24,8 @@ def member(group: Any, name: str) -> Any:
 
 
 def check_link(group: Any, name: str) -> None:
-    """Raise Foreign unless the group itself has what is under a name."""
-    if has(group, name) and not isinstance(group.get(name, getlink=True), h5py.HardLink):
+    """Raise Foreign unless the group itself has what is under a name, or has nothing there."""
+    if has(group, name) and group.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
         raise Foreign(f"{group.name.rstrip('/')}/{name} is a link")
 
 

@@ -47,6 +47,7 @@ class Trace(Signals):
         self._turn = RLock()  # threads may share a trace
         self._state: tuple[int, ...] = ()
         self._cache: dict[str, NDArray[Any]] = {}
+        self._texts: dict[tuple[str, str], str | None] = {}
         with self._opened() as file:
             if lacking := _lacking(file):
                 raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {lacking} is missing")
@@ -189,9 +190,12 @@ class Trace(Signals):
 
     def _text(self, signal: str, attribute: str) -> str | None:
         """An attribute of a signal; None if it has none of that name."""
-        with self._dataset(signal) as dataset:
-            text = dataset.attrs.get(attribute)
-            return None if text is None else str(text)
+        key = signal, attribute
+        if key not in self._texts:
+            with self._dataset(signal) as dataset:
+                text = dataset.attrs.get(attribute)
+                self._texts[key] = None if text is None else str(text)
+        return self._texts[key]
 
     @cached_property
     def rows(self) -> int:

@@ -17,7 +17,8 @@ import numpy as np
 
 from .. import units
 from ..version import __version__
-from .chunks import LEVEL, ROWS, Columns
+from .chunks import ROWS, Columns
+from .created import INTEGERS, REALS, annotate, dataset
 from .disk import reserve
 from .edit import edited
 from .places import replace
@@ -66,22 +67,10 @@ class TraceWriter:
         try:
             self._keep_metadata()
             reserve(self._file.id.get_vfd_handle(), header)
-            first = {"Conventions": "CF-1.11", "software": SOFTWARE}
-            plotted = {"NX_class": "NXroot", "default": channels[0].instance} if channels else {}
-            self._file.attrs.update({**first, **plotted, **attributes, "status": "running"})
-            self._time = self._dataset("/time", "f8", "s", "time", "Time since the start of the run")
-            self._time.make_scale("time")
-            self._angle = self._dataset(
-                "/shaft_angle", "f8", "rad", "shaft angle", "Angle of the main shaft, not wrapped"
-            )
-            self._angle.dims[0].attach_scale(self._time)
-            self._angle.attrs["DISPLAY_UNIT"] = "deg"
-            datasets = [self._channel(channel) for channel in channels]
-            self._shared = Columns([self._time, self._angle], "f8")
+            shared, datasets = self._create(attributes, groups)
+            self._shared = Columns(shared, "f8")
             self._reals, self._real_columns = self._chosen(datasets, "f8", real=True)
             self._integers, self._integer_columns = self._chosen(datasets, "i4", real=False)
-            for instance, values in groups.items():
-                self._file.require_group(instance).attrs.update(values)
             self._file.swmr_mode = True
         except BaseException:
             self._file.close()
@@ -100,51 +89,50 @@ class TraceWriter:
         config.incr_mode = config.flash_incr_mode = config.decr_mode = 0  # which that requires
         self._file.id.set_mdc_config(config)
 
+    def _create(
+        self, attributes: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]
+    ) -> tuple[list[Any], list[Any]]:
+        """Everything in the file but samples; the datasets of time and angle, and those of the channels.
+
+        They stay open: opened again while readers may join, HDF5 loses its place among thousands.
+        """
+        file = self._file
+        first = {"Conventions": "CF-1.11", "software": SOFTWARE}
+        shown = {"NX_class": "NXroot", "default": self.channels[0].instance} if self.channels else {}
+        annotate(file, {**first, **shown, **attributes, "status": "running"})
+        time = dataset(file, "time", REALS)
+        annotate(time, _about("s", "time", "Time since the start of the run"))
+        time.make_scale("time")
+        angle = dataset(file, "shaft_angle", REALS)
+        turned = _about("rad", "shaft angle", "Angle of the main shaft, not wrapped")
+        annotate(angle, {**turned, "DISPLAY_UNIT": "deg"})
+        angle.dims[0].attach_scale(time)
+        found: dict[str, Any] = {}
+        datasets = []
+        for channel in self.channels:
+            if channel.instance not in found:
+                group = found[channel.instance] = file.create_group(channel.instance)
+                group["time"], group["shaft_angle"] = (
+                    time,
+                    angle,
+                )  # links: without the time xarray has no axis
+                # NeXus: h5web opens the group on a plot of its first variable
+                plot = {"NX_class": "NXdata", "signal": channel.variable, "axes": "time"}
+                annotate(group, {**plot, **groups.get(channel.instance, {})})
+            made = dataset(found[channel.instance], channel.variable, REALS if channel.real else INTEGERS)
+            annotate(made, _about_channel(channel))
+            made.dims[0].attach_scale(time)
+            datasets.append(made)
+        for instance in groups.keys() - found.keys():
+            annotate(file.create_group(instance), groups[instance])
+        return [time, angle], datasets
+
     def _chosen(self, datasets: Sequence[Any], kind: str, real: bool) -> tuple[Columns, list[int]]:
         """The datasets of one kind of channels, and the columns that go into them."""
         pairs = [
             (each, of.column) for each, of in zip(datasets, self.channels, strict=True) if of.real == real
         ]
         return Columns([dataset for dataset, _ in pairs], kind), [column for _, column in pairs]
-
-    def _dataset(self, name: str, kind: str, unit: str, long_name: str, comment: str) -> Any:
-        dataset = self._file.create_dataset(
-            name, (0,), kind, maxshape=(None,), chunks=(ROWS,), shuffle=True, compression="gzip",
-            compression_opts=LEVEL,
-        )  # fmt: skip
-        dataset.attrs.update(
-            {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
-        )
-        return dataset
-
-    def _channel(self, channel: Channel) -> Any:
-        group = self._file.require_group(channel.instance)
-        if "time" not in group:
-            group["time"] = self._time  # hard links: without the time xarray loses the axis
-            group["shaft_angle"] = self._angle
-            # NeXus: h5web opens the group on a plot of its first variable
-            group.attrs.update({"NX_class": "NXdata", "signal": channel.variable, "axes": "time"})
-        dataset = self._dataset(
-            f"/{channel.instance}/{channel.variable}",
-            "f8" if channel.real else "i4",
-            channel.unit,
-            channel.variable.replace("_", " "),
-            channel.description,
-        )
-        dataset.dims[0].attach_scale(self._time)
-        # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
-        dataset.attrs["coordinates"] = "shaft_angle"
-        if channel.boolean:
-            dataset.attrs["dtype"] = "bool"  # xarray reads it so; an enumeration would be texts in MATLAB
-        if channel.display != channel.unit:
-            dataset.attrs["DISPLAY_UNIT"] = channel.display
-        if channel.rate:
-            dataset.attrs["rate"] = channel.rate
-        if channel.meanings:
-            flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
-            dataset.attrs["flag_values"] = np.array(flags, dtype="i4")
-            dataset.attrs["flag_meanings"] = " ".join(channel.meanings)
-        return dataset
 
     def append(self, time: Floats, angle: Floats, reals: Floats, integers: Integers) -> None:
         """Write a block: values along the rows, signals along the columns."""
@@ -203,3 +191,26 @@ class TraceWriter:
             self._annotate({"status": status})
             self.partial = self.partial.replace(partial_of(self.path))
         return self.partial
+
+
+def _about(unit: str, long_name: str, comment: str) -> dict[str, str]:
+    """The attributes that every dataset has."""
+    return {"UNIT": unit, "units": units.udunits(unit), "long_name": long_name, "COMMENT": comment}
+
+
+def _about_channel(channel: Channel) -> dict[str, Any]:
+    """The attributes of a channel's dataset."""
+    about: dict[str, Any] = _about(channel.unit, channel.variable.replace("_", " "), channel.description)
+    # a coordinate by CF: as a second scale of HDF5, xarray would take it for the dimension
+    about["coordinates"] = "shaft_angle"
+    if channel.boolean:
+        about["dtype"] = "bool"  # xarray reads it so; an enumeration would be texts in MATLAB
+    if channel.display != channel.unit:
+        about["DISPLAY_UNIT"] = channel.display
+    if channel.rate:
+        about["rate"] = channel.rate
+    if channel.meanings:
+        flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
+        about["flag_values"] = np.array(flags, dtype="i4")
+        about["flag_meanings"] = " ".join(channel.meanings)
+    return about
