@@ -1,6 +1,5 @@
 """Errors that a user can make: always one line that says what is wrong, where, and what would be right."""
 
-import difflib
 import errno
 import os
 import re
@@ -97,6 +96,8 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     >>> suggestion("zeta", ["law", "reduction"], {"reduction": "Share of the speed taken off, zeta"})
     "; did you mean 'reduction'?"
     """
+    import difflib  # most runs have no such error
+
     known = list(known)
     if len(name) > MOST_LETTERS:  # far from any name, and slow to compare
         return ""

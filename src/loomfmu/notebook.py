@@ -1,7 +1,6 @@
 """What a notebook shows of results: tables that take the notebook's own colours, light or dark."""
 
 from collections.abc import Sequence
-from html import escape
 
 from .printed import safe
 
@@ -26,6 +25,8 @@ def _cell(words: str) -> str:
 
 def text(words: str) -> str:
     """A text as HTML."""
+    from html import escape  # most runs are not in a notebook
+
     return escape(safe(words))
 
 

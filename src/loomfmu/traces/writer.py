@@ -112,10 +112,7 @@ class TraceWriter:
         for channel in self.channels:
             if channel.instance not in found:
                 group = found[channel.instance] = file.create_group(channel.instance)
-                group["time"], group["shaft_angle"] = (
-                    time,
-                    angle,
-                )  # links: without the time xarray has no axis
+                group["time"], group["shaft_angle"] = time, angle  # links: xarray needs the time there
                 # NeXus: h5web opens the group on a plot of its first variable
                 plot = {"NX_class": "NXdata", "signal": channel.variable, "axes": "time"}
                 annotate(group, {**plot, **groups.get(channel.instance, {})})

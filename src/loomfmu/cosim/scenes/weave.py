@@ -4,7 +4,6 @@ WIF, the Weaving Information File (version 1.1, 1997), is the trade's own exchan
 with the threading of the ends, and either a tie-up with a treadling or a lift plan.
 """
 
-import configparser
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -99,6 +98,8 @@ def of_wif(text: str, path: Path) -> Weave:
 
     Raises LoomfmuError naming the file, the section and the key.
     """
+    import configparser  # few scenes have such a file
+
     parser = configparser.ConfigParser(interpolation=None, strict=False)
     try:
         parser.read_string(text)

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import BoundedSemaphore
 
@@ -105,6 +104,8 @@ def _shipped(name: str, fmi: int, code: dict[str, str]) -> dict[str, bytes] | No
 
 
 def _compiled(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]) -> dict[str, bytes]:
+    from concurrent.futures import ThreadPoolExecutor  # what is built already needs none
+
     targets = [target for platform in platforms for target in PLATFORMS[platform].targets]
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
         for file, text in code.items():
