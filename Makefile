@@ -35,7 +35,7 @@ attack: .venv/installed-for-tests
 	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s -m "slow or not slow"
 	$(BIN)/loomfmu validate
 
-# run time against error, side by side with other masters: about half an hour
+# run time against error, side by side with other masters: about a quarter of an hour
 bench: .venv/installed-for-tests
 	$(BIN)/python tests/benchmarks
 

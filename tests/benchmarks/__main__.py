@@ -20,9 +20,12 @@ def main() -> int:
     effort = "quick" if options.quick else "full"
     results = options.output or ROOT / ("build" if options.quick else "results")
     names = [] if options.report else options.names or BENCHMARKS
-    failed = [name for name in names if not run(name, effort, results)]
-    for path in write(results):
-        say(str(path))
+    failed = []
+    try:
+        failed = [name for name in names if not run(name, effort, results)]
+    finally:  # also where it is interrupted: what was measured until then stays
+        for path in write(results):
+            say(str(path))
     return 1 if failed else 0
 
 

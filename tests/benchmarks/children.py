@@ -16,7 +16,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-PATIENCE = 900.0  # s that an answer may take
+PATIENCE = 180.0  # s that an answer may take
 
 
 class Failed(Exception):

@@ -6,12 +6,14 @@ from children import Configurations, Task, children, in_turn, middle, spread
 from own import ENGINES, Ours, Stepped, demo
 from peers import Ecos, Fmpy, Libcosim, absent
 from records import Notes, Row, Table, say
-from texts import Figures, Find, parts, shown, table
+from texts import Figures, Find, only, parts, shown, table
 
 from loomfmu.validation import plot_style
 
 NAME = "cost"
 STEPS = 1440  # in a revolution
+FMUS = 12  # of the loom
+PLAIN, ISOLATED = "loomfmu stepping in Python", "loomfmu with isolated FMUs"
 STEP = "step [us]"
 COLUMNS = ("FMUs", "cores", "master", "recording", "step [us]", "spread [%]", "set-up [ms]", "repeats")
 KINDS = {
@@ -27,7 +29,7 @@ def configurations(flavour: str) -> Configurations:
     found: dict[str, tuple[Any, ...]] = {"loomfmu, HDF5": (Ours, source, flavour)}
     for name in ENGINES:
         found[f"loomfmu stepping in {name}, none"] = (Stepped, source, flavour, name)
-    found["loomfmu with isolated FMUs, none"] = (Stepped, demo(isolated=True), flavour, "Python")
+    found[f"{ISOLATED}, none"] = (Stepped, demo(isolated=True), flavour, "Python")
     return found | {
         "libcosim, none": (Libcosim, source, flavour),
         "libcosim, in memory": (Libcosim, source, flavour, "series"),
@@ -65,21 +67,35 @@ def measure(effort: str, notes: Notes) -> list[Table]:
 
 
 def _task(name: str, flavour: str, size: Any) -> Task:
-    """Ours with native FMUs is timed over more revolutions, live FMUs and fmpy over fewer."""
+    """Ours with native FMUs is timed over more revolutions; live and isolated FMUs and fmpy over fewer."""
     turns = size["turns"]
     if name.startswith("fmpy") or flavour == "live":
         turns *= 0.25
-    elif name.startswith("loomfmu") and "isolated" not in name:
-        turns *= 4.0
+    elif name.startswith("loomfmu"):
+        turns *= 0.25 if "isolated" in name else 4.0
     return Task(size["repeats"], STEPS, turns)
 
 
 # ---- what is said of it
 
-_ISOLATED = (
-    "With isolated FMUs each of the twelve runs in a process of its own, and the master exchanges values with"
-    " it once a step: a twelfth of what that adds is what isolating one FMU costs."
-)
+
+def _isolation(rows: list[Row]) -> str:
+    """What isolating one FMU adds to a step."""
+    lines = []
+    for isolated in rows:
+        flavour, cores = isolated["FMUs"], isolated["cores"]
+        plain = [row for row in only(rows, FMUs=flavour, cores=cores) if row["master"] == PLAIN]
+        if isolated["master"] == ISOLATED and plain:
+            steps = [row[STEP] for row in (*plain, isolated)]
+            lines.append([flavour, cores, *map(shown, steps), shown((steps[1] - steps[0]) / FMUS)])
+    if not lines:
+        return ""
+    heads = ["FMUs", "cores", "in one process", "each in its own", "one FMU isolated adds"]
+    return (
+        f"What isolation costs, in us per step: each of the {FMUS} FMUs runs in a process of its own, with"
+        " which the master, in Python, exchanges values once a step. Nothing is recorded."
+        f"\n\n{table(heads, lines)}"
+    )
 
 
 def section(find: Find) -> str:
@@ -102,8 +118,8 @@ def section(find: Find) -> str:
         "Our run to HDF5 leaves out the FMU of the shaft, which turns at a constant speed; stepping alone"
         " leaves out none. The last column is the ratio to the cheapest of ours that records as well, or"
         " records nothing as well.",
-        _ISOLATED if any("isolated" in row["master"] for row in rows) else "",
         *said,
+        _isolation(rows),
     )
 
 

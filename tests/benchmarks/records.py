@@ -146,6 +146,11 @@ def committed(name: str) -> list[Row]:
     return [{key: _value(cell) for key, cell in row.items()} for row in csv.DictReader(text.splitlines())]
 
 
+def installed() -> dict[str, str]:
+    """The environment of a command as of an installed package: Python keeps its bytecode."""
+    return {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+
+
 def say(text: str) -> None:
     """Tell what goes on."""
     print(text, file=sys.stderr, flush=True)

@@ -1,6 +1,5 @@
 """What it takes until the first step: imports, the command, FMUs that are there and FMUs that are not."""
 
-import os
 import re
 import subprocess
 import sys
@@ -13,8 +12,10 @@ from statistics import median
 from time import perf_counter
 
 from own import DEMO
-from records import Notes, Table, say
-from texts import Figures, Find, parts, whole
+from records import Notes, Table, installed, say
+from texts import Figures, Find, parts, shown, whole
+
+from loomfmu.fmi.native import platforms
 
 NAME = "start_up"
 REPEATS = {"full": 7, "quick": 2, "tiny": 1}
@@ -22,6 +23,14 @@ MAIN = "import sys; from loomfmu.cli import main; sys.exit(main())"
 IMPORT = "import loomfmu.cosim.run"  # what a run imports
 LINE = re.compile(r"import time: +(\d+) \| +\d+ \| +(\S+)")
 MOST = 12  # packages that are named
+TRACE = "trace.h5"
+
+BASE = "import of numpy, h5py and fmpy"
+RUN, IN_PYTHON = "loomfmu run, native FMUs in the cache", "loomfmu.run in Python, native FMUs in the cache"
+HERE, EVERYWHERE = "all native FMUs built for this platform", "all native FMUs built for all platforms"
+RUN_BUILT = "loomfmu run, native FMUs built"
+ONCE = (RUN_BUILT, HERE, EVERYWHERE)  # compilers take seconds to minutes
+PATIENCE = 900.0  # s that a command may take
 
 Command = Callable[[Path, int], tuple[list[str], dict[str, str]]]  # directory, turn -> command, environment
 
@@ -30,11 +39,31 @@ def _python(code: str, *arguments: str) -> Command:
     return lambda _directory, _turn: ([sys.executable, "-c", code, *arguments], {})
 
 
+def _command(*words: str) -> list[str]:
+    return [sys.executable, "-c", MAIN, *words]
+
+
 def _run(native: bool, cold: bool) -> Command:
     def command(directory: Path, turn: int) -> tuple[list[str], dict[str, str]]:
-        words = ["run", str(DEMO), "--output", str(directory / "trace.h5"), *([] if native else ["--live"])]
+        live = [] if native else ["--live"]
         cache = {"LOOMFMU_CACHE": str(directory / f"cache {native} {turn}")} if cold else {}
-        return [sys.executable, "-c", MAIN, *words], cache
+        return _command("run", str(DEMO), "--output", str(directory / TRACE), *live), cache
+
+    return command
+
+
+def _in_python(directory: Path, _turn: int) -> tuple[list[str], dict[str, str]]:
+    code = "import sys, loomfmu; loomfmu.run(sys.argv[1], output=sys.argv[2])"
+    return [sys.executable, "-c", code, str(DEMO), str(directory / TRACE)], {}
+
+
+def _build(*options: str) -> Command:
+    """All native FMUs, none of which is in the cache; the compiler has the system's libraries in its own."""
+
+    def command(directory: Path, _turn: int) -> tuple[list[str], dict[str, str]]:
+        output = directory / "built"
+        words = _command("build", "--native", *options, "--output", str(output), "--force")
+        return words, {"LOOMFMU_CACHE": str(directory / " ".join(["cache", *options]))}
 
     return command
 
@@ -42,17 +71,20 @@ def _run(native: bool, cold: bool) -> Command:
 COMMANDS: dict[str, Command] = {
     "python, doing nothing": _python("pass"),
     "import loomfmu": _python("import loomfmu"),
-    "import of numpy, h5py and fmpy": _python("import numpy, h5py, fmpy"),
+    BASE: _python("import numpy, h5py, fmpy"),
     "import of all that a run needs": _python(IMPORT),
     "loomfmu --help": _python(MAIN, "--help"),
     "loomfmu run, live FMUs in the cache": _run(native=False, cold=False),
     "loomfmu run, live FMUs built": _run(native=False, cold=True),
 }
 NATIVE: dict[str, Command] = {
-    "loomfmu run, native FMUs in the cache": _run(native=True, cold=False),
-    "loomfmu run, native FMUs built": _run(native=True, cold=True),
+    RUN: _run(native=True, cold=False),
+    IN_PYTHON: _in_python,
+    "loomfmu show of its trace": lambda directory, _turn: (_command("show", str(directory / TRACE)), {}),
+    RUN_BUILT: _run(native=True, cold=True),
+    HERE: _build("--platform", platforms.host()),
+    EVERYWHERE: _build(),
 }
-ONCE = "loomfmu run, native FMUs built"  # it takes a compiler half a minute
 
 
 def measure(effort: str, notes: Notes) -> list[Table]:
@@ -62,9 +94,10 @@ def measure(effort: str, notes: Notes) -> list[Table]:
         chosen = {name: chosen[name] for name in list(chosen)[:4]}
     elif find_spec("ziglang"):
         chosen |= NATIVE
-        notes(ONCE, "timed once" if effort == "full" else "left out of a quick run")
-        if effort == "quick":
-            del chosen[ONCE]
+        for name in ONCE:
+            notes(name, "timed once" if effort == "full" else "left out of a quick run")
+            if effort == "quick":
+                del chosen[name]
     else:
         notes("native FMUs", "ziglang is not installed")
     table = Table(NAME, ("what", "time [ms]", "spread [%]", "repeats"))
@@ -84,7 +117,7 @@ def _in_turn(commands: dict[str, Command], repeats: int, directory: Path) -> dic
     for turn in range(repeats):
         say(f"{NAME}: round {turn + 1}")
         for name, command in commands.items():
-            if turn == 0 or name != ONCE:
+            if turn == 0 or name not in ONCE:
                 times[name].append(_timed(command, directory, turn))
     return times
 
@@ -92,7 +125,9 @@ def _in_turn(commands: dict[str, Command], repeats: int, directory: Path) -> dic
 def _timed(command: Command, directory: Path, turn: int) -> float:
     words, environment = command(directory, turn)
     start = perf_counter()
-    run = subprocess.run(words, env=os.environ | environment, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        words, env=installed() | environment, capture_output=True, text=True, check=False, timeout=PATIENCE
+    )
     duration = perf_counter() - start
     if run.returncode != 0:
         raise RuntimeError(f"{' '.join(words[3:])}: {run.stderr.strip()[-200:]}")
@@ -102,7 +137,7 @@ def _timed(command: Command, directory: Path, turn: int) -> float:
 def _imports() -> Table:
     """Time of the imports of a run, each package with all its modules, as `python -X importtime` tells it."""
     words = [sys.executable, "-X", "importtime", "-c", IMPORT]
-    text = subprocess.run(words, capture_output=True, text=True, check=True).stderr
+    text = subprocess.run(words, env=installed(), capture_output=True, text=True, check=True).stderr
     found: dict[str, list[int]] = defaultdict(list)
     for own, module in LINE.findall(text):
         name = module.split(".")[0]
@@ -122,11 +157,20 @@ def _imports() -> Table:
 
 def section(find: Find) -> str:
     """Times until the first step."""
+    rows = find(NAME)
+    times = {row["what"]: row["time [ms]"] for row in rows}
+    ratios = {
+        name: shown(times[name] / times[BASE]) for name in (RUN, IN_PYTHON) if {name, BASE} <= set(times)
+    }
+    over = [f"- {name}: {ratio} times the {BASE}" for name, ratio in ratios.items()]
     return parts(
         "Each command in a process of its own; `loomfmu run` is the demonstration loom of three revolutions"
         " with its trace and its claims. Live FMUs are packed when they are built, native ones translated and"
-        " compiled.",
-        whole(find(NAME)),
+        " compiled. Files in the cache are compared to the last byte before they are used, and `loomfmu show`"
+        " checks the trace in a process of its own: the times contain it. Python keeps its bytecode, as of an"
+        " installed package.",
+        whole(rows),
+        "\n".join(over),
         "What a run imports, by package with all its modules, as `python -X importtime` tells it:",
         whole(find("imports")),
     )

@@ -12,8 +12,8 @@ from typing import Any
 
 import c_programs
 from own import DEMO, Source
-from records import Notes, Table, say
-from start_up import MAIN
+from records import Notes, Table, installed, say
+from start_up import MAIN, PATIENCE
 from texts import Figures, Find, parts, shown, whole
 
 import loomfmu
@@ -23,6 +23,7 @@ from loomfmu.cosim.scenes.scene import Scene
 NAME = "sweeps"
 ROWS = "sweeps_rows"
 LOOP, SWEPT = "one C loop, the steps alone", "a row of `loomfmu sweep`, one process"
+ANEW, PREPARED = "`loomfmu.evaluate`, read anew", "`loom.evaluate`, prepared"
 STEPS = 180  # in the one revolution of a row
 LENGTH = {"revolutions": 1, "steps_per_revolution": STEPS}
 SIZES = {"full": (5000, 3), "quick": (64, 2), "tiny": (16, 1)}  # rows, repeats
@@ -87,10 +88,8 @@ def _rows(effort: str, repeats: int, rate: float, notes: Notes) -> Table:
     scene = scenes.load(DEMO, LENGTH)
     loom = loomfmu.prepare(scene, flavour="native")
     ways: dict[str, Any] = {
-        "`loomfmu.evaluate`, read anew": lambda given: loomfmu.evaluate(
-            scene, set=LENGTH | given, flavour="native"
-        ),
-        "`loom.evaluate`, prepared": loom.evaluate,
+        ANEW: lambda given: loomfmu.evaluate(scene, set=LENGTH | given, flavour="native"),
+        PREPARED: loom.evaluate,
     }
     found: dict[str, list[float]] = {name: [] for name in (LOOP, *ways)}
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
@@ -128,7 +127,10 @@ def _swept(directory: Path, rows: int, processes: int) -> float:
         "--restart",
     ]
     start = perf_counter()
-    run = subprocess.run([sys.executable, "-c", MAIN, *words], capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, "-c", MAIN, *words], env=installed(), capture_output=True, text=True, check=False,
+        timeout=PATIENCE,
+    )  # fmt: skip
     duration = perf_counter() - start
     if run.returncode not in (0, 1):  # 1: in some rows a claim fails
         raise RuntimeError(f"loomfmu sweep: {run.stderr.strip()[-300:]}")

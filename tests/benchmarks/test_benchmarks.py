@@ -3,13 +3,19 @@
 import math
 import os
 import re
+import runpy
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import cost
 import numpy as np
+import pruning
 import pytest
 import records
+import running
+import start_up
 import written
 from children import Child, Failed
 from exact import MP, REDUCTION, Frame
@@ -72,6 +78,45 @@ def test_the_committed_report_is_the_one_that_its_tables_give() -> None:
         pytest.skip("the benchmarks were not run yet: make bench")
     # after a change of words: python tests/benchmarks --report
     assert committed.read_text(encoding="utf-8") == written.text(committed.parent)
+
+
+def test_the_first_page_has_its_numbers_from_the_tables(tmp_path: Path) -> None:
+    folder = tmp_path / written.FOLDER
+    start = records.Table(start_up.NAME, ("what", "time [ms]", "spread [%]", "repeats"))
+    start.add(start_up.BASE, 100.0, 1.0, 7)
+    start.add(start_up.RUN, 230.0, 1.0, 7)
+    costs = records.Table(cost.NAME, cost.COLUMNS)
+    for master, recording, step in (
+        (cost.PLAIN, "none", 10.0), (cost.ISOLATED, "none", 250.0), ("loomfmu", "HDF5", 4.0),
+        ("ecos", "CSV", 36.0), ("libcosim", "CSV", 90.0), ("ecos", "none", 8.0),
+    ):  # fmt: skip
+        costs.add("native", "one", master, recording, step, 1.0, 1.0, 7)
+    for table in (start, costs):
+        table.write(folder)
+    text = written.text(tmp_path)
+    page = text[: text.index("## How it was measured")]
+    assert f"| 230 ms | 2.3 times {start_up.BASE} (100 ms) |" in page
+    assert "| 4 us | 1/9 of ecos, CSV (36 us) |" in page  # the fastest of those that record
+    assert "| 20 us | 5 times a step (4 us) |" in page  # (250 - 10) us for twelve FMUs
+    assert "live FMUs (Python) | not run |" in page
+    assert "| native | one | 10 | 250 | 20 |" in text
+
+
+def test_an_interrupted_run_leaves_a_report_of_what_was_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(name: str, _effort: str, results: Path) -> bool:
+        if name == "cost":
+            raise KeyboardInterrupt
+        rows = records.Table("pruning", pruning.COLUMNS)
+        rows.add("the whole loom", "HDF5", 5.0, 1.0, 7, "11 of 12 FMUs")
+        return bool(rows.write(results / written.FOLDER))
+
+    monkeypatch.setattr(running, "run", stopped)
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "pruning", "cost", "--output", str(tmp_path)])
+    with pytest.raises(KeyboardInterrupt):
+        runpy.run_path(str(records.HERE / "__main__.py"), run_name="__main__")
+    assert "11 of 12 FMUs" in (tmp_path / written.REPORT).read_text(encoding="utf-8")
 
 
 def test_programs_in_c_give_the_bits_of_the_native_fmus_and_numpy_their_digits(done: Done) -> None:

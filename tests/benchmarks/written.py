@@ -11,6 +11,7 @@ import precision
 import pruning
 import scaling
 import start_up
+import summary
 import sweep_runs
 import writing
 from records import Row, read
@@ -37,7 +38,8 @@ RUNS = (
 )  # fmt: skip
 NOTES = ("benchmark", "what", "why")
 
-INTRO = """# Benchmarks
+TITLE = "# Benchmarks"
+HOW = """## How it was measured
 
 Written whole by `make bench` from the tables in [benchmarks](benchmarks). One of them alone:
 `python tests/benchmarks NAME...`, a short look: `--quick`, which writes to `build` instead.
@@ -54,11 +56,13 @@ def text(results: Path) -> str:
         return read(results / FOLDER, name)
 
     sections = [_section(title, module, find) for title, module in BENCHMARKS.values()]
-    return parts(INTRO, _machine(find), *sections, _not_run(find)) + "\n"
+    head = parts("## In short", *_pictures(summary, find), summary.section(find))
+    return parts(TITLE, head, HOW, _machine(find), *sections, _not_run(find)) + "\n"
 
 
 def write(results: Path) -> list[Path]:
     """Write the report, and its figures if matplotlib is there; paths of what was written."""
+    results.mkdir(parents=True, exist_ok=True)
     report = results / REPORT
     temporary = report.with_suffix(".partial")
     temporary.write_text(text(results), encoding="utf-8")
@@ -66,7 +70,7 @@ def write(results: Path) -> list[Path]:
     written = [report]
     if not plots.available():
         return written
-    for _title, module in BENCHMARKS.values():
+    for module in (summary, *(module for _title, module in BENCHMARKS.values())):
         for name, (_caption, height, draw) in _figures(module, results).items():
             written.append(results / FOLDER / name)
             _draw(height, draw, written[-1])
@@ -79,8 +83,11 @@ def _figures(module: Any, results: Path) -> Figures:
 
 
 def _section(title: str, module: Any, find: Find) -> str:
-    shown = [f"![{caption}]({FOLDER}/{name})" for name, (caption, _h, _d) in module.figures(find).items()]
-    return parts(f"## {title}", module.section(find), *shown)
+    return parts(f"## {title}", module.section(find), *_pictures(module, find))
+
+
+def _pictures(module: ModuleType, find: Find) -> list[str]:
+    return [f"![{caption}]({FOLDER}/{name})" for name, (caption, _h, _d) in module.figures(find).items()]
 
 
 def _machine(find: Find) -> str:
