@@ -7,6 +7,7 @@ Names are Modelica's (`rad/s`, `N.m2`, `rev/min`), as FMI model descriptions and
 import math
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from numbers import Real
 from typing import Any
 
@@ -32,7 +33,7 @@ class Unit:
     K: int = 0
     A: int = 0
 
-    @property
+    @cached_property
     def dimension(self) -> tuple[int, ...]:
         """SI exponents, in the order of BASES."""
         return tuple(getattr(self, base) for base in BASES)

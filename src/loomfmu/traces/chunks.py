@@ -52,7 +52,9 @@ class Columns:
         while values.shape[1]:
             fit = ROWS - self._pending.shape[1]
             begun = self._pending.shape[1] > 0
-            chunk = np.concatenate([self._pending, values[:, :fit]], axis=1)
+            chunk = values[:, :fit]
+            if begun:
+                chunk = np.concatenate([self._pending, chunk], axis=1)
             self._write(chunk, unpacked(chunk) if begun else packed(chunk), UNFILTERED if begun else 0)
             values = values[:, fit:]
             full = chunk.shape[1] == ROWS

@@ -5,6 +5,7 @@ of the time of a short run.
 """
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import h5py
@@ -37,6 +38,7 @@ def dataset(group: Any, name: str, kind: Any) -> Any:
     return h5py.Dataset(h5d.create(group.id, name.encode(), kind, EMPTY, dcpl=_layout()))
 
 
+@cache
 def _layout() -> Any:
     layout = h5p.create(h5p.DATASET_CREATE)
     layout.set_chunk((ROWS,))
