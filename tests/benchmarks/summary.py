@@ -15,6 +15,7 @@ from loomfmu.validation import plot_style
 PICTURE = "summary.png"
 OURS, PLAIN, ISOLATED = "loomfmu", cost.PLAIN, cost.ISOLATED
 ERROR, ENOUGH = next(iter(precision.TARGETS.items()))
+JUDGED = ERROR.partition(" [")[0].removeprefix("error of ")
 NATIVE = "loomfmu, native FMUs"
 
 
@@ -84,7 +85,7 @@ def _line(what: str, value: float | None, unit: str, beside: str, other: float |
         return [what, "not run", ""]
     if other is None:
         return [what, f"{shown(value)} {unit}", ""]
-    ratio = f"{shown(value / other, 2)} times" if value >= other else f"1/{shown(other / value, 2)} of"
+    ratio = f"{shown(value / other, 2)} times" if value > 0.8 * other else f"1/{shown(other / value, 2)} of"
     return [what, f"{shown(value)} {unit}", f"{ratio} {beside} ({shown(other)} {unit})"]
 
 
@@ -109,13 +110,9 @@ def _errors(numbers: Numbers) -> list[list[str]]:
     methods = dict.fromkeys(row["method"] for row in numbers.precision)
     others = [row for name in methods if not name.startswith(OURS) and (row := numbers.reached(name))]
     best = min(others, key=lambda row: float(row[precision.TIME]), default=None)
-    what = f"a revolution, {_named(ERROR)} below {error(ENOUGH)} ({shown(mine[precision.STEP])} steps)"
+    what = f"a revolution with the {JUDGED} within {error(ENOUGH)} ({shown(mine[precision.STEP])} steps)"
     beside = (best["method"], best[precision.TIME]) if best else ("", None)
     return [_line(what, mine[precision.TIME], "ms", *beside)]
-
-
-def _named(head: str) -> str:
-    return head.partition(" [")[0]
 
 
 def _choices(numbers: Numbers) -> list[str]:
@@ -146,7 +143,7 @@ def _steps(numbers: Numbers) -> list[str]:
         return []
     steps, left = shown(mine[precision.STEP]), error(mine[ERROR])
     return [
-        f"**How many steps**: {steps} in a revolution leave an {_named(ERROR)} of {left}. More make signals"
+        f"**How many steps**: {steps} in a revolution give the {JUDGED} within {left}. More make signals"
         " finer to look at; claims hardly need them."
     ]
 
