@@ -415,9 +415,10 @@ def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
 
     rows = [verdict.row for verdict in verdicts]
     entries = []
-    for word, claim, name, worst, bound, place, note in rows:
+    for word, claim, name, worst, bound, distance, place, note in rows:
+        away = f" ({distance})" if distance != "-" else ""
         at = f", at {place}" if place != "-" else ""
-        entry = f"{word}  {claim}", f"({name})", f"{worst}, bound {bound}{at}"
+        entry = f"{word}  {claim}", f"({name})", f"{worst}, bound {bound}{away}{at}"
         entries.append((*entry, f"({note})") if note else entry)
     printed.show(HEADINGS, rows, entries)
 

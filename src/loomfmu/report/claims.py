@@ -56,4 +56,4 @@ def _distance(verdict: Verdict) -> str:
     text = verdict.shown(verdict.distance)
     if text == "no value" or not verdict.bound:
         return text
-    return f"{text} ({verdict.distance / abs(verdict.bound):+.1%})"
+    return f"{text} ({verdict.relative_distance:+.1%})"

@@ -8,7 +8,7 @@ from typing import Any, Self
 from .. import notebook, units
 from ..errors import shown
 
-HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "at", "note")
+HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "at", "note")
 
 # what JSON makes of the types of the fields
 JSON: dict[Any, tuple[type, ...]] = {
@@ -60,8 +60,20 @@ class Verdict:
 
     @property
     def distance(self) -> float:
-        """How far the worst value is from the bound, in `unit`; negative on the wrong side of it."""
-        return self.sense * (self.worst - self.bound) if self.sense else math.nan
+        """How far the worst value is from the bound, in `unit`; negative on the wrong side of it.
+
+        It is continuous across the bound, so a root of it is a limit. NaN where there is none: the claim has
+        no value, or fails for another reason than its bound (the note says which), or the trace does not say
+        which side is the right one. A claim that counts has whole steps. Where only the curve between two
+        samples passes the bound, by no more than it may be off, the claim holds with a negative distance.
+        """
+        distance = self.sense * (self.worst - self.bound)
+        return distance if self.sense and (self.holds or distance < 0.0) else math.nan
+
+    @property
+    def relative_distance(self) -> float:
+        """The distance as a share of the bound; NaN for a bound of 0."""
+        return self.distance / abs(self.bound) if self.bound else math.nan
 
     @property
     def word(self) -> str:
@@ -71,8 +83,15 @@ class Verdict:
     @property
     def row(self) -> tuple[str, ...]:
         """The verdict as a row of a table below `HEADINGS`."""
-        worst, bound = self.shown(self.worst), self.shown(self.bound)
-        return self.word, self.claim, self.signal, worst, bound, self.place or "-", self.note
+        worst, bound, distance = self.shown(self.worst), self.shown(self.bound), self.shown_distance
+        return self.word, self.claim, self.signal, worst, bound, distance, self.place or "-", self.note
+
+    @property
+    def shown_distance(self) -> str:
+        """The distance in short: as a share of the bound, or in its unit if the bound is 0."""
+        if math.isfinite(self.relative_distance):
+            return f"{100.0 * self.relative_distance:+.4g} %"
+        return self.shown(self.distance) if math.isfinite(self.distance) else "-"
 
     def _repr_html_(self) -> str:
         return notebook.table(HEADINGS, [self.row])
@@ -107,7 +126,8 @@ class Verdict:
         """The verdict for JSON, null for what is not finite; `display` has the values in the display unit."""
         known = {field.name: getattr(self, field.name) for field in fields(self)}
         del known["display_unit"]
-        display = {name: self.displayed(known[name]) for name in ("bound", "worst")}
+        known |= {"distance": self.distance, "relative_distance": self.relative_distance}
+        display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}
 
     @classmethod

@@ -751,7 +751,10 @@ def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Tr
         found = judge(trace, kind=kind, signal="weft.travel", bound="1 m")
         assert found.distance == way * (found.worst - 1.0)
         assert bool(found) == (found.distance >= 0.0)
-        assert Verdict.of(json.loads(json.dumps(found.as_dict()))).distance == found.distance
+        assert found.relative_distance == found.distance  # of a bound of 1 m
+        stored = json.loads(json.dumps(found.as_dict()))
+        assert Verdict.of(stored).distance == found.distance == stored["distance"]
+        assert stored["display"]["distance"] == found.displayed(found.distance)
     # the bound of a share of the stroke is the most that is allowed, that of a margin the least
     contains = judge(trace, kind="dwell_contains", heald="heald_1", angles=["180 deg"])
     assert contains.distance == 0.015 - contains.worst > 0.0
@@ -762,6 +765,21 @@ def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Tr
     assert math.isnan(short.distance)
     old = {key: value for key, value in margin.as_dict().items() if key != "sense"}
     assert math.isnan(Verdict.of(old).distance)
+    # no share of a bound of 0, and no distance where the samples, not the bound, make a claim fail
+    zero = judge(trace, kind="above", signal="weft.travel", bound="0 m")
+    assert zero and zero.distance >= 0.0 and math.isnan(zero.relative_distance)
+    assert zero.as_dict()["relative_distance"] is None
+    coarse = judge(loom(16), kind="lowest_margin", bound=-100.0)
+    assert not coarse and coarse.worst > coarse.bound and math.isnan(coarse.distance)
+
+
+def test_the_distance_is_continuous_across_the_bound(loom: Callable[..., Trace]) -> None:
+    trace = loom(shaft__speed="600 rpm")
+    worst = judge(trace, kind="lowest_margin", bound=0.0).worst
+    for away in (-1e-3, -1e-6, 1e-6, 1e-3):
+        found = judge(trace, kind="lowest_margin", bound=worst - away)
+        assert found.distance == pytest.approx(away, abs=1e-15)  # rounding of a number about 0.2
+        assert bool(found) == (away > 0.0)
 
 
 @pytest.fixture
