@@ -1,8 +1,8 @@
 """The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
 
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
-runs, `sweep` runs it with many values; `Trace` reads a recorded run, `judge` judges a claim on it, `compare`
-compares two. `design` solves the same physics for a design.
+runs, `sweep` runs it with many values, `limit` finds how far a value may go; `Trace` reads a recorded run,
+`judge` judges a claim on it, `compare` compares two. `design` solves the same physics for a design.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from .cosim.run import prepare as prepare
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
+    from .studies.boundary import limit as limit
+    from .studies.results import Boundary as Boundary
+    from .studies.results import Limits as Limits
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
     from .traces import Comparison as Comparison
@@ -28,8 +31,10 @@ if TYPE_CHECKING:
 
 # public name -> its module
 _HOMES = {
+    "Boundary": "studies.results",
     "Comparison": "traces",
     "Evaluation": "cosim.results",
+    "Limits": "studies.results",
     "LoomfmuError": "errors",
     "Prepared": "cosim.prepared",
     "Result": "cosim.results",
@@ -41,6 +46,7 @@ _HOMES = {
     "evaluate": "cosim.run",
     "prepare": "cosim.run",
     "judge": "cosim.claims.claims",
+    "limit": "studies.boundary",
     "run": "cosim.run",
     "sweep": "sweeps.run",
 }

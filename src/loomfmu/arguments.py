@@ -50,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
         _plot,
         _compare,
         _sweep,
+        _limit,
         _list,
         _init,
         _new,
@@ -169,6 +170,39 @@ def _sweep(commands: Any) -> None:
     sweep.add_argument(
         "--restart", action="store_true", help="discard earlier results in DIR and run all rows"
     )
+
+
+def _limit(commands: Any) -> None:
+    limit = commands.add_parser(
+        "limit", help="find the values at which claims begin to fail",
+        epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
+    )  # fmt: skip
+    limit.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    limit.add_argument(
+        "--vary", action="append", required=True, metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        help="what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the"
+        " limits of the first at values of the second",
+    )  # fmt: skip
+    limit.add_argument(
+        "--from",
+        dest="from_",
+        metavar="LOW",
+        help="where the range of the first --vary begins, with its unit",
+    )
+    limit.add_argument(
+        "--to", metavar="HIGH", help="where it ends; by default half to twice the scene's value"
+    )
+    limit.add_argument(
+        "--points", type=int, default=41, metavar="N", help="values of the first that are tried first (41)"
+    )
+    limit.add_argument(
+        "--rows", type=int, default=11, metavar="N", help="values of the second that are taken (11)"
+    )
+    _add_set(limit)
+    limit.add_argument(
+        "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"
+    )
+    _add_force(limit, "the file even if it is not such a table or picture")
 
 
 def _list(commands: Any) -> None:

@@ -186,6 +186,12 @@ def _print_pace(result: "Result") -> None:
     say(f"{result.steps} steps with {kind}, {pace}; {perf_counter() - BEGUN:.2f} s in total")
 
 
+def _limit(options: argparse.Namespace) -> int:
+    from .studies import command
+
+    return command.run(options, _pairs(options.overrides))
+
+
 def _sweep(options: argparse.Namespace) -> int:
     from .sweeps.run import sweep
 
@@ -427,6 +433,7 @@ COMMANDS = {
     "run": _run,
     "export": _export,
     "sweep": _sweep,
+    "limit": _limit,
     "build": _build,
     "list": _list,
     "init": _init,

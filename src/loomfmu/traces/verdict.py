@@ -67,7 +67,7 @@ class Verdict:
         which side is the right one. A claim that counts has whole steps. Where only the curve between two
         samples passes the bound, by no more than it may be off, the claim holds with a negative distance.
         """
-        distance = self.sense * (self.worst - self.bound)
+        distance = self.sense * (self.worst - self.bound) + 0.0  # not -0
         return distance if self.sense and (self.holds or distance < 0.0) else math.nan
 
     @property

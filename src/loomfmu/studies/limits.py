@@ -1,0 +1,166 @@
+"""Limits: where each claim of a scene begins to fail or to hold while one variable is varied."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+from ..cosim.prepared import Prepared
+from ..errors import LoomfmuError, shown
+from ..traces import Verdict
+from .results import ClaimLimits, Limit, Limits, Stretch
+from .search import Function, holds, near_zero, root, touching
+from .span import Span
+
+POINTS = 41  # of the scan
+MOST_POINTS = 100_001
+ROUNDING = 1e-12  # of bound or value: a distance as small is 0
+SAME = 1e-9  # of bound or value: a claim whose distance changes less does not depend on the variable
+
+
+def limits_of(
+    loom: Prepared, span: Span, points: int, fixed: dict[str, Any] | None = None,
+    advance: Callable[[int], None] = lambda _runs: None,
+) -> Limits:  # fmt: skip
+    """Find the limits of a prepared scene; `fixed` are values that stay, `advance` counts points."""
+    if not loom.scene.claims:
+        raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
+    own = loom.evaluate(fixed).claims  # a key may set several values that differ in the scene
+    runs = _Runs(loom, span, fixed or {})
+    grid = span.points(points)
+    runs.scan(grid, advance)
+    values = set(grid)
+    dependent = [runs.depends(number, grid) for number in range(len(own))]
+    for number, depends in enumerate(dependent):
+        if depends:
+            values |= set(_touched(runs.distance(number), grid))
+    tried = sorted(values)
+    found = [
+        _claim_limits(loom.scene.claims[number], verdict, runs.distance(number), tried, depends)
+        for number, (verdict, depends) in enumerate(zip(own, dependent, strict=True))
+    ]
+    resolution = (span.high - span.low) / (points - 1)
+    return Limits(loom.scene.title, span, resolution, tuple(found), _common(found, span), runs.count + 1)
+
+
+class _Runs:
+    """A prepared scene as functions of the variable, each value run once."""
+
+    def __init__(self, loom: Prepared, span: Span, fixed: dict[str, Any]):
+        self._loom, self._span, self._fixed = loom, span, fixed
+        self._verdicts: dict[float, tuple[Verdict, ...]] = {}
+
+    @property
+    def count(self) -> int:
+        """How many runs it took."""
+        return len(self._verdicts)
+
+    def at(self, value: float) -> tuple[Verdict, ...]:
+        """The verdicts at a value. Raises LoomfmuError that names the value."""
+        if value not in self._verdicts:
+            try:
+                self._verdicts[value] = self._loom.evaluate(self._fixed | self._span.setting(value)).claims
+            except LoomfmuError as error:
+                where = f"{self._span.key} = {self._span.show(value)}"
+                raise LoomfmuError(
+                    str(error) if str(error).startswith(where) else f"{where}: {error}"
+                ) from None
+        return self._verdicts[value]
+
+    def scan(self, grid: Sequence[float], advance: Callable[[int], None]) -> None:
+        """Run all points. Raises LoomfmuError where one cannot be run, with the ones that can."""
+        failed: dict[float, LoomfmuError] = {}
+        for value in grid:
+            try:
+                self.at(value)
+            except LoomfmuError as error:
+                failed[value] = error
+            advance(1)
+        if failed:
+            good = [value for value in grid if value not in failed]
+            first = next(iter(failed.values()))
+            if not good:
+                raise first
+            span = self._span
+            hint = f"of the values tried, {span.number(good[0])} to {span.show(good[-1])} can be run"
+            raise LoomfmuError(f"{first}; {hint}")
+
+    def distance(self, number: int) -> Function:
+        """The distance of a claim, counted from 0, from its bound; NaN where it fails without one."""
+        return lambda value: _distance(self.at(value)[number])
+
+    def depends(self, number: int, grid: Sequence[float]) -> bool:
+        """Whether a claim depends on the variable at all."""
+        verdicts = [self.at(value)[number] for value in grid]
+        distances = [_distance(each) for each in verdicts]
+        known = [each for each in distances if math.isfinite(each)]
+        if len(known) < len(distances):
+            return bool(known)
+        return max(known) - min(known) > SAME * max(map(_scale, verdicts))
+
+
+def _scale(verdict: Verdict) -> float:
+    return max(abs(verdict.worst), abs(verdict.bound))
+
+
+def _distance(verdict: Verdict) -> float:
+    """The distance of a verdict; what rounding makes of 0 is 0."""
+    return 0.0 if abs(verdict.distance) <= ROUNDING * _scale(verdict) else verdict.distance
+
+
+def _touched(distance: Function, grid: Sequence[float]) -> Iterator[float]:
+    """Values beside the grid at which a claim is on the other side for less than a step of the grid."""
+    for low, middle, high in zip(grid, grid[1:], grid[2:], strict=False):
+        if near_zero(distance(low), distance(middle), distance(high)):
+            found = touching(distance, low, middle, high)
+            if found is not None:
+                yield found
+
+
+def _claim_limits(
+    claim: dict[str, Any], verdict: Verdict, distance: Function, tried: Sequence[float], depends: bool
+) -> ClaimLimits:
+    """The limits of a claim between the values that were tried."""
+    limits = []
+    for low, high in pairwise(tried) if depends else ():
+        after = holds(distance(high))
+        if holds(distance(low)) != after:
+            found = root(distance, low, high)
+            limits.append(
+                Limit(found.value, found.low, found.high, "to hold" if after else "to fail", found.jumps)
+            )
+    edges = [tried[0], *(each.value for each in limits), tried[-1]]
+    holding = holds(distance(tried[0]))
+    ranges = []
+    for low, high in pairwise(edges):
+        if holding:
+            ranges.append(Stretch(low, high))
+        holding = not holding
+    points = tuple((value, distance(value)) for value in tried)
+    name = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
+    return ClaimLimits(name, tuple(limits), tuple(ranges), depends, verdict, points)
+
+
+def _common(claims: Sequence[ClaimLimits], span: Span) -> tuple[Stretch, ...]:
+    """The ranges in which all claims hold, each with the claim that binds at its ends."""
+    common = [Stretch(span.low, span.high)]
+    for each in claims:
+        both = ((one, two) for one in common for two in each.ranges)
+        common = [
+            Stretch(
+                max(one.low, two.low), min(one.high, two.high),
+                each.claim if two.low > one.low else one.below,
+                each.claim if two.high < one.high else one.above,
+            )
+            for one, two in both if max(one.low, two.low) < min(one.high, two.high)
+        ]  # fmt: skip
+    return tuple(common)
+
+
+def whole_points(points: Any, name: str = "points", least: int = 3) -> int:
+    """A number of points. Raises LoomfmuError."""
+    if isinstance(points, bool) or not isinstance(points, int) or not least <= points <= MOST_POINTS:
+        raise LoomfmuError(f"{name} = {shown(points)} must be a whole number from {least} to {MOST_POINTS}")
+    return points

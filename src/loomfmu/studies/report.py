@@ -1,0 +1,95 @@
+"""Limits as people read them: tables, sentences, CSV."""
+
+import csv
+import io
+from collections.abc import Sequence
+
+from .. import printed
+from ..printed import say
+from .results import (
+    HEADINGS,
+    SAME_EVERYWHERE,
+    Boundary,
+    Limits,
+    boundary_headings,
+    boundary_rows,
+    conclusion,
+    rows,
+)  # fmt: skip
+from .span import Span
+
+CSV_LIMITS = ("claim", "begins", "value", "low", "high", "unit", "jumps")
+
+
+def show(found: Limits) -> None:
+    """Print the limits of one variable."""
+    span = found.span
+    say(f"{found.title}: {span.key} from {span.text} ({span.source})")
+    table, at = rows(found), span.show(span.value)
+    entries = [
+        (f"{claim}:", f"holds {ranges}", f"({_remark(limits)}{own} at {at})")
+        for claim, ranges, limits, own in table
+    ]
+    printed.show((*HEADINGS[:3], f"distance at {at}"), table, entries)
+    say(*conclusion(found), "", _effort(found.runs, found))
+
+
+def _remark(limits: str) -> str:
+    """What an entry says of limits beside the range in which the claim holds."""
+    return f"{limits}; " if "jumps" in limits or limits == SAME_EVERYWHERE else ""
+
+
+def _effort(runs: int, found: Limits) -> str:
+    resolution = found.span.show(found.resolution)
+    return f"{runs} runs; limits to 1e-9 of their value; intervals narrower than {resolution} may be missed"
+
+
+def table(found: Limits) -> str:
+    """All limits as CSV, in the unit that people read the variable in."""
+    lines: list[Sequence[str]] = [CSV_LIMITS]
+    for each in found.claims:
+        for limit in each.limits:
+            numbers = _numbers(found.span, limit.value, limit.low, limit.high)
+            lines.append((each.claim, limit.begins, *numbers, found.span.unit, str(limit.jumps).lower()))
+    return _csv(lines)
+
+
+# ---- two variables
+
+
+def show_boundary(found: Boundary) -> None:
+    """Print the limits of the first variable over the second."""
+    first, second = found.first, found.second
+    say(f"{found.title}: {first.key} from {first.text} ({first.source}),")
+    say(f"at {len(found.values)} values of {second.key} from {second.text} ({second.source})")
+    lines, headings = boundary_rows(found), boundary_headings(found)
+    printed.show(headings, lines, [(f"{place} {second.unit}:", f"{held};", by) for place, held, by in lines])
+    if not any(each.depends for each in found.rows):
+        say(
+            f"No claim depends on {first.key} between {first.number(first.low)} and {first.show(first.high)}."
+        )
+    say(_effort(sum(each.runs for each in found.rows), found.rows[0]))
+
+
+def boundary_table(found: Boundary) -> str:
+    """The ranges in which all claims hold as CSV."""
+    first, second = found.first, found.second
+    one = f"{first.key} [{first.unit}]"
+    lines: list[Sequence[str]] = [
+        (f"{second.key} [{second.unit}]", f"low {one}", f"high {one}", "binding below", "binding above")
+    ]
+    for value, limits in zip(found.values, found.rows, strict=True):
+        for stretch in limits.ranges:
+            ends = _numbers(first, stretch.low, stretch.high)
+            lines.append((*_numbers(second, value), *ends, stretch.below, stretch.above))
+    return _csv(lines)
+
+
+def _numbers(span: Span, *values: float) -> list[str]:
+    return [f"{value / span.factor:.13g}" for value in values]
+
+
+def _csv(lines: Sequence[Sequence[str]]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(lines)
+    return text.getvalue()

@@ -1,0 +1,214 @@
+"""What was found about limits: as data, and as the words in which people read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from .. import notebook
+from ..traces import Verdict
+from .span import Span
+
+HEADINGS = ("claim", "holds", "limits", "distance at the scene's value")
+SAME_EVERYWHERE = "does not depend on it"
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A value of the variable at which a claim begins to fail, or to hold, as the variable rises (SI).
+
+    The claim changes between `low` and `high`. If it `jumps`, its distance does not pass 0 there: it counts,
+    or has no value on one side.
+    """
+
+    value: float
+    low: float
+    high: float
+    begins: str
+    jumps: bool
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A range in which claims hold (SI), and the claims that fail first beyond its ends.
+
+    Empty texts where it ends with the range that was searched.
+    """
+
+    low: float
+    high: float
+    below: str = ""
+    above: str = ""
+
+
+@dataclass(frozen=True)
+class ClaimLimits:
+    """What was found about one claim: all its limits, ascending, and the ranges in which it holds.
+
+    `points` are the values that were tried and the distances there, NaN where the claim fails without one.
+    `depends` is false if the distance is the same everywhere. `verdict` is the one at the scene's own value.
+    """
+
+    claim: str
+    limits: tuple[Limit, ...]
+    ranges: tuple[Stretch, ...]
+    depends: bool
+    verdict: Verdict
+    points: tuple[tuple[float, float], ...] = field(repr=False)
+
+
+@dataclass(frozen=True, repr=False)
+class Limits:
+    """How far a variable may go: for each claim, and for all; true if all hold in some range.
+
+    `ranges` are those in which all claims hold. An interval narrower than `resolution` in which a claim fails
+    or holds may be missed, unless its distance shows an extreme near 0. Values are in SI.
+    """
+
+    title: str
+    span: Span
+    resolution: float
+    claims: tuple[ClaimLimits, ...]
+    ranges: tuple[Stretch, ...]
+    runs: int
+
+    def __bool__(self) -> bool:
+        return bool(self.ranges)
+
+    @property
+    def depends(self) -> bool:
+        """Whether any claim depends on the variable."""
+        return any(each.depends for each in self.claims)
+
+    def __str__(self) -> str:
+        return " ".join(conclusion(self))
+
+    def __repr__(self) -> str:
+        return f"<Limits {self.span.key} of {self.title}: {self}>"
+
+    def _repr_html_(self) -> str:
+        table = notebook.table(HEADINGS, rows(self))
+        return notebook.block(self.title, table, *map(notebook.line, conclusion(self)))
+
+
+@dataclass(frozen=True, repr=False)
+class Boundary:
+    """The limits of one variable for each value of another; true if all claims hold somewhere.
+
+    `values` are those of the second variable, `second`, in SI; `rows` are the limits there.
+    """
+
+    title: str
+    first: Span
+    second: Span
+    values: tuple[float, ...]
+    rows: tuple[Limits, ...]
+
+    def __bool__(self) -> bool:
+        return any(self.rows)
+
+    def __repr__(self) -> str:
+        return f"<Boundary of {self.title}: {self.first.key} at {len(self.rows)} values of {self.second.key}>"
+
+    def _repr_html_(self) -> str:
+        return notebook.block(self.title, notebook.table(boundary_headings(self), boundary_rows(self)))
+
+
+# ---- in words
+
+
+def rows(found: Limits) -> list[tuple[str, str, str, str]]:
+    """A row of the table for each claim, below `HEADINGS`."""
+    return [
+        (each.claim, _holds(each, found.span), _limits(each, found.span), _own(each)) for each in found.claims
+    ]
+
+
+def _own(each: ClaimLimits) -> str:
+    """How far a claim is from its bound at the scene's own value."""
+    distance = each.verdict.shown_distance
+    return "fails without a value" if distance == "-" else distance
+
+
+def _holds(each: ClaimLimits, span: Span) -> str:
+    """Where a claim holds."""
+    if not each.ranges:
+        return "nowhere"
+    if not each.limits:
+        return "everywhere"
+    return ", ".join(_range(stretch, span) for stretch in each.ranges)
+
+
+def _range(stretch: Stretch, span: Span) -> str:
+    """A range in short: open where it ends with what was searched."""
+    if stretch.low == span.low:
+        return f"up to {span.show(stretch.high)}"
+    if stretch.high == span.high:
+        return f"from {span.show(stretch.low)}"
+    return f"{span.number(stretch.low)} to {span.show(stretch.high)}"
+
+
+def _limits(each: ClaimLimits, span: Span) -> str:
+    """The limits of a claim."""
+    if not each.depends:
+        return SAME_EVERYWHERE
+    return ", ".join(
+        f"jumps at {span.number(limit.value)}" if limit.jumps else span.number(limit.value)
+        for limit in each.limits
+    ) or "-"  # fmt: skip
+
+
+def conclusion(found: Limits) -> Iterator[str]:
+    """What was found, in sentences."""
+    span = found.span
+    if not found.depends:
+        yield f"No claim depends on {span.key} between {span.number(span.low)} and {span.show(span.high)}."
+    for stretch in found.ranges:
+        yield _sentence(stretch, span)
+    if not found.ranges:
+        never = [each.claim for each in found.claims if not each.ranges]
+        why = f": {_names(never)} hold{'s' * (len(never) == 1)} nowhere" if never else ""
+        yield f"Not all claims hold at any value from {span.text}{why}."
+    if any(limit.jumps for each in found.claims for limit in each.limits):
+        yield ('Where a claim "jumps", its distance does not pass 0: it counts, or has no value on one side.')
+    failing = [each.claim for each in found.claims if not each.verdict]
+    if failing:
+        own, they = span.show(span.value), f"{_names(failing)} fail{'s' * (len(failing) == 1)}"
+        yield f"At the scene's own value, {own}, {they}."
+    if not span.low <= span.value <= span.high:
+        yield f"The scene's own value, {span.show(span.value)}, is outside the range that was searched."
+
+
+def _sentence(stretch: Stretch, span: Span) -> str:
+    text = f"All claims hold from {span.number(stretch.low)} to {span.show(stretch.high)}"
+    ends = [
+        f"{way} it '{claim}' fails first"
+        for way, claim in (("below", stretch.below), ("above", stretch.above))
+        if claim
+    ]
+    return f"{text}; {' and '.join(ends)}." if ends else f"{text}, the whole range."
+
+
+def _names(claims: Sequence[str]) -> str:
+    return " and ".join(f"'{each}'" for each in claims)
+
+
+def boundary_headings(found: Boundary) -> tuple[str, ...]:
+    """The headings of the table of a boundary."""
+    return f"{found.second.key} [{found.second.unit}]", f"all claims hold, {found.first.key}", "binding"
+
+
+def boundary_rows(found: Boundary) -> list[tuple[str, str, str]]:
+    """A row for each range in which all claims hold, and one where none does."""
+    listed = []
+    for value, limits in zip(found.values, found.rows, strict=True):
+        place = found.second.number(value)
+        for stretch in limits.ranges:
+            whole = f"{found.first.number(stretch.low)} to {found.first.show(stretch.high)}"
+            binding = " / ".join(filter(None, dict.fromkeys((stretch.below, stretch.above))))
+            listed.append((place, whole, binding or "-"))
+        if not limits.ranges:
+            listed.append(
+                (place, "nowhere", _names([each.claim for each in limits.claims if not each.ranges]) or "-")
+            )
+    return listed

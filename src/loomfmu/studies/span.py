@@ -1,0 +1,126 @@
+"""What a study varies, and over which range."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import units
+from ..cosim.importing.fmus import Port
+from ..cosim.scenes.scene import Scene
+from ..errors import LoomfmuError, shown
+from ..sweeps.varied import Varied, varied
+
+SENSIBLE = 10.0  # times the scene's value: bounds that are farther apart say nothing about a range
+AROUND = 2.0  # from the scene's value divided by it to the scene's value times it
+FORM = "write it as INSTANCE.VARIABLE or INSTANCE.VARIABLE=LOW..HIGH, such as shaft.speed=300rpm..900rpm"
+
+
+@dataclass(frozen=True)
+class Span:
+    """A variable of a scene from `low` to `high` in SI; `source` says where its range comes from.
+
+    `value` is the scene's own value.
+    """
+
+    varied: Varied
+    low: float
+    high: float
+    value: float
+    source: str
+
+    @property
+    def key(self) -> str:
+        """What scenes call the variable."""
+        return self.varied.key
+
+    @property
+    def unit(self) -> str:
+        """The unit that people read it in, or that of its FMU if loomfmu does not know that."""
+        return self.varied.unit if self.varied.display == "1" else self.varied.display
+
+    @property
+    def factor(self) -> float:
+        """What a value in that unit is multiplied by to give SI."""
+        return units.unit(self.varied.display).factor
+
+    def setting(self, value: float) -> dict[str, Any]:
+        """What sets the value in a prepared scene."""
+        return {self.key: self.varied.setting(value)}
+
+    def points(self, count: int) -> list[float]:
+        """Equally spaced values, both ends included."""
+        return [self.low, *np.linspace(self.low, self.high, count)[1:-1].tolist(), self.high]
+
+    def number(self, value: float) -> str:
+        """A value in the unit that people read it in, without the unit."""
+        return f"{value / self.factor:.7g}"
+
+    def show(self, value: float) -> str:
+        """A value with its unit."""
+        return self.number(value) + ("" if self.unit == "1" else f" {self.unit}")
+
+    @property
+    def text(self) -> str:
+        """The range as text."""
+        return f"{self.number(self.low)} to {self.show(self.high)}"
+
+
+def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
+    """What `--vary` names, over the range that it gives or `from_` and `to` do, or a usual one.
+
+    Raises LoomfmuError for what cannot be varied, or not over that range.
+    """
+    if not isinstance(text, str):
+        raise LoomfmuError(f"vary = {shown(text)} is not a variable such as 'shaft.speed'")
+    key, equals, wanted = (part.strip() for part in text.partition("="))
+    if equals:
+        first, dots, last = (part.strip() for part in wanted.partition(".."))
+        if not (dots and first and last):
+            raise LoomfmuError(f"vary {text}: {shown(wanted)} is not a range; {FORM}")
+        if from_ is not None or to is not None:
+            raise LoomfmuError(f"vary {text}: the range is given twice; leave out from and to")
+        from_, to = first, last
+    variable = varied(scene, key)
+    port, value = _port(scene, variable)
+    given = [None if each is None else float(variable.read(each)) for each in (from_, to)]
+    usual, source = _usual(variable, port, value, given)
+    low, high = (each if each is not None else other for each, other in zip(given, usual, strict=True))
+    span = Span(variable, low, high, value, source)
+    if not low < high:
+        raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty")
+    return span
+
+
+def _port(scene: Scene, variable: Varied) -> tuple[Port, float]:
+    """The variable in its FMU and its value in the scene. Raises LoomfmuError for what has no real values."""
+    key = variable.key
+    if variable.needs_scene or not variable.targets or "." not in variable.targets[0]:
+        raise LoomfmuError(f"{key} cannot be varied here: only parameters and inputs of instances can")
+    if variable.kind != "Real":
+        raise LoomfmuError(f"{key} is not a real number; run a sweep over its values")
+    owner, _, name = variable.targets[0].partition(".")
+    instance = scene.instances[owner]
+    port = instance.fmu.ports[instance.fmu.name_of(name)]
+    found = instance.values.get(port.name, port.start)
+    return port, float(found or 0.0)
+
+
+def _usual(
+    variable: Varied, port: Port, value: float, given: Sequence[float | None]
+) -> tuple[tuple[float, float], str]:
+    """The range where none is given, and where it comes from."""
+    if None not in given:
+        return (0.0, 0.0), "given"
+    low, high = port.minimum, port.maximum
+    if low is not None and high is not None and high - low <= SENSIBLE * abs(value):
+        return (low, high), "its bounds"
+    if not value:
+        raise LoomfmuError(f"{variable.key} is 0 in this scene, so there is no usual range: give from and to")
+    ends = sorted((value / AROUND, value * AROUND))
+    if low is not None:
+        ends = [max(each, low) for each in ends]
+    if high is not None:
+        ends = [min(each, high) for each in ends]
+    return (ends[0], ends[1]), f"half to twice the scene's {variable.show(value)}"
