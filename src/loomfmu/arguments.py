@@ -193,11 +193,9 @@ def _limit(commands: Any) -> None:
         "--to", metavar="HIGH", help="where it ends; by default half to twice the scene's value"
     )
     limit.add_argument(
-        "--points", type=int, default=41, metavar="N", help="values of the first that are tried first (41)"
+        "--points", type=int, metavar="N", help="values of the first that are tried first (41)"
     )
-    limit.add_argument(
-        "--rows", type=int, default=11, metavar="N", help="values of the second that are taken (11)"
-    )
+    limit.add_argument("--rows", type=int, metavar="N", help="values of the second that are taken (11)")
     _add_set(limit)
     limit.add_argument(
         "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"

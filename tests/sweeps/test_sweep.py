@@ -58,6 +58,7 @@ def test_the_table_has_the_safe_speeds_that_the_design_finds(tmp_path: Path) -> 
         assert values["claim_2.bound"] == pytest.approx(600.0 * loom.RPM, rel=1e-15)
         assert values["claim_2.holds"] is (wanted >= 600.0 * loom.RPM)
         assert values["claim_1.bound"] == 0.0
+        assert values["claim_2.distance"] == values["claim_2.worst"] - values["claim_2.bound"]
     assert (found.rows, found.holding, found.failing, found.errors, found.ran) == (6, 2, 4, 0, 6)
     assert not found
 

@@ -28,9 +28,12 @@ def kind(path: Path) -> Kind:
 
 def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
+    from matplotlib import rc_context
+
     drawn = BytesIO()
     dateless = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}[suffix]
-    figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **dateless})
+    with rc_context({"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
+        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **dateless})
     return drawn.getvalue()
 
 

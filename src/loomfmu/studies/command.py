@@ -23,9 +23,10 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
             from ..traces.plotting import figure
 
             figure((1.0, 1.0))
+    counts = {name: getattr(options, name) for name in ("points", "rows")}
     found = limit(
-        options.scene, vary=options.vary, from_=options.from_, to=options.to, set=overrides,
-        points=options.points, rows=options.rows, progress=True,
+        options.scene, vary=options.vary, from_=options.from_, to=options.to, set=overrides, progress=True,
+        **{name: count for name, count in counts.items() if count is not None},
     )  # fmt: skip
     if output is not None and kind is not None:  # before anything is printed
         write_file(output, _content(found, output), kind, inputs, options.force)

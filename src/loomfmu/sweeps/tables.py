@@ -1,9 +1,9 @@
 """The table of a sweep: its columns, and what they and the whole say of themselves.
 
 One row for each combination: its number, the value on each axis, final values of signals, of each claim
-whether it holds, its worst value, its bound and the verdict's note, whether all hold, the first one that
-fails, warnings, and why a row could not be run. All in SI; a column's metadata has `unit`, `display_unit` and
-`description`, the table's the texts of sweep and scene.
+whether it holds, its worst value, its bound, the signed distance between them and the verdict's note, whether
+all hold, the first one that fails, warnings, and why a row could not be run. All in SI; a column's metadata
+has `unit`, `display_unit` and `description`, the table's the texts of sweep and scene.
 """
 
 import json
@@ -25,6 +25,11 @@ TYPES = {"Real": pa.float64(), "Integer": pa.int64(), "Boolean": pa.bool_(), "Te
 def claim_columns(number: int) -> tuple[str, str, str]:
     """Names of the columns of a claim, counted from 0."""
     return f"claim_{number + 1}.holds", f"claim_{number + 1}.worst", f"claim_{number + 1}.bound"
+
+
+def distance_column(number: int) -> str:
+    """Name of the column of the distances of a claim, counted from 0, from its bound: below 0 it fails."""
+    return f"claim_{number + 1}.distance"
 
 
 def note_column(number: int) -> str:
@@ -124,6 +129,7 @@ def _claim(number: int, label: Label | None) -> list[Any]:
         pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
         pa.field(worst, pa.float64(), metadata=about),
         pa.field(bound, pa.float64(), metadata=about),
+        pa.field(distance_column(number), pa.float64(), metadata=about),
         pa.field(note_column(number), pa.string(), metadata={"description": "What limits the verdict"}),
     ]
 

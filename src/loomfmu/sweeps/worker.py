@@ -131,7 +131,8 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         return failed(job, loom.scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
-        values += [verdict.holds, _finite(verdict.worst), _finite(verdict.bound), verdict.note or None]
+        numbers = verdict.worst, verdict.bound, verdict.distance
+        values += [verdict.holds, *map(_finite, numbers), verdict.note or None]
         if not verdict.holds and first is None:
             first = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
@@ -139,7 +140,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * (len(job.values) + 4 * len(scene.claims) + 3) + [reason]
+    return [None] * (len(job.values) + 5 * len(scene.claims) + 3) + [reason]
 
 
 def _finite(value: float) -> float | None:

@@ -1,0 +1,138 @@
+"""The command `loomfmu limit`: what it prints and writes, what it returns, what it refuses."""
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+
+from loomfmu.cli import main
+from loomfmu.design import loom as design
+from loomfmu.studies.boundary import ROWS
+from loomfmu.studies.limits import POINTS
+
+DEMO = str(Path(__file__).parents[2] / "sims" / "wl680_3600.toml")
+DAMPER = str(Path(__file__).parents[2] / "sims" / "damper.toml")
+QUICK = ["--points", "5", "--set", "revolutions=1"]
+SPEED = ["limit", DEMO, "--vary", "shaft.speed", "--from", "300rpm", "--to", "900rpm", *QUICK]
+BOTH = ["limit", DEMO, "--vary", "shaft.speed=300rpm..900rpm", "--vary", "belt.guide_clearance=0.2mm..0.8mm",
+        "--rows", "3", *QUICK]  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(SPEED) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    lines = printed.out.splitlines()
+    assert lines[0].endswith("plain weave: shaft.speed from 300 to 900 rev/min (given)")
+    assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in lines
+    assert "  (+125.6 % at 600 rev/min)" in lines
+    assert "  (does not depend on it; +7.402 % at 600 rev/min)" in lines
+    above = "above it 'the belt keeps a margin of 10 %' fails first."
+    assert f"All claims hold from 300 to 646.8164 rev/min; {above}" in lines
+    assert lines[-1].endswith(
+        " runs; limits to 1e-9 of their value; intervals narrower than 150 rev/min may be missed"
+    )
+
+
+def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["limit", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"values of the first that are tried first ({POINTS})" in said
+    assert f"values of the second that are taken ({ROWS})" in said
+
+
+def test_a_wide_terminal_has_a_table(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert main(["limit", DAMPER, "--vary", "shaft.speed=300rpm..340rpm", "--points", "3"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].split("  ")[0] == "claim" and lines[2].endswith("distance at 200 rev/min")
+    assert "jumps at 322.24" in lines[3] and "up to 322.24" in lines[3]
+    assert "  nowhere  " in lines[4]
+    assert any(
+        line.startswith("Not all claims hold at any value from 300 to 340 rev/min: ") for line in lines
+    )
+    assert any(line.startswith("Where a claim") for line in lines)
+    assert "The scene's own value, 200 rev/min, is outside the range that was searched." in lines
+
+
+def test_a_scene_that_fails_at_its_own_value_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*SPEED, "--set", "shaft.speed=650rpm"]) == 0
+    out = capsys.readouterr().out
+    assert "At the scene's own value, 650 rev/min, 'the belt keeps a margin of 10 %' fails." in out
+
+
+def test_limits_are_written_as_a_table(capsys: pytest.CaptureFixture[str]) -> None:
+    for _again in range(2):  # over a table of its own
+        assert main([*SPEED, "--output", "limits.csv"]) == 0
+    assert capsys.readouterr().out.endswith("written: limits.csv\n")
+    with Path("limits.csv").open() as file:
+        first, second = csv.DictReader(file)
+    assert (first["claim"], first["begins"], first["unit"], first["jumps"]) == (
+        "the belt keeps a margin of 10 %", "to fail", "rev/min", "false"
+    )  # fmt: skip
+    safe = design.safe_speed("WL680-3600", clearance="0.3 mm").speed * 30.0 / math.pi
+    assert float(first["value"]) == pytest.approx(safe * math.sqrt(0.9), rel=1e-9)
+    assert float(second["value"]) == pytest.approx(safe, rel=1e-9)
+    assert float(first["low"]) <= float(first["value"]) <= float(first["high"])
+
+
+def test_two_variables_give_a_boundary(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*BOTH, "--output", "boundary.csv"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1] == "at 3 values of belt.guide_clearance from 0.2 to 0.8 mm (given)"
+    assert "0.2 mm: 300 to 679.7492 rev/min; the belt keeps a margin of 10 %" in lines
+    with Path("boundary.csv").open() as file:
+        heading, *rows = csv.reader(file)
+    assert heading[:3] == [
+        "belt.guide_clearance [mm]",
+        "low shaft.speed [rev/min]",
+        "high shaft.speed [rev/min]",
+    ]
+    assert [row[0] for row in rows] == ["0.2", "0.5", "0.8"]
+    assert main([*BOTH, "--output", "boundary.csv"]) == 0  # a table of its own is replaced
+
+
+@pytest.mark.parametrize("arguments", [SPEED, BOTH])
+def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
+    pytest.importorskip("matplotlib")
+    for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")):
+        assert main([*arguments, "--output", f"picture{suffix}"]) == 0
+        assert Path(f"picture{suffix}").read_bytes().startswith(start)
+    first = Path("picture.svg").read_bytes()
+    assert main([*arguments, "--output", "picture.svg"]) == 0
+    assert Path("picture.svg").read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([*SPEED, "--output", "limits.txt"], "limits.txt: use .csv for a table, or .svg, .png or .pdf"),
+        ([*SPEED, "--output", "notes.csv"], "notes.csv: exists and is not a table of limits; --force"),
+        (
+            ["limit", DEMO, "--vary", "shaft.speed", "--from", "9rpm", "--to", "3rpm"],
+            "shaft.speed: the range from 9",
+        ),
+        (
+            ["limit", DEMO, "--vary", "a=1..2", "--vary", "b", "--vary", "c"],
+            "vary = ['a=1..2', 'b', 'c'] must be",
+        ),
+        (["limit", "none.toml", "--vary", "shaft.speed"], "none.toml: cannot be read"),
+    ],
+)
+def test_mistakes_are_refused_in_one_line(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+) -> None:
+    Path("notes.csv").write_text("mine\n")
+    assert main(arguments) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.startswith(f"loomfmu: {said}") and printed.err.count("\n") == 1
+    assert Path("notes.csv").read_text() == "mine\n"

@@ -1,0 +1,259 @@
+"""Limits: against closed forms and fine sweeps."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from loomfmu import LoomfmuError, limit, prepare
+from loomfmu.cosim.scenes.scene import Scene, parse
+from loomfmu.design import loom as design
+from loomfmu.machines import MACHINES
+from loomfmu.studies.results import ClaimLimits, Limits
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+RPM = 2.0 * math.pi / 60.0
+FOUND = 1e-9  # of the value: what limits are promised to
+
+LOOM = 'revolutions = 4\nsteps_per_revolution = 360\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\n'
+SPRUNG = f"""{LOOM}weave = "10/01"
+dampers = true
+[heald]
+sprung_mass = "7.5 kg"
+[shaft]
+speed = "200 rev/min"
+"""
+
+
+def claims(*tables: dict[str, Any]) -> str:
+    return "".join(
+        "[[claims]]\n" + "".join(f"{key} = {value!r}\n" for key, value in table.items()) for table in tables
+    )
+
+
+def of(found: Limits, name: str) -> ClaimLimits:
+    return next(each for each in found.claims if each.claim == name)
+
+
+def belt_scene(machine: str, extra: str = "") -> Scene:
+    tables = claims(
+        {"name": "margin", "kind": "lowest_margin", "bound": 0.1},
+        {"name": "speed", "kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
+    )
+    text = LOOM.replace("WL680-3600", machine).replace("revolutions = 4", "revolutions = 1")
+    text = text.replace("steps_per_revolution = 360", "steps_per_revolution = 1440")
+    return parse(f'{text}[shaft]\nspeed = "600 rpm"\n{extra}{tables}')
+
+
+def test_the_margin_of_the_demo_limits_its_speed() -> None:
+    safe = design.safe_speed("WL680-3600", clearance="0.3 mm").speed
+    assert safe / RPM == pytest.approx(681.804, abs=5e-4)
+    found = limit(DEMO, vary="shaft.speed", from_="300 rpm", to="900 rpm")
+    margin, speed = found.claims[:2]
+    # the load grows with the square of the speed, the margin is 1 at rest and 0 at the safe speed
+    assert [each.value for each in margin.limits] == pytest.approx([safe * math.sqrt(0.9)], rel=FOUND)
+    assert [each.value for each in speed.limits] == pytest.approx([safe], rel=FOUND)
+    assert [(each.begins, each.jumps) for each in (*margin.limits, *speed.limits)] == [("to fail", False)] * 2
+    assert [each.depends for each in found.claims] == [True, True, False, False, False, True]
+    (held,) = found.ranges
+    assert (held.low, held.below, held.above) == (300.0 * RPM, "", "the belt keeps a margin of 10 %")
+    assert held.high == margin.limits[0].value and found
+    above = "above it 'the belt keeps a margin of 10 %' fails first."
+    assert str(found) == f"All claims hold from 300 to 646.8164 rev/min; {above}"
+    assert found.resolution == pytest.approx(15.0 * RPM)  # a range of 600 rev/min by 41 points
+    # the time of the command is that of these runs and of its start
+    assert found.runs < 60
+
+
+def test_the_limit_hardly_depends_on_the_steps() -> None:
+    safe = design.safe_speed("WL680-3600", clearance="0.3 mm").speed
+    # the belt follows its travel over a step of 2 deg on a polynomial: of fourth order, 1e-7 with 180 steps
+    for steps, off in ((180, 3e-7), (360, 2e-8), (1440, FOUND)):
+        given = {"steps_per_revolution": steps, "revolutions": 1}
+        found = limit(DEMO, vary="shaft.speed=600rpm..700rpm", set=given, points=5)
+        assert found.claims[0].limits[0].value == pytest.approx(safe * math.sqrt(0.9), rel=off)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_limits_of_all_machines_are_those_of_the_closed_form(machine: str) -> None:
+    safe = design.safe_speed(machine, clearance="0.4 mm").speed
+    scene = belt_scene(machine, '[belt]\nguide_clearance = "0.4 mm"\n')
+    found = limit(scene, vary="shaft.speed", from_=0.5 * safe, to=1.5 * safe, points=9)
+    assert of(found, "speed").limits[0].value == pytest.approx(safe, rel=FOUND)
+    assert of(found, "margin").limits[0].value == pytest.approx(safe * math.sqrt(0.9), rel=FOUND)
+
+
+def test_other_variables_have_limits_too() -> None:
+    wanted = 650.0 * RPM
+    scene = belt_scene("WL680-3600")
+    given = {"shaft.speed": wanted}
+    clearance = limit(scene, vary="belt.guide_clearance=0.2mm..0.8mm", set=given)
+    assert of(clearance, "speed").limits[0].value == pytest.approx(
+        design.clearance_for(wanted, "WL680-3600"), rel=FOUND
+    )
+    mass = limit(scene, vary="belt.head_mass", set=given)
+    expected = design.mass_for(wanted, "WL680-3600")
+    assert of(mass, "speed").limits[0].value == pytest.approx(expected, rel=FOUND)
+    stiffness = limit(scene, vary="belt.bending_stiffness", set=given)
+    expected = design.stiffness_for(wanted, "WL680-3600")
+    assert of(stiffness, "speed").limits[0].value == pytest.approx(expected, rel=FOUND)
+    assert of(stiffness, "speed").limits[0].begins == "to hold"
+    assert stiffness.ranges[0].below == "margin" and stiffness.ranges[0].above == ""
+    assert stiffness.span.source == "half to twice the scene's 0.25 N.m2"
+
+
+# ---- claims that are not monotone
+
+
+def swept(scene: Scene, number: int, speeds: Sequence[float]) -> list[bool]:
+    """Whether a claim, counted from 0, holds at each speed [rev/min]."""
+    with prepare(scene) as loom:
+        return [loom.evaluate({"shaft.speed": f"{each} rpm"}).claims[number].holds for each in speeds]
+
+
+def agrees(found: ClaimLimits, speeds: Sequence[float], held: Sequence[bool]) -> None:
+    """The sweep and the ranges that were found say the same of every speed."""
+    for speed, holds in zip(speeds, held, strict=True):
+        inside = any(each.low <= speed * RPM <= each.high for each in found.ranges)
+        assert inside == holds, speed
+
+
+SWINGING = {
+    "dwell": {"kind": "dwell", "heald": "heald_1", "tolerance": 0.1, "at_least": "192 deg"},
+    "peak": {"kind": "peak_load", "damper": "damper_1", "at_most": "155 N"},
+    "shed": {"kind": "clear_shed", "heald": "heald_1", "clearance": "6 mm", "at_least": "214 deg"},
+}
+
+
+def test_all_intervals_of_a_carrier_that_swings_are_found() -> None:
+    scene = parse(SPRUNG + claims(*({"name": name, **each} for name, each in SWINGING.items())))
+    found = limit(scene, vary="shaft.speed=100rpm..400rpm")
+    assert found.resolution == pytest.approx(7.5 * RPM)
+    speeds = np.linspace(100.0, 400.0, 121).tolist()  # three times as fine
+    for number, (name, turns) in enumerate({"dwell": 4, "peak": 3, "shed": 2}.items()):
+        assert len(of(found, name).limits) == turns
+        assert not any(each.jumps for each in of(found, name).limits)
+        agrees(of(found, name), speeds, swept(scene, number, speeds))
+    assert not found  # each holds in some ranges, but never all of them
+
+
+def test_stop_contacts_jump_and_come_back() -> None:
+    scene = parse(SPRUNG + claims({"kind": "stop_contacts", "damper": "damper_1", "at_most": 6}))
+    found = limit(scene, vary="shaft.speed=340rpm..700rpm")
+    (contacts,) = found.claims
+    assert [each.begins for each in contacts.limits] == ["to fail", "to hold", "to fail"]
+    assert all(each.jumps and 0.0 < each.high - each.low <= FOUND * each.high for each in contacts.limits)
+    speeds = np.linspace(340.0, 700.0, 121).tolist()
+    agrees(contacts, speeds, swept(scene, 0, speeds))
+    assert "jumps" in " ".join(str(found).split()) and len(found.ranges) == 2
+
+
+def test_an_interval_narrower_than_the_scan_is_found_where_the_distance_touches_0() -> None:
+    text = SPRUNG + claims({"name": "shed", **SWINGING["shed"]})
+    with prepare(parse(text)) as loom:
+        best = minimize_scalar(
+            lambda rpm: -loom.evaluate({"shaft.speed": f"{rpm} rpm"}).claims[0].worst,
+            bounds=(270.0, 295.0), method="bounded", options={"xatol": 1e-7},
+        )  # fmt: skip
+    longest = -float(best.fun)
+    scene = parse(text.replace("214 deg", f"{math.degrees(longest - 1e-5)!r} deg"))
+    found = limit(scene, vary="shaft.speed=100rpm..400rpm")
+    first, last = found.claims[0].limits
+    assert last.value - first.value < 0.1 * found.resolution
+    assert first.value < best.x * RPM < last.value
+
+
+def test_a_claim_jumps_where_it_has_no_value_any_more() -> None:
+    text = SPRUNG + claims({"kind": "rapier_in_open_shed", "head_height": "10 mm"})
+    found = limit(parse(text), vary="belt.idle_travel=0.1m..2.5m", points=21)
+    opens, never = found.claims[0].limits
+    assert (opens.begins, opens.jumps) == ("to hold", False)
+    assert (never.begins, never.jumps) == ("to fail", True)
+    with prepare(parse(text)) as loom:
+        within, beyond = (
+            loom.evaluate({"belt.idle_travel": each}).claims[0] for each in (never.low, never.high)
+        )
+    assert within and within.distance > 0.0
+    assert not beyond and math.isnan(beyond.distance) and "never enters the shed" in beyond.note
+
+
+# ---- what does not depend, what holds nowhere
+
+
+def test_a_variable_that_changes_nothing_is_named() -> None:
+    found = limit(belt_scene("WL680-3600"), vary="belt.prescribed_length_factor=0.5..1", points=5)
+    assert found and not found.depends
+    assert str(found).startswith("No claim depends on belt.prescribed_length_factor between 0.5 and 1. All ")
+    assert all(not each.limits for each in found.claims)
+
+
+def test_a_claim_that_holds_nowhere_is_named() -> None:
+    found = limit(belt_scene("WL680-3600"), vary="shaft.speed=700rpm..900rpm", points=5)
+    assert not found and found.ranges == ()
+    assert str(found) == (
+        "Not all claims hold at any value from 700 to 900 rev/min: 'margin' and 'speed' hold nowhere."
+        " The scene's own value, 600 rev/min, is outside the range that was searched."
+    )
+
+
+def test_claims_that_hold_but_never_together_are_not_called_failing() -> None:
+    tables = claims(
+        {"name": "slow", "kind": "below", "signal": "shaft.velocity", "bound": "400 rpm"},
+        {"name": "fast", "kind": "above", "signal": "shaft.velocity", "bound": "500 rpm"},
+    )
+    scene = parse(f'{LOOM}[shaft]\nspeed = "450 rpm"\n{tables}')
+    found = limit(scene, vary="shaft.speed=300rpm..600rpm")
+    assert [each.value for claim in found.claims for each in claim.limits] == pytest.approx(
+        [400.0 * RPM, 500.0 * RPM], rel=FOUND
+    )
+    assert str(found) == (
+        "Not all claims hold at any value from 300 to 600 rev/min."
+        " At the scene's own value, 450 rev/min, 'slow' and 'fast' fail."
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"vary": "shaft.speed", "from_": "900 rpm", "to": 5}, "shaft.speed: the range from 900 rev/min to"),
+        ({"vary": "shaft.speed=5rpm..5rpm"}, "shaft.speed: the range from 5 rev/min to 5 rev/min is empty"),
+        ({"vary": "shaft.speed=300rpm"}, "vary shaft.speed=300rpm: '300rpm' is not a range; write it as"),
+        ({"vary": "shaft.speed=1..2", "to": 3}, "vary shaft.speed=1..2: the range is given twice"),
+        ({"vary": "shaft.speed", "from_": "3 mm"}, "shaft.speed: '3 mm' is in mm, which does not fit rad/s"),
+        ({"vary": "shaft.speed", "to": "20000 rpm"}, "shaft.speed = 20000 rev/min is outside [-9549"),
+        ({"vary": "shaft.speed", "from_": "-9 rpm"}, "shaft.speed = -9 rev/min: claim: bound shaft."),
+        ({"vary": "shaft.sped"}, "shaft.sped is unknown; did you mean 'speed'?"),
+        ({"vary": "belt.travel"}, "belt.travel cannot be set, it is wired to weft.travel"),
+        ({"vary": "belt.margin"}, "belt.margin is an output of BeltMonitor and cannot be set"),
+        ({"vary": "dobby.law"}, "dobby.law is not a real number; run a sweep over its values"),
+        ({"vary": "revolutions"}, "revolutions cannot be varied here"),
+        ({"vary": "machine"}, "machine cannot be varied here"),
+        ({"vary": "shaft.start_angle"}, "shaft.start_angle is 0 in this scene, so there is no usual range"),
+        ({"vary": 3}, "vary = 3 must be one variable such as 'shaft.speed', or a list of two"),
+        ({"vary": []}, "vary = [] must be one variable"),
+        ({"vary": [3]}, "vary = 3 is not a variable such as 'shaft.speed'"),
+        ({"vary": "shaft.speed", "points": 2}, "points = 2 must be a whole number from 3 to"),
+        ({"vary": ["shaft.speed", "shaft.speed=1..2"]}, "shaft.speed and shaft.speed both set shaft.speed"),
+        ({"vary": ["shaft.speed", "heald.stroke"], "rows": 1}, "rows = 1 must be a whole number from 2 to"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_searched_is_refused_in_one_line(given: dict[str, Any], said: str) -> None:
+    short = {"steps_per_revolution": 90, "revolutions": 1}
+    with pytest.raises(LoomfmuError) as raised:
+        limit(DEMO, set=short, **given)
+    assert str(raised.value).startswith(said)
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 300
+
+
+def test_values_that_cannot_be_run_are_refused_with_those_that_can() -> None:
+    with pytest.raises(LoomfmuError, match=r"heald\.stroke = 49 mm: claim 'clear_shed' .* can be run$"):
+        limit(DEMO, vary="heald.stroke", set={"steps_per_revolution": 90, "revolutions": 1})
+
+
+def test_a_scene_without_claims_has_no_limits() -> None:
+    with pytest.raises(LoomfmuError, match=r"the scene has no claims, so there is no limit to find"):
+        limit(parse(LOOM), vary="shaft.speed")
