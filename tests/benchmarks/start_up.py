@@ -81,6 +81,9 @@ NATIVE: dict[str, Command] = {
     RUN: _run(native=True, cold=False),
     IN_PYTHON: _in_python,
     "loomfmu show of its trace": lambda directory, _turn: (_command("show", str(directory / TRACE)), {}),
+    "loomfmu limit of the demo's speed": _python(
+        MAIN, "limit", str(DEMO), "--vary", "shaft.speed=300rpm..900rpm"
+    ),
     RUN_BUILT: _run(native=True, cold=True),
     HERE: _build("--platform", platforms.host()),
     EVERYWHERE: _build(),

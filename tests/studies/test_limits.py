@@ -216,6 +216,19 @@ def test_claims_that_hold_but_never_together_are_not_called_failing() -> None:
     )
 
 
+def test_numbers_that_were_probably_meant_in_another_unit_are_doubted() -> None:
+    found = limit(belt_scene("WL680-3600"), vary="shaft.speed", from_="300 rpm", to=600, points=3)
+    (warning,) = found.warnings
+    assert warning.startswith("shaft.speed = 600 is read as 600 rad/s = 5729.578 rev/min; write")
+
+
+def test_a_claim_that_cannot_be_judged_says_why() -> None:
+    scene = parse(SPRUNG + claims({"name": "margin", "kind": "lowest_margin", "bound": 0.1}))
+    found = limit(scene, vary="shaft.speed=300rpm..400rpm", set={"steps_per_revolution": 15}, points=3)
+    assert not found and math.isnan(found.claims[0].verdict.distance)
+    assert "fails: the samples are too far apart to be sure: take more steps" in found._repr_html_()
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

@@ -59,6 +59,7 @@ def test_a_smooth_root_takes_few_calls() -> None:
         lambda x: 2.0 - x if x < 0.7 else -5.0 - x,
         lambda x: math.nan if x < 0.7 else x,
         lambda x: 1.0 if x < 0.7 else math.nan,
+        lambda x: math.inf if x < 0.7 else -x,
     ],
 )
 def test_a_jump_is_bracketed_and_named(function: Callable[[float], float]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 from ..errors import LoomfmuError
 from ..files import Kind, check_target, write_file
-from ..printed import say
+from ..printed import complain, say
 from ..report import pictures as pages
 from .boundary import limit
 from .report import CSV_LIMITS, boundary_table, show, show_boundary, table
@@ -30,6 +30,8 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     )  # fmt: skip
     if output is not None and kind is not None:  # before anything is printed
         write_file(output, _content(found, output), kind, inputs, options.force)
+    for warning in found.warnings:
+        complain(f"warning: {warning}")
     if isinstance(found, Boundary):
         show_boundary(found)
     else:

@@ -27,22 +27,24 @@ def limits_of(
     """Find the limits of a prepared scene; `fixed` are values that stay, `advance` counts points."""
     if not loom.scene.claims:
         raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
-    own = loom.evaluate(fixed).claims  # a key may set several values that differ in the scene
+    own = loom.evaluate(fixed)  # a key may set several values that differ in the scene
     runs = _Runs(loom, span, fixed or {})
     grid = span.points(points)
     runs.scan(grid, advance)
     values = set(grid)
-    dependent = [runs.depends(number, grid) for number in range(len(own))]
+    dependent = [runs.depends(number, grid) for number in range(len(own.claims))]
     for number, depends in enumerate(dependent):
         if depends:
             values |= set(_touched(runs.distance(number), grid))
     tried = sorted(values)
     found = [
         _claim_limits(loom.scene.claims[number], verdict, runs.distance(number), tried, depends)
-        for number, (verdict, depends) in enumerate(zip(own, dependent, strict=True))
+        for number, (verdict, depends) in enumerate(zip(own.claims, dependent, strict=True))
     ]
     resolution = (span.high - span.low) / (points - 1)
-    return Limits(loom.scene.title, span, resolution, tuple(found), _common(found, span), runs.count + 1)
+    warnings = tuple(dict.fromkeys((*span.doubts, *own.warnings)))
+    ranges = _common(found, span)
+    return Limits(loom.scene.title, span, resolution, tuple(found), ranges, runs.count + 1, warnings)
 
 
 class _Runs:

@@ -71,6 +71,7 @@ class Limits:
     claims: tuple[ClaimLimits, ...]
     ranges: tuple[Stretch, ...]
     runs: int
+    warnings: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         return bool(self.ranges)
@@ -107,6 +108,12 @@ class Boundary:
     def __bool__(self) -> bool:
         return any(self.rows)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the scene and the ranges warn of."""
+        found = (*self.second.doubts, *(each for row in self.rows for each in row.warnings))
+        return tuple(dict.fromkeys(found))
+
     def __repr__(self) -> str:
         return f"<Boundary of {self.title}: {self.first.key} at {len(self.rows)} values of {self.second.key}>"
 
@@ -127,7 +134,7 @@ def rows(found: Limits) -> list[tuple[str, str, str, str]]:
 def _own(each: ClaimLimits) -> str:
     """How far a claim is from its bound at the scene's own value."""
     distance = each.verdict.shown_distance
-    return "fails without a value" if distance == "-" else distance
+    return f"fails: {each.verdict.note or 'no value'}" if distance == "-" else distance
 
 
 def _holds(each: ClaimLimits, span: Span) -> str:

@@ -55,7 +55,8 @@ def root(function: Function, low: float, high: float) -> Root:
         least = 0.5 * width / max(abs(b - a), width)
         share = min(max(share, least), 1.0 - least)
     value = a if math.isnan(fb) or abs(fa) <= abs(fb) else b
-    return Root(value, min(a, b), max(a, b), not abs(fb - fa) <= JUMP * change)
+    continuous = math.isfinite(fb - fa) and abs(fb - fa) <= JUMP * change
+    return Root(value, min(a, b), max(a, b), not continuous)
 
 
 def _share(a: float, fa: float, b: float, fb: float, c: float, fc: float) -> float:

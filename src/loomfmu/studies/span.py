@@ -21,7 +21,7 @@ FORM = "write it as INSTANCE.VARIABLE or INSTANCE.VARIABLE=LOW..HIGH, such as sh
 class Span:
     """A variable of a scene from `low` to `high` in SI; `source` says where its range comes from.
 
-    `value` is the scene's own value.
+    `value` is the scene's own value, `doubts` warn of ends that were probably meant in another unit.
     """
 
     varied: Varied
@@ -29,6 +29,7 @@ class Span:
     high: float
     value: float
     source: str
+    doubts: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
@@ -87,7 +88,8 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
     given = [None if each is None else float(variable.read(each)) for each in (from_, to)]
     usual, source = _usual(variable, port, value, given)
     low, high = (each if each is not None else other for each, other in zip(given, usual, strict=True))
-    span = Span(variable, low, high, value, source)
+    doubts = tuple(filter(None, (variable.doubt(each) for each in (from_, to) if each is not None)))
+    span = Span(variable, low, high, value, source, doubts)
     if not low < high:
         raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty")
     return span
