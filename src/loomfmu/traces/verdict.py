@@ -91,7 +91,9 @@ class Verdict:
         """The distance in short: as a share of the bound, or in its unit if the bound is 0."""
         if math.isfinite(self.relative_distance):
             return f"{100.0 * self.relative_distance:+.4g} %"
-        return self.shown(self.distance) if math.isfinite(self.distance) else "-"
+        if not math.isfinite(self.distance):
+            return "-"
+        return f"{self.displayed(self.distance):+.4g}" + ("" if self.label == "1" else f" {self.label}")
 
     def _repr_html_(self) -> str:
         return notebook.table(HEADINGS, [self.row])

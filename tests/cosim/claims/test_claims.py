@@ -769,6 +769,9 @@ def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Tr
     zero = judge(trace, kind="above", signal="weft.travel", bound="0 m")
     assert zero and zero.distance >= 0.0 and math.isnan(zero.relative_distance)
     assert zero.as_dict()["relative_distance"] is None
+    assert [each.shown_distance for each in (margin, zero, short)] == [
+        f"{100.0 * margin.relative_distance:+.4g} %", f"{zero.distance:+.4g} m", "-"
+    ]  # fmt: skip
     coarse = judge(loom(16), kind="lowest_margin", bound=-100.0)
     assert not coarse and coarse.worst > coarse.bound and math.isnan(coarse.distance)
 
