@@ -33,8 +33,9 @@ class Variable:
     to, `instance.variable` with # for the
     instance's own number, and in an array with * for every instance that has such an output; of a parameter
     it is that of another instance whose value it takes unless it is given one; with `source_for` an input is
-    wired to the first of its sources, parted by |, that there is, and only where that output is taken, and a
-    parameter takes its value only where that input is wired;
+    wired to the first of its sources, parted by |, that there is, and only where that output is taken, or
+    where that input is wired to the same instance; a parameter takes its value only where that input is
+    wired;
     `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `when` and `unless`
     name the yes-or-no parameter with which, or without which alone, it has an effect; `pole` says that an
     output grows without bound at the edges of its component's windows; `element` is its place in an array,

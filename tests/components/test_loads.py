@@ -208,12 +208,15 @@ def swung(component, step, steps):
     return rows
 
 
-def residual(rows, step, stored, power):
-    """Energy gained over two steps, less the power by Simpson's rule; over the largest energy."""
+def residual(rows, step, stored, power, changes="contact"):
+    """Energy gained over two steps, less the power by Simpson's rule; over the largest energy.
+
+    Steps in which a variable changes, where the power has a jump or a kink, are left out.
+    """
     worst = 0.0
     for before, here, after in zip(rows[:-2:2], rows[1::2], rows[2::2], strict=True):
         work = step / 3.0 * (power(before) + 4.0 * power(here) + power(after))
-        if "contact" not in before or before["contact"] == here["contact"] == after["contact"]:
+        if before.get(changes) == here.get(changes) == after.get(changes):
             worst = max(worst, abs(stored(after) - stored(before) - work))
     return worst / max(stored(row) for row in rows)
 
@@ -228,9 +231,13 @@ def test_carrier_holds_what_frame_and_warp_bring():
     rows = swung(damper, 1e-5, 40000)
     assert {row["contact"] for row in rows} >= {-1, 0, 1}
     stored = residual(rows, 1e-5, lambda row: row["kinetic_energy"] + row["potential_energy"], power)
+    done = residual(
+        rows, 1e-5, lambda row: row["frame_work"], lambda row: -row["transmitted_force"] * row["velocity"]
+    )
     # Simpson's rule: (w h)^5 / 90 with w = 365 1/s on a stop, and rounding; the quintic through the samples
     # follows the frame to 1e-15
     assert stored < 1e-12
+    assert done < 1e-12
 
 
 @pytest.mark.parametrize(("creep", "relaxation"), [(5.0, 10.0), (0.0, 0.0), (8.0, 8.0), (3.0, 0.0)])
@@ -246,6 +253,47 @@ def test_threads_hold_what_their_healds_bring(creep, relaxation, pretension):
     rows = swung(warp, 1e-4, 4000)
     # Simpson's rule: (w h)^5 / 90 with w = 40 1/s and its harmonics, and rounding
     assert residual(rows, 1e-4, lambda row: row["potential_energy"], power) < 1e-9
+    brought = (lambda row: row["frame_work"], lambda row: -row["frame_load"] * row["velocity"])
+    assert residual(rows, 1e-4, *brought, changes="slack") < 1e-9
+
+
+@pytest.mark.parametrize("follower", [HealdDamper, WarpTension])
+def test_work_of_a_frame_is_of_sixth_order_in_the_step(follower):
+    works = [swung(follower(inputs_at_step_end=True), 0.4 / n, n)[-1]["frame_work"] for n in (80, 160, 8000)]
+    coarse, fine = (abs(each - works[-1]) for each in works[:-1])
+    # power and frame run on quintics; 2^6 but for terms of the next order
+    assert coarse / fine > 40.0
+    assert fine < 1e-10 * abs(works[-1])
+
+
+def test_work_of_a_frame_on_threads_is_that_of_the_carrier_with_them():
+    damper = HealdDamper(inputs_at_step_end=True, thread_count=1260)
+    works = [swung(damper, 0.4 / n, n)[-1]["frame_work"] for n in (80, 8000)]
+    # as good as the load of the threads, a cubic over pieces of 0.05 rad: (0.05)^4 / 384
+    assert works[0] == pytest.approx(works[1], rel=2e-8)
+
+
+def test_slack_threads_take_no_work():
+    # they are slack from a quarter of the stroke to three quarters; found within the step
+    works = [
+        swung(WarpTension(inputs_at_step_end=True, pretension=0.0), 0.4 / n, n)[-1]["frame_work"]
+        for n in (80, 160, 8000)
+    ]
+    coarse, fine = (abs(each - works[-1]) for each in works[:-1])
+    assert fine < 1e-8 * abs(works[-1])
+    assert coarse / fine > 12.0
+
+
+def test_a_frame_states_the_work_on_its_load_only_if_it_knows_it():
+    dobby = on_shaft(DobbyDrive(**SHAFT), 1.0, 40.0, 0.0)
+    without, with_work = (
+        driven(dobby, HealdFrame(load=-100.0, load_work=3.0, use_load_work=use, **FRAME))
+        for use in (False, True)
+    )
+    stored = without.kinetic_energy + without.potential_energy
+    assert (without.shaft_work, with_work.shaft_work) == (stored, stored + 3.0)
+    assert with_work.shaft_torque == without.shaft_torque
+    assert (without.passed_torque != 0.0, with_work.passed_torque) == (True, 0.0)
 
 
 # Where nothing moves

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from math import fabs, sqrt
 
-from ..physics.damper import propagate
+from ..physics.damper import power_of_frame, propagate
 from ..physics.damper_search import contact_change, larger, next_turn, rate_bounds
 from ..physics.hung_warp import force_after, settled_load, warp_stiffness
-from ..physics.numerics.motion import moved_on
+from ..physics.numerics.motion import joined_area, moved_on
 from .damper_variables import DamperVariables
 
 # Pieces of motion in one step: some 10 us each in Python
@@ -91,12 +91,16 @@ class DamperMotion(DamperVariables):
         mass = self.carrier_mass
         u0 = preload + load / mass - a0
         u1 = load_rate / mass - a1
-        if self.thread_count == 0:
-            return self.move_piece(
-                stiffness, damping, preload, u0, u1, -a2, -a3, load, load_rate, 0.0, 0.0, piece
-            )
         position = self.displacement
         rate = self.rate
+        if self.thread_count == 0:
+            taken = self.move_piece(
+                stiffness, damping, preload, u0, u1, -a2, -a3, load, load_rate, 0.0, 0.0, piece
+            )
+            self.take_work(
+                stiffness, damping, preload, position, rate, u0, u1, -a2, -a3, velocity, a0, a1, a2, a3, taken
+            )
+            return taken
         eyes = lift + self.eye_offset()
         threads = self.thread_count * self.thread_stiffness
         taken = piece
@@ -118,6 +122,10 @@ class DamperMotion(DamperVariables):
         taken = self.move_piece(
             stiffness, damping, preload, u0 + d0 / mass, u1 + d1 / mass, d2 / mass - a2, d3 / mass - a3,
             load + d0, load_rate + d1, d2, d3, taken,
+        )  # fmt: skip
+        self.take_work(
+            stiffness, damping, preload, position, rate, u0 + d0 / mass, u1 + d1 / mass, d2 / mass - a2,
+            d3 / mass - a3, velocity, a0, a1, a2, a3, taken,
         )  # fmt: skip
         end_lift, end_velocity, end_acceleration = moved_on(eyes, velocity, a0, a1, a2, a3, taken)
         drive = (
@@ -176,6 +184,27 @@ class DamperMotion(DamperVariables):
                 u0, u1, u2, u3, load, load_1, load_2, load_3, taken,
             )  # fmt: skip
         return taken
+
+    def take_work(
+        self, stiffness: float, damping: float, preload: float, position: float, rate: float,
+        u0: float, u1: float, u2: float, u3: float, velocity: float,
+        a0: float, a1: float, a2: float, a3: float, taken: float,
+    ) -> None:  # fmt: skip
+        """Add the work of the frame on the carrier over a piece: its power runs on a quintic there."""
+        mass = self.carrier_mass
+        power, growth, bend = power_of_frame(
+            mass, stiffness, damping, preload, position, rate, u0, u1, velocity, a0, a1
+        )
+        t = taken
+        end_power, end_growth, end_bend = power_of_frame(
+            mass, stiffness, damping, preload, self.displacement, self.rate,
+            u0 + t * (u1 + t * (u2 + t * u3)), u1 + t * (2.0 * u2 + t * 3.0 * u3),
+            velocity + t * (a0 + t * (a1 / 2.0 + t * (a2 / 3.0 + t * a3 / 4.0))),
+            a0 + t * (a1 + t * (a2 + t * a3)), a1 + t * (2.0 * a2 + t * 3.0 * a3),
+        )  # fmt: skip
+        self.frame_work = self.frame_work + joined_area(
+            t, power, growth, bend, end_power, end_growth, end_bend
+        )
 
     def note_turns(
         self, of_carrier: bool, bend: float, position: float, rate: float, stiffness: float, damping: float,

@@ -107,6 +107,9 @@ class DamperVariables(Threads):
         "J", "Energy of springs and stop, from where the carrier hangs balanced", nominal=1.0
     )
     dissipated_power: float = output("W", "Power lost in the damping of suspension and stop", nominal=10.0)
+    frame_work: float = output(
+        "J", "Work of the frame on carrier and warp so far: that of transmitted_force, reversed", nominal=10.0
+    )
     damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
     stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
     contact: int = state(

@@ -45,6 +45,7 @@ class HealdDamper(DamperMotion):
         self.rate = self.start_rate
         self.contact = 0
         self.stop_contacts = 0
+        self.frame_work = 0.0
         self.peak_load = 0.0
         self.peak_carrier = 0.0
         self.peak_frame = fabs(self.acceleration)

@@ -24,6 +24,7 @@ from .terminals import FRAME, ROTOR
 _OF_ROTOR = (
     "rotor_angle", "rotor_velocity", "rotor_acceleration", "lift_fraction", "lift_rate", "lift_acceleration",
 )  # fmt: skip
+_OF_TORQUES = (*_OF_ROTOR, "rotor_ratio", "lift_slope", "load")
 _SLOWEST = 1e-9  # rotor_ratio below which the rotor stands: a cam then has no torque about it
 
 
@@ -79,6 +80,9 @@ class HealdFrame(Component):
     follow_lift: bool = parameter(
         "1", False, "Follow the dobby's lift_fraction, as for a spline cam, instead of the crank on the rotor"
     )
+    use_load_work: bool = parameter(
+        "1", False, "Count load_work in shaft_work; otherwise passed_torque goes to load"
+    )
     rotor_angle: float = input_(
         "rad", 3.141592653589793, "Rotor angle from the slow point of pick 0, not wrapped", display="deg",
         unbounded=True, nominal=6.0, rate="rotor_velocity", minimum=-1e9, maximum=1e9,
@@ -116,6 +120,11 @@ class HealdFrame(Component):
         nominal=100.0, minimum=-1e12, maximum=1e12,
         source="damper_#.transmitted_force|warp_#.frame_load", source_for="shaft_torque",
     )  # fmt: skip
+    load_work: float = input_(
+        "J", 0.0, "Work of the frame so far on what exerts load, at the end of the step", nominal=10.0,
+        minimum=-1e15, maximum=1e15, when="use_load_work",
+        source="damper_#.frame_work|warp_#.frame_work", source_for="load",
+    )  # fmt: skip
     lift: float = output(
         "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity",
         depends=_OF_ROTOR,
@@ -132,22 +141,32 @@ class HealdFrame(Component):
     moving: bool = output("1", "The frame changes position between the current slow points", start=False,
                           variability="discrete", depends=_OF_ROTOR)  # fmt: skip
     drive_force: float = output(
-        "N", "Force of the drive on the frame, upwards: inertia and weight less load", nominal=100.0
+        "N", "Force of the drive on the frame, upwards: inertia and weight, less load if that is wired",
+        nominal=100.0, depends=(*_OF_ROTOR, "load"),
+    )  # fmt: skip
+    rotor_torque: float = output(
+        "N.m",
+        "Torque of the frame on the rotor, braking; of a rigid frame if load is not wired",
+        nominal=10.0,
+        depends=_OF_TORQUES,
     )
-    rotor_torque: float = output("N.m", "Torque of the frame on the rotor, braking", nominal=10.0)
     shaft_torque: float = output(
-        "N.m", "Torque of the frame on the main shaft through the dobby, braking", nominal=10.0
-    )
+        "N.m", "Torque of the frame on the main shaft, braking; of a rigid frame if load is not wired",
+        nominal=10.0, depends=_OF_TORQUES,
+    )  # fmt: skip
     kinetic_energy: float = output(
         "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=_OF_ROTOR
     )
     potential_energy: float = output(
         "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
     )
-    passed_torque: float = output("N.m", "Part of shaft_torque that goes to load", nominal=10.0)
+    passed_torque: float = output(
+        "N.m", "Part of shaft_torque whose work is not in shaft_work: what goes to load without load_work",
+        nominal=10.0, depends=_OF_TORQUES,
+    )  # fmt: skip
     shaft_work: float = output(
-        "J", "Work taken from the shaft, now kinetic and potential energy; without that of passed_torque",
-        nominal=10.0, depends=_OF_ROTOR,
+        "J", "Work taken from the shaft: kinetic and potential energy, and load_work if it is used",
+        nominal=10.0, depends=(*_OF_ROTOR, "load_work"),
     )  # fmt: skip
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 
@@ -230,8 +249,10 @@ class HealdFrame(Component):
         self.drive_force = self.inertia_force + weight - self.load
         self.rotor_torque = self.drive_force * self.stroke * by_rotor
         self.shaft_torque = self.drive_force * self.stroke * by_shaft
-        self.passed_torque = -self.load * self.stroke * by_shaft
+        self.passed_torque = 0.0 if self.use_load_work else -self.load * self.stroke * by_shaft
         self.kinetic_energy = 0.5 * (self.frame_mass - self.sprung_mass) * self.velocity * self.velocity
         self.potential_energy = weight * self.lift
         self.shaft_work = self.kinetic_energy + self.potential_energy
+        if self.use_load_work:
+            self.shaft_work = self.shaft_work + self.load_work
         return 0

@@ -3,18 +3,18 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..physics.numerics.motion import joined
+from ..physics.numerics.motion import joined, joined_area
 from ..physics.shaft import carried
 from ..physics.warp import (
     eye_pull,
     thread_drive,
-    thread_energy,
     thread_extension,
     thread_force,
     thread_growth,
     thread_locate,
     turns_once,
 )
+from ..physics.warp_energy import thread_energy, thread_power
 from ..variables import Terminal, at_step_end, input_, output, state
 from .terminals import FRAME
 from .threads import Threads
@@ -59,6 +59,9 @@ class WarpTension(Threads):
         "W", "Power that creep, relaxation and slack take from all threads; negative where creep returns it",
         nominal=10.0,
     )  # fmt: skip
+    frame_work: float = output(
+        "J", "Work that has stretched all threads so far: that of frame_load, reversed", nominal=10.0
+    )
     slack: bool = output("1", "The thread is slack", start=False, variability="discrete")
     elapsed: float = state("s", "Time covered by the extremes and the mean", minimum=0.0)
     pending: float = state("s", "Time from the last sample of the inputs to the next", minimum=0.0)
@@ -66,11 +69,13 @@ class WarpTension(Threads):
     sampled_rate: float = state("m/s", "Rate of the extension at the last sample")
     sampled_second: float = state("m/s2", "Second rate of the extension at the last sample")
     sampled_force: float = state("N", "Force of the thread above its pretension at the last sample")
+    sampled_work: float = state("J", "Work that had stretched all threads at the last sample")
 
     def initialize(self, time: float) -> int:
         """Stretch the threads at once to where their eyes are, and forget all extremes."""
         extension, rate, second = self.sample(0.0)
         self.sampled_force = self.thread_stiffness * extension
+        self.sampled_work = 0.0
         self.remember(extension, rate, second)
         self.elapsed = 0.0
         self.pending = 0.0
@@ -106,25 +111,59 @@ class WarpTension(Threads):
         self.sampled_rate = rate
         self.sampled_second = second
 
-    def drive(
+    def curve(
         self, duration: float, extension: float, rate: float, second: float
-    ) -> tuple[float, float, float, float, float, float]:
-        """What drives a thread from the last sample to this one."""
-        a0, a1, a2, a3 = joined(
+    ) -> tuple[float, float, float, float]:
+        """Second rate of the extension by the share of the way from the last sample to this one."""
+        return joined(
             self.sampled_extension, duration * self.sampled_rate, duration * duration * self.sampled_second,
             extension, duration * rate, duration * duration * second,
         )  # fmt: skip
+
+    def drive(
+        self, duration: float, extension: float, a0: float, a1: float, a2: float, a3: float
+    ) -> tuple[float, float, float, float, float, float]:
+        """What drives a thread from the last sample to this one."""
         return thread_drive(
             self.thread_stiffness, self.creep_rate * duration, self.sampled_extension, extension,
             a0, a1, a2, a3,
         )  # fmt: skip
+
+    def work(
+        self, duration: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
+        a0: float, a1: float, a2: float, a3: float, low: float, force: float, high: float, end: float,
+    ) -> float:  # fmt: skip
+        """Work that stretches all threads over a part of the way: while taut, their power is a quintic."""
+        decay = self.relaxation_rate * duration
+        rate = duration * self.sampled_rate
+        slack_at = -self.pretension
+        start = low
+        stop = high
+        if (force - slack_at) * (end - slack_at) < 0.0:
+            passed = thread_locate(
+                False, slack_at, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high
+            )
+            start = passed if force < slack_at else low
+            stop = high if force < slack_at else passed
+        power, growth, bend = thread_power(
+            self.pretension, force if start == low else slack_at, decay, p0, p1, p2, p3, p4, p5,
+            rate, a0, a1, a2, a3, start,
+        )  # fmt: skip
+        end_power, end_growth, end_bend = thread_power(
+            self.pretension, end if stop == high else slack_at, decay, p0, p1, p2, p3, p4, p5,
+            rate, a0, a1, a2, a3, stop,
+        )  # fmt: skip
+        return self.thread_count * joined_area(
+            stop - start, power, growth, bend, end_power, end_growth, end_bend
+        )
 
     def follow(self, duration: float, extension: float, rate: float, second: float) -> None:
         """Bring force, extremes and mean from the last sample to this one.
 
         Where the force may turn more than once on the way, each eighth of it is looked at.
         """
-        p0, p1, p2, p3, p4, p5 = self.drive(duration, extension, rate, second)
+        a0, a1, a2, a3 = self.curve(duration, extension, rate, second)
+        p0, p1, p2, p3, p4, p5 = self.drive(duration, extension, a0, a1, a2, a3)
         decay = self.relaxation_rate * duration
         panels = 1 if turns_once(p1, p2, p3, p4, p5) else 8
         low = 0.0
@@ -136,6 +175,9 @@ class WarpTension(Threads):
             end, end_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, high)
             total = total + self.panel_area(
                 decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area
+            )
+            self.sampled_work = self.sampled_work + self.work(
+                duration, p0, p1, p2, p3, p4, p5, a0, a1, a2, a3, low, force, high, end
             )
             low = high
             force = end
@@ -199,10 +241,16 @@ class WarpTension(Threads):
         force = self.sampled_force
         self.extension = self.sampled_extension
         rate = self.sampled_rate
+        self.frame_work = self.sampled_work
         if lead > 0.0:
             extension, rate, second = self.sample(lead)
-            p0, p1, p2, p3, p4, p5 = self.drive(lead, extension, rate, second)
+            a0, a1, a2, a3 = self.curve(lead, extension, rate, second)
+            p0, p1, p2, p3, p4, p5 = self.drive(lead, extension, a0, a1, a2, a3)
+            start = force
             force, _area = thread_force(force, self.relaxation_rate * lead, p0, p1, p2, p3, p4, p5, 1.0)
+            self.frame_work = self.sampled_work + self.work(
+                lead, p0, p1, p2, p3, p4, p5, a0, a1, a2, a3, 0.0, start, 1.0, force
+            )
             self.extension = extension
         tension = self.pretension + force
         self.slack = tension < 0.0

@@ -23,6 +23,7 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         "scene": scene.text,
         **({"files": json.dumps(scene.texts)} if scene.texts else {}),
         **({"package_sha256": scene.package_sha256} if scene.package else {}),
+        "wires": json.dumps(plan.wires),
         "set": json.dumps(_texts(scene.overrides)),
         **({} if scene.package else {"flavour": _flavour(scene, flavour)}),
         **_command(scene, _flavour(scene, flavour)),

@@ -106,3 +106,35 @@ def propagate(
         following = new
         n = n + 1
     return total, slope / duration
+
+
+def power_of_frame(
+    mass: float, stiffness: float, damping: float, preload: float, position: float, rate: float,
+    drive: float, drive_1: float, velocity: float, acceleration: float, jerk: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Power of the frame on its carrier, `-m (k z + c z' - p) v`, and its first and second rate.
+
+    Args:
+        mass: of the carrier m [kg]
+        stiffness, damping: k [1/s2] and c [1/s]
+        preload: p, what a stop pushes back at z = 0 [m/s2]
+        position, rate: z [m] and z' [m/s]
+        drive, drive_1: u of `propagate` and its rate [m/s2, m/s3]
+        velocity, acceleration, jerk: of the frame [m/s, m/s2, m/s3]
+
+    Returns:
+        power [W], its rates [W/s, W/s2]
+
+    >>> power_of_frame(2.0, 3.0, 0.0, 0.0, 0.5, 0.0, 1.5, 0.0, 4.0, 1.0, 0.0)  # at rest in the moving frame
+    (-12.0, -3.0, 0.0)
+    """
+    second = drive - stiffness * position - damping * rate
+    third = drive_1 - stiffness * rate - damping * second
+    force = mass * (stiffness * position + damping * rate - preload)
+    growth = mass * (stiffness * rate + damping * second)
+    bend = mass * (stiffness * second + damping * third)
+    return (
+        -force * velocity,
+        -growth * velocity - force * acceleration,
+        -bend * velocity - 2.0 * growth * acceleration - force * jerk,
+    )

@@ -70,32 +70,6 @@ def thread_extension(
     )
 
 
-def thread_energy(
-    force: float, extension: float, stiffness: float, creep: float, relaxation: float
-) -> tuple[float, float]:
-    """Energy that a thread stores, and power that creep and relaxation take from it, by the law (3.28).
-
-    With `E = F^2 / (2 b)` the law gives `F x' = E' + F (r F / b - n x)`, for every b, n and r. The power is
-    negative where creep gives back; over a closed cycle it is what the thread dissipates.
-
-    Args:
-        force: F above the pretension [N]
-        extension: x [m]
-        stiffness: b [N/m]
-        creep, relaxation: n and r [1/s]
-
-    Returns:
-        energy [J], power [W]; 0 without stiffness, as the force is
-
-    >>> thread_energy(2.0, 0.5, 4.0, 3.0, 3.0)  # n = r: a spring with F = b x takes nothing
-    (0.5, 0.0)
-    """
-    if stiffness <= 0.0:
-        return 0.0, 0.0
-    elastic = force / stiffness
-    return 0.5 * force * elastic, force * (relaxation * elastic - creep * extension)
-
-
 def constant_rate_force(time: float, rate: float, stiffness: float, creep: float, relaxation: float) -> float:
     """Force of a thread stretched from rest at a constant rate, `x = v t`, by the corrected (3.28).
 

@@ -248,6 +248,12 @@ class Trace(Signals):
             ) from None
 
     @cached_property
+    def wires(self) -> dict[str, str]:
+        """The output that each wired input took its values from; traces of older versions do not say."""
+        found = json.loads(self.attributes.get("wires", "{}"))
+        return {str(sink): str(source) for sink, source in found.items()}
+
+    @cached_property
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
         with self._opened() as file:

@@ -1,9 +1,10 @@
 """Signals of a run, however they are kept; kept in memory."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,11 @@ class Signals(ABC):
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
 
     @property
+    def wires(self) -> Mapping[str, str]:
+        """The output that each wired input took its values from; empty where the trace does not say."""
+        return {}
+
+    @property
     def shared(self) -> dict[Any, Any]:
         """What the claims on a run have in common, where it is kept: of a file it may be too large."""
         return {}
@@ -125,7 +131,7 @@ class Recording(Signals):
     """A run that is kept in memory.
 
     It takes blocks as a `TraceWriter` does, and keeps their arrays. `parameter` gives a parameter of an
-    instance as it was set, or None.
+    instance as it was set, or None; `wires` the source of each wired input.
     """
 
     def __init__(
@@ -133,10 +139,12 @@ class Recording(Signals):
         name: str,
         channels: Sequence[Channel],
         parameter: Callable[[str, str], float | int | bool | None],
+        wires: Mapping[str, str] = MappingProxyType({}),
     ):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
+        self._wires = wires
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
 
@@ -149,6 +157,11 @@ class Recording(Signals):
         self._shared.clear()
         for kept in ("_joined", "time", "shaft_angle"):
             self.__dict__.pop(kept, None)
+
+    @property
+    def wires(self) -> Mapping[str, str]:
+        """The output that each wired input took its values from."""
+        return self._wires
 
     @property
     def shared(self) -> dict[Any, Any]:

@@ -1,10 +1,12 @@
-"""Claims on the drive: motor power, speed fluctuation; the balance of energy is tested with a driven loom."""
+"""Claims on the drive: motor power, speed fluctuation, energy; `test_driven_loom` has more of the last."""
 
 import numpy as np
 import pytest
 
 import loomfmu
+from loomfmu import judge
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.traces import Signals
 
 SCENE = """
 revolutions = 3
@@ -60,3 +62,105 @@ def test_a_scene_without_a_motor_has_no_power_to_judge():
     text = '[loom]\nmachine = "WL680-3600"\n[[claims]]\nkind = "motor_power"\nat_most = 1.0\n'
     with pytest.raises(loomfmu.LoomfmuError, match="shaft has no output 'motor_power'"):
         loomfmu.evaluate(scenes.parse(text))
+
+
+ENERGY = """
+revolutions = 1
+steps_per_revolution = {steps}
+coupling = "iterated"
+[loom]
+machine = "WL680-3600"
+weave = "10/01"
+reed = true
+{fittings}
+[shaft]
+component = "DrivenShaft"
+{shaft}
+[[claims]]
+kind = "energy_balance"
+"""
+
+
+def energy(steps=360, fittings="", shaft=""):
+    return loomfmu.evaluate(
+        scenes.parse(ENERGY.format(steps=steps, fittings=fittings, shaft=shaft)), flavour="live"
+    )
+
+
+class Altered(Signals):
+    """A run in which one signal is another multiple: as a mechanism with a wrong torque would show it."""
+
+    name = "altered"
+
+    def __init__(self, trace, signal, factor):
+        self._trace, self._signal, self._factor = trace, signal, factor
+
+    def __getitem__(self, signal):
+        return self._trace[signal] * (self._factor if signal == self._signal else 1.0)
+
+    def __contains__(self, signal):
+        return signal in self._trace
+
+    def __iter__(self):
+        return iter(self._trace)
+
+    time = property(lambda self: self._trace.time)
+    shaft_angle = property(lambda self: self._trace.shaft_angle)
+    wires = property(lambda self: self._trace.wires)
+
+    def unit(self, signal):
+        return self._trace.unit(signal)
+
+    def display(self, signal):
+        return self._trace.display(signal)
+
+    def rate(self, signal):
+        return self._trace.rate(signal)
+
+    def parameter(self, signal):
+        return self._trace.parameter(signal)
+
+
+# the larger the steps, the less of the work of a torque its samples show
+@pytest.mark.parametrize(
+    ("fittings", "steps", "share"),
+    [("", 90, 0.05), ("", 360, 1e-3), ("", 1440, 2e-4), ("dampers = true\nwarps = true", 360, 1e-3)],
+)
+def test_a_torque_that_does_not_do_the_work_that_is_stated_fails(fittings, steps, share):
+    trace = energy(steps, fittings).trace
+    assert judge(trace, kind="energy_balance")
+    torques = [signal for signal in trace if signal.endswith(".shaft_torque")]
+    assert len(torques) == 5
+    for signal in torques:
+        for factor in (1.0 + share, 1.0 - share, -1.0, 0.0):
+            verdict = judge(Altered(trace, signal, factor), kind="energy_balance")
+            assert not verdict, (signal, factor)
+            assert verdict.signal == signal
+            assert f"J off {signal.replace('torque', 'work')}; the steps explain" in verdict.note
+    # work and torque wrong alike: the shaft has not exchanged that
+    assert not judge(Altered(trace, "weft.shaft_work", 1.001), kind="energy_balance")
+
+
+@pytest.mark.parametrize("shaft", ['[wires]\n"shaft.work_1" = false\n', "use_work_1 = false"])
+def test_a_load_whose_work_does_not_count_is_integrated_from_its_torque(shaft):
+    found = energy(shaft=shaft)
+    (claim,) = found.claims
+    assert claim.holds
+    assert claim.worst < 1e-10  # what two ends of the loop differ by
+    assert claim.note == "work by the torque alone, of second order in the step: weft.shaft_torque"
+    assert found.trace["shaft.other_work"][-1] != 0.0
+
+
+def test_a_torque_that_is_passed_on_is_integrated_from_it():
+    found = energy(fittings="dampers = true", shaft='[wires]\n"heald_2.load_work" = false\n')
+    (claim,) = found.claims
+    assert claim.holds
+    assert claim.note == "work by the torque alone, of second order in the step: heald_2.passed_torque"
+
+
+def test_a_trace_that_does_not_have_its_wires_is_judged_as_one_with_all():
+    trace = energy().trace
+    whole = judge(trace, kind="energy_balance")
+    assert trace.wires["shaft.work_1"] == "weft.shaft_work"
+    trace._wires = {}
+    assert judge(trace, kind="energy_balance") == whole

@@ -1,5 +1,6 @@
 """What instances of a standard loom share is set once, and the warp hangs on the carrier."""
 
+from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.values import Values
 
@@ -54,8 +55,8 @@ def test_the_warp_and_the_healds_hang_on_the_carrier_and_no_wire_closes_a_loop()
     assert {".".join(w.source) for w in without.wires if w.sink == ("warp_1", "lift")} == {"heald_1.lift"}
 
 
-def load_of(text: str) -> list[str]:
-    return [".".join(wire.source) for wire in scenes.parse(text).wires if wire.sink == ("heald_1", "load")]
+def load_of(text: str, name: str = "load") -> list[str]:
+    return [".".join(wire.source) for wire in scenes.parse(text).wires if wire.sink == ("heald_1", name)]
 
 
 def test_carrier_or_warp_load_a_frame_whose_torque_a_shaft_feels() -> None:
@@ -65,6 +66,39 @@ def test_carrier_or_warp_load_a_frame_whose_torque_a_shaft_feels() -> None:
     assert load_of(driven + '[wires]\n"heald_1.load" = false\n') == []
     # where nothing takes the torque, the wire would only close a loop
     assert load_of('[loom]\nweave = "10"\nwarps = true\ndampers = true\n') == []
+
+
+def test_the_work_on_a_load_comes_from_where_the_load_comes_from() -> None:
+    driven = '[shaft]\ncomponent = "DrivenShaft"\n[loom]\nweave = "10"\nwarps = true\n'
+    dampers = driven + "dampers = true\n"
+    assert load_of(dampers, "load_work") == ["damper_1.frame_work"]
+    assert scenes.parse(dampers).instances["heald_1"].values["use_load_work"]
+    assert load_of(driven, "load_work") == ["warp_1.frame_work"]
+    by_hand = dampers + '[wires]\n"heald_1.load" = "warp_1.frame_load"\n'
+    assert load_of(by_hand, "load_work") == ["warp_1.frame_work"]
+    # cut with the load; where it is cut alone, or the load is another model's, the torque is passed on
+    assert load_of(dampers + '[wires]\n"heald_1.load" = false\n', "load_work") == []
+    alone = dampers + '[wires]\n"heald_1.load_work" = false\n'
+    assert "use_load_work" not in scenes.parse(alone).instances["heald_1"].values
+    other = dampers + '[wires]\n"heald_1.load" = "warp_2.frame_load"\n[warp_2]\n'
+    assert load_of(other, "load_work") == []
+    # at a constant speed nothing takes the work
+    constant = LOOM + '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
+    assert load_of(constant, "load_work") == []
+
+
+def test_a_claim_on_a_torque_that_leaves_the_load_out_is_noted() -> None:
+    claim = '[[claims]]\nkind = "below"\nsignal = "heald_1.shaft_torque"\nbound = "1000 N.m"\n'
+    (note,) = checked_claims(scenes.parse(LOOM + claim)).notes
+    assert "leaves out damper_1.transmitted_force, because heald_1.load is not wired" in note
+    wired = '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
+    assert checked_claims(scenes.parse(LOOM + wired + claim)).notes == ()
+    assert checked_claims(scenes.parse('[shaft]\ncomponent = "DrivenShaft"\n' + LOOM + claim)).notes == ()
+    energy = claim.replace("1000 N.m", "1000 J")
+    for other in ("heald_1.shaft_work", "dobby.kinetic_energy"):
+        scene = scenes.parse(LOOM + energy.replace("heald_1.shaft_torque", other))
+        assert checked_claims(scene).notes == ()
+    assert checked_claims(scenes.parse('[loom]\nweave = "10"\n' + claim)).notes == ()
 
 
 def test_a_scene_may_hang_the_warp_on_the_frame() -> None:

@@ -41,6 +41,11 @@ class Plan:
         """What is kept."""
         return self.pruned.signals
 
+    @property
+    def wires(self) -> dict[str, str]:
+        """The output that each wired input takes its values from."""
+        return {".".join(each.sink): ".".join(each.source) for each in self.pruned.scene.wires}
+
 
 class Stepping:
     """Runs a scene with only what some signals need, as often as wanted.
@@ -76,7 +81,7 @@ class Stepping:
         """Run a scene, which differs in values alone, and keep the signals in memory."""
         plan = self.plan(scene, grid)
         with self.stepped(plan) as master:
-            recording = Recording(scene.name, self.channels, plan.effective.value)
+            recording = Recording(scene.name, self.channels, plan.effective.value, plan.wires)
             try:
                 record(master, recording, lambda _step: None, grid.steps + 1)
             except Interrupted:

@@ -11,6 +11,7 @@ from ..claims.claims import angles_in, doubts, read
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
+from ..scenes.standard_loom import left_out
 
 SHAFT_ANGLE = "shaft.angle"
 MOST = 5  # names that a warning lists
@@ -51,6 +52,7 @@ def checked_claims(scene: Scene) -> Scene:
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in signals_of(scene, claim):
             output_port(scene, signal, where)
+            notes += _left_out(scene, signal, where)
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
@@ -65,6 +67,17 @@ def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
         claim.check(partial(_parameter, scene))
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
             _check_parameter(scene, claim.bound, claim.signal)
+
+
+def _left_out(scene: Scene, signal: str, where: str) -> Iterator[str]:
+    """A note on what a judged signal leaves out, because a wire that would close a loop is not made."""
+    components = {name: each.fmu.component for name, each in scene.instances.items() if each.fmu.component}
+    wired = {".".join(wire.sink) for wire in scene.wires}
+    for sink, source in left_out(components, wired, signal).items():
+        yield (
+            f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
+            f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
+        )
 
 
 def _parameter(scene: Scene, name: str) -> float:

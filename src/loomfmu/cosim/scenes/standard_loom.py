@@ -9,7 +9,7 @@ from ...components import COMPONENTS
 from ...components.shaft_driven import ShaftDriven
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, shown, suggestion
-from ...variables import Component, Terminal, arrays_of, variables_of
+from ...variables import Component, Terminal, Variable, arrays_of, variables_of
 from . import weave as weaves
 
 COMPONENT_OF = {
@@ -156,15 +156,66 @@ def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) 
 
     They close a loop: each is made only where an output of `taken`, the sources of all wires, depends on it.
     """
-    wires: dict[str, str] = {}
-    for name, component in components.items():
-        number = name.removeprefix(stem(name))
-        for v in variables_of(component):
-            if v.source_for and f"{name}.{v.source_for}" in taken:
-                sources = (v.source or "").replace("_#", number).split("|")
-                there = [each for each in sources if each.partition(".")[0] in components]
-                wires |= {f"{name}.{v.name}": each for each in there[:1]}
-    return wires
+    found: dict[str, str] = {}
+    for name, v in _caused(components):
+        if f"{name}.{v.source_for}" in taken:
+            usual = _usual_sources(name, v)
+            there = [each for each in usual if each.partition(".")[0] in components]
+            found |= {f"{name}.{v.name}": each for each in there[:1]}
+    return found
+
+
+def fed_along(components: Mapping[str, type[Component]], sources: Mapping[str, Any]) -> dict[str, str]:
+    """Wires to inputs that go with another input, from the instance that this one is wired to.
+
+    Such as the work done on what loads a frame. `sources` are the sources of all wired inputs. Each is made
+    only where it reaches an output that is taken.
+    """
+    found: dict[str, str] = {}
+    for name, v in _caused(components):
+        owner = str(sources.get(f"{name}.{v.source_for}", "")).partition(".")[0]
+        reached = [
+            f"{name}.{each.name}"
+            for each in variables_of(components[name])
+            if each.causality == "output" and (each.depends is None or v.name in each.depends)
+        ]
+        if owner in components and not set(reached).isdisjoint(map(str, sources.values())):
+            there = [each for each in _usual_sources(name, v) if each.partition(".")[0] == owner]
+            found |= {f"{name}.{v.name}": each for each in there[:1]}
+    return found
+
+
+def left_out(
+    components: Mapping[str, type[Component]], wired: Collection[str], signal: str
+) -> dict[str, str]:
+    """Inputs that an output depends on, but that are not wired in a scene without `fed_back`, and from where
+    they could be."""
+    owner, _, output = signal.partition(".")
+    known = {v.name: v for v in variables_of(components[owner])} if owner in components else {}
+    depends = known[output].depends if output in known else ()
+    found: dict[str, str] = {}
+    for name, v in _caused(components):
+        sink, of_output = f"{name}.{v.name}", known.get(v.source_for or "")
+        if name == owner and sink not in wired and of_output and of_output.causality == "output":
+            there = [each for each in _usual_sources(name, v) if each.partition(".")[0] in components]
+            if there and (depends is None or v.name in depends):
+                found[sink] = there[0]
+    return found
+
+
+def _caused(components: Mapping[str, type[Component]]) -> list[tuple[str, Variable]]:
+    """The inputs that are wired only for the sake of something else, and their instances."""
+    return [
+        (name, v)
+        for name, component in components.items()
+        for v in variables_of(component)
+        if v.causality == "input" and v.source_for
+    ]
+
+
+def _usual_sources(name: str, variable: Variable) -> list[str]:
+    """The outputs that an input of an instance is usually wired to, the first one that there is."""
+    return (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
 
 
 def gathered(

@@ -28,7 +28,9 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
         sources |= standard_loom.gathered(name, components, sources | tables)
     taken = {str(each) for each in (*sources.values(), *dotted(spelt_out).values())}
     sources |= standard_loom.fed_back(components, taken)
-    for sink, source in dotted(spelt_out).items():
+    spelt = dotted(spelt_out)
+    sources |= standard_loom.fed_along(components, sources | spelt)
+    for sink, source in spelt.items():
         if source is False:
             if sources.pop(sink, None) is None:
                 raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")

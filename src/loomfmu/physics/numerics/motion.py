@@ -179,6 +179,19 @@ def moved_on(
     )
 
 
+def joined_area(
+    duration: float, start: float, start_rate: float, start_second: float, end: float, end_rate: float,
+    end_second: float,
+) -> float:  # fmt: skip
+    """Integral of the quintic that joins values, rates and second rates: `h^6 / 100,800` of the sixth off.
+
+    >>> joined_area(2.0, 0.0, 0.0, 0.0, 32.0, 80.0, 160.0)  # t^5
+    10.666666666666666
+    """
+    rates = 0.1 * (start_rate - end_rate) + duration * (start_second + end_second) / 120.0
+    return duration * (0.5 * (start + end) + duration * rates)
+
+
 def turns_of_cubic(a1: float, a2: float, a3: float) -> tuple[float, float]:
     """Where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` turns; -1 where it does not.
 
