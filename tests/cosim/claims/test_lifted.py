@@ -47,6 +47,12 @@ def test_both_are_judged_and_the_carrier_decides(tmp_path) -> None:
     assert room.worst < frames.worst
     assert not dwell
     assert frames_dwell
+    # the carrier hangs 4.7 mm off: it does not dwell, rather than have no dwell
+    assert dwell.worst == 0.0
+    lift = result.trace["damper_1.carrier_lift"]
+    off = 1e3 * min(lift.min(), 0.098 - lift.max())
+    assert dwell.note.startswith(f"springs and warp keep the carrier {off:.3g} mm or more from the ends")
+    assert 'lifted_by = "frame"' in dwell.note
 
 
 @pytest.mark.usefixtures("fmu_cache")

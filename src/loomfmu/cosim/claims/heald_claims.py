@@ -19,6 +19,7 @@ from .curves import Floats, Motion, Stretch, first_lowest, motion_of
 from .lifted import lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
+NEVER = "the frame never gets there in this run"
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
 
 
@@ -59,9 +60,22 @@ class _Span(_Lifted, kind=False):
         signals = lifts(self.heald, self.lifted_by, trace)
         found = [self._shortest(trace, motion_of(trace, signal)) for signal in signals]
         worst, time, *notes = found[0]
+        if notes[0] == NEVER and found[1:] and math.isfinite(found[1][0]):
+            worst, time = 0.0, found[1][1]
+            notes[0] = self._held_off(trace, signals[0])
         notes += [f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:]]
         signal = signals[0] if found[1:] else f"{self.heald}.{of}"
         return self.verdict(trace, text, signal, self.at_least, worst, time, *notes)
+
+    def _held_off(self, trace: Signals, carrier: str) -> str:
+        """A note on a carrier that is never where its frame is for a while."""
+        lift, stroke = np.asarray(trace[carrier]), trace.parameter(f"{self.heald}.stroke")
+        nearest = float(np.min(np.minimum(np.abs(lift), np.abs(stroke - lift))))
+        return (
+            f"springs and warp keep the carrier {1e3 * nearest:.3g} mm or more from the ends of its frame's"
+            " stroke; clear_shed judges the shed that it leaves,"
+            ' lifted_by = "frame" the dwell of the drive'
+        )
 
     def _shortest(self, trace: Signals, lift: Motion) -> tuple[float, float, str, str]:
         """The least turn of the shaft during which a motion stays there, its time, and notes."""
@@ -183,7 +197,7 @@ def _cut_off(
     run goes on as the one at its start does, so both make up one span, less whole revolutions of holding.
     """
     if not spans:
-        return [], "the frame never gets there in this run"
+        return [], NEVER
     if len(spans) == 1 and (spans[0].start, spans[0].end) == (time[0], time[-1]):
         if turned[0] < limit:
             return [], "the frame stays there all the time, but the run is too short to tell"
