@@ -10,6 +10,7 @@ from loomfmu.components import BeltMonitor, DobbyDrive, HealdDamper, HealdFrame,
 from loomfmu.components.belt_wrap import BeltWrap
 from loomfmu.components.detaching_roller import DetachingRoller
 from loomfmu.components.driven_shaft import DrivenShaft
+from loomfmu.components.heald_play import HealdPlay
 from loomfmu.components.pattern_lock import PatternLock
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
@@ -88,6 +89,25 @@ def braked(turns: int) -> tuple[list[float], list[float]]:
     return list(time), list(velocity)
 
 
+def struck(turns: int) -> tuple[list[float], list[float]]:
+    """Revolutions, and the displacement of a heald on a frame whose threads pull it from bar to bar."""
+    dobby, frame = DobbyDrive(), HealdFrame(inputs_at_step_end=True)
+    warp = WarpTension(inputs_at_step_end=True)
+    heald = HealdPlay(inputs_at_step_end=True)
+    samples = 720 * turns
+    h = turns * 2 * pi / dobby.speed / samples
+    rows = []
+    for step in range(samples + 1):
+        for before, component in ((None, dobby), (dobby, frame), (frame, warp), (frame, heald)):
+            for name in WIRES:
+                if hasattr(before, name) and hasattr(component, name):
+                    setattr(component, name, getattr(before, name))
+            heald.warp_load = warp.frame_load
+            assert (component.step((step - 1) * h, h) if step else component.initialize(0.0)) == 0
+        rows.append((turns * step / samples, heald.displacement))
+    return [row[0] for row in rows], [row[1] for row in rows]
+
+
 def main() -> None:
     """Draw all of them."""
     time, velocity = trace([MainShaft(ramp_duration=0.2, ripple_amplitude=0.06)], 2, "velocity")
@@ -141,6 +161,10 @@ def main() -> None:
     warp = WarpTension(inputs_at_step_end=True)
     time, tension = trace([DobbyDrive(), HealdFrame(inputs_at_step_end=True), warp], 2, "tension")
     draw("warp_tension", (time, tension, BLUE), levels=(0.0, warp.pretension))
+
+    time, displacement = struck(2)
+    bars = (-0.5 * HealdPlay().play, 0.5 * HealdPlay().play)
+    draw("heald_play", (time, displacement, BLUE), levels=bars, level_colour=RED)
 
     time, turn, velocity = trace([PatternLock()], 2, "turn", "turn_velocity")
     largest = max(velocity) / max(turn)

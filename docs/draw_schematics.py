@@ -315,6 +315,30 @@ def warp_tension() -> Drawing:
     return d
 
 
+def heald_play() -> Drawing:
+    """The bars in the loops of a heald, with the play between them."""
+    d = Drawing(560, 300, "Heald play: the loops of a heald on the bars of its carrier")
+    for y, label in ((40.0, "upper bar"), (240.0, "lower bar")):
+        d.text((220, y + 15), label, anchor="end")
+    for y in (22.0, 222.0):
+        d.box(235, y, 30, 56, fill="none", colour=BLUE)
+    d.box(242, 40, 16, 20)
+    d.box(242, 240, 16, 20)
+    d.path((250, 78), (250, 222), colour=BLUE, width=3)
+    d.circle((250, 150), 7, BLUE, fill="#fff")
+    d.path((110, 170), (243, 152), colour=GREY)
+    d.path((257, 152), (390, 170), colour=GREY)
+    d.text((160, 150), "thread, pulls with L / N")
+    d.arrow((285, 60), (285, 78), GREY, both=True)
+    d.arrow((285, 22), (285, 40), GREY, both=True)
+    d.text((295, 55), "play: the sum of both", anchor="start")
+    d.arrow((330, 250), (330, 200), RED)
+    d.text((340, 228), "w: displacement in the play", RED, "start")
+    d.arrow((30, 280), (30, 180), BLUE)
+    d.text((40, 190), "lift y", BLUE, "start")
+    return d
+
+
 def pattern_lock() -> Drawing:
     """The pawl between two discs, thrown over by its spring."""
     d = Drawing(560, 280, "Pattern lock: the pawl, its spring, the slots of the two discs")
@@ -422,7 +446,7 @@ def main() -> None:
     """Draw all of them."""
     for draw in (
         main_shaft, driven_shaft, weft_insertion, belt_monitor, dobby_drive, heald_frame, heald_damper,
-        warp_tension, pattern_lock, reed_beat_up, belt_wrap, detaching_roller,
+        warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap, detaching_roller,
     ):  # fmt: skip
         draw().write(draw.__name__)
 
