@@ -8,7 +8,7 @@ from ..components.belt_monitor import BeltMonitor
 from ..components.weft_insertion import WeftInsertion
 from ..machines import parameters
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, dwell_angle
-from . import belt
+from . import belt, driven
 from .chain import RPM, HealdLine
 from .damper_reference import reference, simulated
 from .sections import Chapter, Row, Section, number, small
@@ -30,11 +30,11 @@ CASES: tuple[tuple[str, int, float, dict[str, float]], ...] = (
 
 
 def chapter() -> Chapter:
-    """Both tables."""
+    """All tables."""
     return Chapter(
         "Numerical accuracy",
         "",
-        (damper(), belt_and_dwell()),
+        (damper(), belt_and_dwell(), driven.section()),
     )
 
 
