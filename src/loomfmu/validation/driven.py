@@ -98,7 +98,7 @@ class Monolith:
     """
 
     def __init__(self, scene: Scene):
-        self.speed = float(scene.instances["shaft"].values["speed"])
+        self.speed = scene.speed
         self.load = float(scene.instances["shaft"].values.get("torque_32", 0.0))
         self.parts: dict[str, Any] = {}
         self.carriers: dict[str, Carrier] = {}
@@ -199,9 +199,9 @@ def compared(fittings: str, shaft: str) -> list[Comparison]:
         velocity, angle = (each[:: STEPS[-1] // steps] for each in exact)
         errors = (np.abs(run.trace["shaft.velocity"] - velocity), np.abs(run.trace["shaft.angle"] - angle))
         power = 40.0 * (monolith.speed - velocity) * velocity
-        largest = (float(error.max()) for error in errors)
+        off, turned_off = (float(error.max()) for error in errors)
         peak = float(run.trace["shaft.motor_power"].max())
-        found.append(Comparison(*largest, run.claims[0].worst, peak, float(power.max())))
+        found.append(Comparison(off, turned_off, run.claims[0].worst, peak, float(power.max())))
     return found[::-1]
 
 
