@@ -5,10 +5,25 @@ import pytest
 from numpy.polynomial import polynomial
 
 from loomfmu.cosim.claims import bernstein
+from loomfmu.cosim.claims.compiled import ROOM
 from loomfmu.cosim.claims.curves import Motion
 from loomfmu.traces import Channel, Recording
 
 RANDOM = np.random.default_rng(5)
+
+
+def motion_of_noise(size: int, rates: int) -> Motion:
+    """A motion whose values and rates have nothing to do with each other; the same for a size."""
+    random = np.random.default_rng(size)
+    samples = random.normal(size=(size, 3))
+    channels = [
+        Channel("a", name, "m", "m", "", column, rate=rate)
+        for column, (name, rate) in enumerate((("x", "v"), ("v", "w"), ("w", None)))
+    ]
+    recording = Recording("samples", channels, lambda _instance, _name: None)
+    time = np.cumsum(random.uniform(0.01, 1.0, size=size))
+    recording.append(time, np.zeros(size), samples, np.zeros((size, 0), np.int32))
+    return Motion(recording, "a.x", rates)
 
 
 def hermite(ends: list[tuple[float, float]]) -> np.ndarray:
@@ -59,31 +74,40 @@ def test_a_zero_that_is_touched_is_not_passed() -> None:
     assert bernstein.sign_changes(touching) == []  # (1 - 2 u)^2
 
 
-def test_c_and_python_find_the_same_bits() -> None:
-    compiled = bernstein._compiled()
-    if compiled is None:
-        pytest.skip("the compiled library is not available")
-    for count in (2, 4, 6):
-        for _ in range(300):
-            points = RANDOM.normal(size=count) * 10.0 ** RANDOM.uniform(-9, 9)
-            points[: RANDOM.integers(1, count)] *= -1.0
-            points = np.abs(points) * np.sign(np.sort(RANDOM.normal(size=count)))
-            if len({value < 0.0 for value in points.tolist()}) == 2:
-                assert compiled(points.tolist()) == bernstein.python_sign_change(points.tolist())
+@pytest.mark.parametrize("rates", [0, 1, 2])
+def test_c_and_python_find_the_same_bits(rates: int) -> None:
+    for size in (2, 3, 50):
+        motion, reference = (motion_of_noise(size, rates) for _ in range(2))
+        reference.__dict__["_compiled"] = None
+        if motion._compiled is None:
+            pytest.skip("the compiled library is not available")
+        assert motion.finite and reference.finite
+        # samples as levels, where a sign is that of rounding; between them pieces with several changes
+        levels = [*motion.values[0].tolist(), *RANDOM.normal(size=300).tolist()]
+        found = [motion.crossings(level) for level in levels]
+        assert found == [reference.crossings(level) for level in levels]
+        assert size < 50 or max(map(len, found)) > ROOM
+        some = range(1, size - 1)
+        assert motion.crossings(0.1, some) == reference.crossings(0.1, some)
+        times = [-1.0, *motion.time.tolist(), *RANDOM.uniform(0.0, 60.0, size=200).tolist()]
+        assert [motion.at(time) for time in times] == [reference.at(time) for time in times]
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_where_a_value_is_not_finite_nothing_is_crossed(compiled: bool) -> None:
+    motion = motion_of_noise(50, 2)
+    if not compiled:
+        motion.__dict__["_compiled"] = None
+    whole = motion.crossings(0.0)
+    motion.values[1][20] = np.nan
+    assert not motion.finite
+    outside = (motion.time[19], motion.time[21])
+    assert motion.crossings(0.0) == [time for time in whole if not outside[0] < time <= outside[1]]
 
 
 @pytest.mark.parametrize("rates", [0, 1, 2])
 def test_one_value_is_that_of_many_to_the_last_bit(rates: int) -> None:
-    time = np.cumsum(RANDOM.uniform(0.01, 1.0, size=50))
-    samples = {name: RANDOM.normal(size=50) for name in ("a.x", "a.v", "a.w")}
-    channels = [
-        Channel("a", name, "m", "m", "", column, rate=rate)
-        for column, (name, rate) in enumerate((("x", "v"), ("v", "w"), ("w", None)))
-    ]
-    recording = Recording("samples", channels, lambda _instance, _name: None)
-    recording.append(
-        time, np.zeros(50), np.stack(list(samples.values()), axis=1), np.zeros((50, 0), np.int32)
-    )
-    motion = Motion(recording, "a.x", rates)
+    motion = motion_of_noise(50, rates)
+    time = motion.time
     times = np.concatenate([time, RANDOM.uniform(time[0], time[-1], size=200)])
     assert [motion.at(each) for each in times.tolist()] == motion.along(times).tolist()

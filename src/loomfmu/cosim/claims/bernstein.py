@@ -5,21 +5,14 @@ Cut in half, the points come closer to it by a factor of four: so its extremes a
 degree, for many pieces at once, and none is missed.
 """
 
-import ctypes
-from collections.abc import Callable
-from functools import cache
 from itertools import pairwise
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...fmi.native.libraries import library_of
-
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", float, Floats)
-SOURCE = Path(__file__).with_name("native") / "bernstein.c"
 
 HALVINGS = 60  # more than doubles can tell apart
 ROUNDING = 4.0 * float(np.finfo(float).eps)
@@ -110,7 +103,7 @@ def sign_changes(points: list[float], begin: float = 0.0, width: float = 1.0) ->
     if changes == 0:
         return []
     if changes == 1:
-        return [begin + width * (_compiled() or python_sign_change)(points)]
+        return [begin + width * _sign_change(points)]
     if width < 2.0**-HALVINGS:
         return [begin] if (points[0] < 0.0) != (points[-1] < 0.0) else []
     left, right = (half[:, 0].tolist() for half in split(np.array(points)[:, np.newaxis], 0.5))
@@ -118,7 +111,7 @@ def sign_changes(points: list[float], begin: float = 0.0, width: float = 1.0) ->
     return sign_changes(left, begin, half) + sign_changes(right, begin + half, half)
 
 
-def python_sign_change(points: list[float]) -> float:
+def _sign_change(points: list[float]) -> float:
     """Where a piece that changes its sign once does so, halved until nothing is left between."""
     low, high = 0.0, 1.0
     begins_negative = points[0] < 0.0
@@ -128,15 +121,3 @@ def python_sign_change(points: list[float]) -> float:
         else:
             high = middle
     return high
-
-
-@cache
-def _compiled() -> Callable[[list[float]], float] | None:
-    """The same in C, if it is available: fifty halvings of each piece are most of what judging would cost."""
-    library = library_of(SOURCE)
-    if library is None:
-        return None
-    function = ctypes.PyDLL(str(library)).sign_change
-    function.restype = ctypes.c_double
-    arrays = {count: ctypes.c_double * count for count in (2, 4, 6)}
-    return lambda points: float(function(arrays[len(points)](*points), ctypes.c_size_t(len(points))))

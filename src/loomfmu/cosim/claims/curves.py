@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...traces import Signals
 from . import bernstein
+from .compiled import Compiled
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -61,14 +62,24 @@ class Motion:
 
     def __init__(self, trace: Signals, signal: str, rates: int = 2):
         self.signal = signal
-        self.time = trace.time
+        self.time: Floats = np.asarray(trace.time, dtype=float)
         self.values: list[Floats] = []
         name: str | None = signal
         while name is not None and len(self.values) <= rates:
             self.values.append(np.asarray(trace[name], dtype=float))
             name = trace.rate(name)
 
-        self.finite = all(bool(np.isfinite(values).all()) for values in self.values)
+    @cached_property
+    def _compiled(self) -> Compiled | None:
+        """The same in C, where that is available and there is a curve."""
+        return Compiled.of(self.time, self.values) if len(self.time) > 1 else None
+
+    @cached_property
+    def finite(self) -> bool:
+        """Whether all values and rates are finite."""
+        if self._compiled:
+            return self._compiled.finite()
+        return all(bool(np.isfinite(values).all()) for values in self.values)
 
     @cached_property
     def longest(self) -> float:
@@ -80,8 +91,8 @@ class Motion:
         """What a verdict says if the values between the samples are not known."""
         if not self.finite:
             return f"{self.signal} or its rate is not finite everywhere"
-        steps = np.diff(self.values[0])
-        if len(self.values) > 1 or np.all(steps <= 0.0) or np.all(steps >= 0.0):
+        steps = np.diff(self.values[0]) if len(self.values) == 1 else np.empty(0)
+        if np.all(steps <= 0.0) or np.all(steps >= 0.0):
             return ""
         return f"{self.signal} is known only at the samples: its rate is not recorded"
 
@@ -161,13 +172,11 @@ class Motion:
         """Value at a time."""
         if len(self.time) == 1:
             return float(self.values[0][0])
+        if self._compiled:
+            return self._compiled.at(time)
         interval = min(max(int(self.time.searchsorted(time, "right")) - 1, 0), len(self.time) - 2)
         before, after = float(self.time[interval]), float(self.time[interval + 1])
         return bernstein.value_of_piece(self._piece(interval), (time - before) / (after - before))
-
-    def sign_changes(self, interval: int, level: float) -> list[float]:
-        """Shares of an interval at which the motion passes a level."""
-        return bernstein.sign_changes([point - level for point in self._piece(interval)])
 
     @cached_property
     def _reach(self) -> tuple[Floats, Floats]:
@@ -180,20 +189,18 @@ class Motion:
         lowest, highest = (np.concatenate(each) for each in zip(*parts, strict=True))
         return lowest, highest
 
-    def passages(self, level: float) -> list[tuple[float, bool]]:
-        """Times at which the motion passes a level, to rounding, and whether it rises there."""
-        found = []
-        lowest, highest = self._reach
-        for interval in np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0)).tolist():
-            rises = bool(self.values[0][interval] - level < 0.0)
-            for share in self.sign_changes(interval, level):
-                found.append((self.moment(interval, share), rises))
-                rises = not rises
-        return found
-
-    def crossings(self, level: float) -> list[float]:
-        """Times at which the motion passes a level."""
-        return [time for time, _rises in self.passages(level)]
+    def crossings(self, level: float, intervals: range | None = None) -> list[float]:
+        """Times at which the motion passes a level, to rounding, in the whole run or in some intervals."""
+        wanted = range(len(self.time) - 1) if intervals is None else intervals
+        if self._compiled:
+            return self._compiled.crossings(level, wanted.start, wanted.stop)
+        lowest, highest = (each[wanted.start : wanted.stop] for each in self._reach)
+        passed = np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0)) + wanted.start
+        return [
+            self.moment(interval, share)
+            for interval in passed.tolist()
+            for share in bernstein.sign_changes([point - level for point in self._piece(interval)])
+        ]
 
     def moment(self, interval: int, share: float) -> float:
         """The time at a share of an interval."""
@@ -206,7 +213,7 @@ class Motion:
         inside = bool(self.values[0][0] >= level) == (sign > 0.0)
         begin, whole = float(self.time[0]), False
         stretches = []
-        for time, _rises in self.passages(level):
+        for time in self.crossings(level):
             if inside:
                 stretches.append(Stretch(begin, time, whole))
             inside, begin, whole = not inside, time, True

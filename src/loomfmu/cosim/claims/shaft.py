@@ -46,15 +46,14 @@ def times_at(trace: Signals, wanted: float) -> list[float]:
     turned = (turning.values[0] - wanted) / TURN
     whole = np.floor(turned)
     times = []
-    for interval in np.flatnonzero(whole[1:] != whole[:-1]):
+    for interval in np.flatnonzero(whole[1:] != whole[:-1]).tolist():
         low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
         for turn in range(low + 1, high + 1):
             level = wanted + TURN * turn
-            ends = turning.values[0][interval : interval + 2].tolist()
-            before, after = (abs(end - level) for end in ends)
+            before, after = (abs(end - level) for end in turning.values[0][interval : interval + 2].tolist())
             # to rounding the level may be the sample itself
-            shares = turning.sign_changes(int(interval), level) or [float(after < before)]
-            times += [turning.moment(int(interval), share) for share in shares]
+            nearest = turning.moment(interval, float(after < before))
+            times += turning.crossings(level, range(interval, interval + 1)) or [nearest]
     for end in (0, -1):  # a run that begins or ends there, to rounding
         if abs(turned[end] - round(float(turned[end]))) < 1e-9:
             times.append(float(turning.time[end]))

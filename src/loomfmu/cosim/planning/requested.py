@@ -24,9 +24,9 @@ def output_port(scene: Scene, signal: str, where: str) -> Port:
         hint = suggestion(instance, scene.instances)
         raise LoomfmuError(f"{where}: there is no instance {instance!r}{hint}")
     ports = scene.instances[instance].fmu.ports
-    outputs = [port.name for port in ports.values() if port.causality == "output"]
-    outputs += [drive.variable for drive in scene.drives if drive.instance == instance]
-    if variable not in outputs:
+    driven = [drive.variable for drive in scene.drives if drive.instance == instance]
+    if variable not in ports or (ports[variable].causality != "output" and variable not in driven):
+        outputs = [*(port.name for port in ports.values() if port.causality == "output"), *driven]
         raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
     return ports[variable]
 
@@ -83,7 +83,8 @@ def _left_out(scene: Scene, signal: str, where: str) -> Iterator[str]:
 def _parameter(scene: Scene, name: str) -> float:
     """The value of a parameter, NaN where the scene does not know it."""
     instance, _, variable = name.partition(".")
-    return float(scene.instances[instance].effective().get(variable, math.nan))
+    value = scene.instances[instance].effect(variable)
+    return math.nan if value is None else float(value)
 
 
 def _unrecorded(scene: Scene) -> Iterator[str]:
@@ -99,8 +100,8 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     """A parameter that bounds a signal is one of the scene, in the signal's unit."""
     instance, _, variable = name.partition(".")
     ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
-    known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
-    if name not in known:
+    if variable not in ports or ports[variable].causality != "parameter":
+        known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
         raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
     value = scene.instances[instance].effect(variable)
     if value is None:
