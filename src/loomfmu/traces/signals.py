@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,19 @@ class Channel:
     def signal(self) -> str:
         """Its name, such as `belt.margin`."""
         return f"{self.instance}.{self.variable}"
+
+
+class Column(NamedTuple):
+    """Real numbers, one for each sample, and where they are in memory."""
+
+    values: Floats
+    place: int
+
+    @classmethod
+    def of(cls, values: NDArray[Any]) -> Self:
+        """Values as real numbers."""
+        reals = np.asarray(values, dtype=float)
+        return cls(reals, reals.ctypes.data)
 
 
 class Signals(ABC):
@@ -75,6 +88,10 @@ class Signals(ABC):
         """What the values that people read are multiplied by to give the recorded ones, and their unit."""
         display = self.display(signal)
         return unit(display).factor, self.unit(signal) if display == "1" else display
+
+    def columns(self, signals: Sequence[str]) -> list[Column]:
+        """The time of the samples, then the values of some signals."""
+        return [Column.of(self.time), *(Column.of(self[signal]) for signal in signals)]
 
     @property
     def turns(self) -> bool:
@@ -155,7 +172,7 @@ class Recording(Signals):
         """Keep a block: values along the rows, signals along the columns."""
         self._blocks.append((time, angle, reals, integers))
         self._shared.clear()
-        for kept in ("_joined", "time", "shaft_angle"):
+        for kept in ("_joined", "_places", "time", "shaft_angle"):
             self.__dict__.pop(kept, None)
 
     @property
@@ -173,6 +190,22 @@ class Recording(Signals):
         if len(self._blocks) == 1:
             return list(self._blocks[0])
         return [np.concatenate(parts) for parts in zip(*self._blocks, strict=True)]
+
+    @cached_property
+    def _places(self) -> tuple[int, int]:
+        """Where the times and the real values are in memory."""
+        return self._joined[0].ctypes.data, self._joined[2].ctypes.data
+
+    def columns(self, signals: Sequence[str]) -> list[Column]:
+        """The time of the samples, then the values of some signals."""
+        time, reals = self._places
+        step = self._joined[2].strides[1]
+        found = [Column(self.time, time)]
+        for signal in signals:
+            channel = self._channel(signal)
+            place = reals + channel.column * step
+            found.append(Column(self[signal], place) if channel.real else Column.of(self[signal]))
+        return found
 
     @cached_property
     def time(self) -> Floats:

@@ -1,58 +1,83 @@
 """A motion between its samples in C, to the same bits: most of what judging would cost in Python."""
 
 import ctypes
-from collections.abc import Sequence
-from functools import cache
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property
 from pathlib import Path
-from typing import Any, Self
+from struct import Struct
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...fmi.native.libraries import library_of
+from ...traces import Column
 
 SOURCE = Path(__file__).with_name("native") / "bernstein.c"
 ROOM = 16  # for the crossings of one level, at first
 Floats = NDArray[np.float64]
-_Four = ctypes.c_ssize_t * 4
+_Size, _Place, _Real = ctypes.c_ssize_t, ctypes.c_void_p, ctypes.c_double
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # results and arguments
+    "value_at": (_Real, [_Place, _Real]),
+    "reach": (None, [_Place, _Place, _Place]),
+    "crossings": (_Size, [_Place, _Place, _Place, _Real, _Place, _Size]),
+    "passes": (_Size, [_Place, _Real, _Real, _Place, _Size]),
+    "survey": (None, [_Place, _Place]),
+}
+_MOTION = [Struct(f"{2 + 2 * columns}n") for columns in range(5)]  # `struct motion` of bernstein.c
+_Facts, _Times = _Real * 5, _Real * ROOM
 
 
-class Compiled(ctypes.Structure):
-    """`struct motion` of bernstein.c: its addresses belong to the arrays that it was made of."""
+class Compiled:
+    """A motion of two samples or more, for as long as its arrays are there."""
 
-    _fields_ = (
-        ("samples", ctypes.c_ssize_t),
-        ("known", ctypes.c_ssize_t),
-        ("columns", _Four),
-        ("strides", _Four),
-    )
-
-    @classmethod
-    def of(cls, time: Floats, values: Sequence[Floats]) -> Self | None:
-        """The motion with these values and rates, two samples or more; None where no library is available."""
-        if _library() is None:
-            return None
-        arrays = (time, *values)
-        places = [array.ctypes.data for array in arrays]
-        return cls(len(time), len(values), _Four(*places), _Four(*[array.strides[0] for array in arrays]))
-
-    def finite(self) -> bool:
-        """Whether all values and rates are finite."""
-        return bool(_library().finite(self))
+    def __init__(self, library: Any, columns: Sequence[Column]):
+        samples = len(columns[0].values)
+        self._library, self._intervals = library, samples - 1
+        places = [each for column in columns for each in (column.place, column.values.strides[0])]
+        self._motion = _MOTION[len(columns)].pack(samples, len(columns) - 1, *places)
+        self._reach: tuple[int, int] | None = None
 
     def at(self, time: float) -> float:
         """Value at a time."""
-        return float(_library().value_at(self, time))
+        return float(self._library.value_at(self._motion, time))
 
-    def crossings(self, level: float, first: int, end: int) -> list[float]:
-        """Times in some intervals at which the motion passes a level."""
-        count = room = ROOM
-        while True:
-            times = (ctypes.c_double * room)()
-            count = _library().crossings(self, level, first, end, times, room)
-            if count <= room:
-                return times[:count]
-            room = count
+    def survey(self) -> list[float]:
+        """What `Survey` of curves.py has."""
+        facts = _Facts()
+        self._library.survey(self._motion, facts)
+        return facts[:]
+
+    @cached_property
+    def reach(self) -> tuple[Floats, Floats]:
+        """Lowest and highest of the points of each interval."""
+        lowest, highest = np.empty(self._intervals), np.empty(self._intervals)
+        self._reach = lowest.ctypes.data, highest.ctypes.data
+        self._library.reach(self._motion, *self._reach)
+        return lowest, highest
+
+    def crossings(self, level: float) -> list[float]:
+        """Times at which the motion passes a level."""
+        places = self._reach or (self.reach and self._reach)
+        return _all(self._library.crossings, self._motion, *places, level)
+
+    def passes(self, level: float, turn: float) -> list[float]:
+        """Times at which it passes a level or one that is whole turns from it."""
+        return _all(self._library.passes, self._motion, level, turn)
+
+
+def _all(function: Callable[..., int], *arguments: Any) -> list[float]:
+    """All times that a function finds."""
+    times, room = _Times(), ROOM
+    while (count := function(*arguments, times, room)) > room:
+        times, room = (_Real * count)(), count
+    return times[:count]
+
+
+def compiled(columns: Sequence[Column]) -> Compiled | None:
+    """The motion with these times, values and rates; None where there is no library, or no curve."""
+    library = _library() if len(columns[0].values) > 1 else None
+    return library and Compiled(library, columns)
 
 
 @cache
@@ -62,13 +87,7 @@ def _library() -> Any:
     if path is None:
         return None
     library = ctypes.PyDLL(str(path))
-    size, motion = ctypes.c_ssize_t, ctypes.POINTER(Compiled)
-    types: dict[str, tuple[Any, list[Any]]] = {
-        "finite": (ctypes.c_bool, [motion]),
-        "value_at": (ctypes.c_double, [motion, ctypes.c_double]),
-        "crossings": (size, [motion, ctypes.c_double, size, size, ctypes.c_void_p, size]),
-    }
-    for name, (result, arguments) in types.items():
+    for name, (result, arguments) in _FUNCTIONS.items():
         function = getattr(library, name)
         function.restype, function.argtypes = result, arguments
     return library

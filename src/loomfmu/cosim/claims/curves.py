@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...traces import Signals
 from . import bernstein
-from .compiled import Compiled
+from .compiled import compiled
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -48,6 +48,29 @@ class Extreme(NamedTuple):
         return COARSE_NOTE if self.coarse else ""
 
 
+class Survey(NamedTuple):
+    """What the samples of a motion show: whether all are `finite`, whether their values go one way alone.
+
+    `longest` is the longest step from one value to the next. Without finite samples only that has a meaning.
+    """
+
+    finite: float
+    steady: float
+    lowest: float
+    highest: float
+    longest: float
+
+    @property
+    def largest(self) -> float:
+        """The largest magnitude."""
+        return max(abs(self.lowest), abs(self.highest))
+
+    @property
+    def reversed(self) -> "Survey":
+        """That of the same values with the other sign."""
+        return self._replace(lowest=-self.highest, highest=-self.lowest)
+
+
 def motion_of(trace: Signals, signal: str, rates: int = 2) -> "Motion":
     """A signal between its samples, the same for several claims where the trace keeps it."""
     kept, key = trace.shared, (signal, rates)
@@ -62,37 +85,44 @@ class Motion:
 
     def __init__(self, trace: Signals, signal: str, rates: int = 2):
         self.signal = signal
-        self.time: Floats = np.asarray(trace.time, dtype=float)
-        self.values: list[Floats] = []
+        names: list[str] = []
         name: str | None = signal
-        while name is not None and len(self.values) <= rates:
-            self.values.append(np.asarray(trace[name], dtype=float))
+        while name is not None and len(names) <= rates:
+            names.append(name)
             name = trace.rate(name)
+        columns = trace.columns(names)
+        self.time, *self.values = (column.values for column in columns)
+        self._compiled = compiled(columns)
 
     @cached_property
-    def _compiled(self) -> Compiled | None:
-        """The same in C, where that is available and there is a curve."""
-        return Compiled.of(self.time, self.values) if len(self.time) > 1 else None
+    def survey(self) -> Survey:
+        """What the samples show."""
+        if self._compiled:
+            return Survey(*self._compiled.survey())
+        finite = all(bool(np.isfinite(values).all()) for values in self.values)
+        values = self.values[0]
+        with np.errstate(invalid="ignore"):
+            steps = np.diff(values)
+        steady = bool(np.all(steps <= 0.0) or np.all(steps >= 0.0))
+        longest = float(np.fmax.reduce(np.abs(steps), initial=0.0))
+        return Survey(finite, steady, float(np.min(values)), float(np.max(values)), longest)
 
-    @cached_property
+    @property
     def finite(self) -> bool:
         """Whether all values and rates are finite."""
-        if self._compiled:
-            return self._compiled.finite()
-        return all(bool(np.isfinite(values).all()) for values in self.values)
+        return bool(self.survey.finite)
 
-    @cached_property
+    @property
     def longest(self) -> float:
         """How far the samples are apart at most."""
-        return float(np.fmax.reduce(np.abs(np.diff(self.values[0])), initial=0.0))
+        return self.survey.longest
 
     @property
     def note(self) -> str:
         """What a verdict says if the values between the samples are not known."""
         if not self.finite:
             return f"{self.signal} or its rate is not finite everywhere"
-        steps = np.diff(self.values[0]) if len(self.values) == 1 else np.empty(0)
-        if np.all(steps <= 0.0) or np.all(steps >= 0.0):
+        if len(self.values) > 1 or self.survey.steady:
             return ""
         return f"{self.signal} is known only at the samples: its rate is not recorded"
 
@@ -139,7 +169,7 @@ class Motion:
 
     def doubt_at(self, time: float) -> float:
         """How far the motion may be off about a time, rounding included."""
-        rounding = ROUNDING * float(np.max(np.abs(self.values[0])))
+        rounding = ROUNDING * self.survey.largest
         if len(self.time) == 1:
             return rounding
         return rounding + float(self.doubt(self.interval(np.array([time])))[0])
@@ -159,6 +189,10 @@ class Motion:
         found = np.searchsorted(self.time, times, side="right") - 1
         return np.asarray(np.maximum(np.minimum(found, len(self.time) - 2), 0))
 
+    def _interval(self, time: float) -> int:
+        """The same of one time."""
+        return min(max(int(self.time.searchsorted(time, "right")) - 1, 0), len(self.time) - 2)
+
     def along(self, times: Floats) -> Floats:
         """Values at some times."""
         if len(self.time) == 1:
@@ -174,13 +208,15 @@ class Motion:
             return float(self.values[0][0])
         if self._compiled:
             return self._compiled.at(time)
-        interval = min(max(int(self.time.searchsorted(time, "right")) - 1, 0), len(self.time) - 2)
+        interval = self._interval(time)
         before, after = float(self.time[interval]), float(self.time[interval + 1])
         return bernstein.value_of_piece(self._piece(interval), (time - before) / (after - before))
 
     @cached_property
     def _reach(self) -> tuple[Floats, Floats]:
         """Lowest and highest of the points of each interval: the motion stays between them."""
+        if self._compiled:
+            return self._compiled.reach
         parts = [(np.empty(0), np.empty(0))]
         for begin in range(0, len(self.time) - 1, BLOCK):
             end = min(begin + BLOCK, len(self.time) - 1)
@@ -189,18 +225,36 @@ class Motion:
         lowest, highest = (np.concatenate(each) for each in zip(*parts, strict=True))
         return lowest, highest
 
-    def crossings(self, level: float, intervals: range | None = None) -> list[float]:
-        """Times at which the motion passes a level, to rounding, in the whole run or in some intervals."""
-        wanted = range(len(self.time) - 1) if intervals is None else intervals
+    def crossings(self, level: float) -> list[float]:
+        """Times at which the motion passes a level, to rounding."""
         if self._compiled:
-            return self._compiled.crossings(level, wanted.start, wanted.stop)
-        lowest, highest = (each[wanted.start : wanted.stop] for each in self._reach)
-        passed = np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0)) + wanted.start
-        return [
-            self.moment(interval, share)
-            for interval in passed.tolist()
-            for share in bernstein.sign_changes([point - level for point in self._piece(interval)])
-        ]
+            return self._compiled.crossings(level)
+        lowest, highest = self._reach
+        passed = np.flatnonzero((lowest - level < 0.0) & (highest - level >= 0.0))
+        return [time for interval in passed.tolist() for time in self._crossed(interval, level)]
+
+    def _crossed(self, interval: int, level: float) -> list[float]:
+        """Those in one interval."""
+        shares = bernstein.sign_changes([point - level for point in self._piece(interval)])
+        return [self.moment(interval, share) for share in shares]
+
+    def passes(self, level: float, turn: float) -> list[float]:
+        """Times at which the motion passes a level or one that is whole turns from it.
+
+        To rounding a sample itself may be such a level.
+        """
+        if self._compiled:
+            return self._compiled.passes(level, turn)
+        whole = np.floor((self.values[0] - level) / turn)
+        found = []
+        known = np.isfinite(whole[1:]) & np.isfinite(whole[:-1])
+        for interval in np.flatnonzero(known & (whole[1:] != whole[:-1])).tolist():
+            low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
+            for there in (level + turn * turns for turns in range(low + 1, high + 1)):
+                before, after = (abs(end - there) for end in self.values[0][interval : interval + 2].tolist())
+                nearest = self.moment(interval, float(after < before))
+                found += self._crossed(interval, there) or [nearest]
+        return found
 
     def moment(self, interval: int, share: float) -> float:
         """The time at a share of an interval."""
@@ -223,14 +277,30 @@ class Motion:
 
     def lowest(self, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
         """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
-        values, largest = sign * self.values[0], float(np.max(np.abs(self.values[0])))
         if not self.finite:
             return self._lowest_sample(sign, within)
-        if within is None:  # straight lines are lowest at a sample
-            count = 1 if len(self.values) > 1 else len(values)
-            found, times = [values[:count]], [self.time[:count]]
-            best = sure = float(np.min(values))
-            pieces = self._pieces_below(sign, best + SAME * largest) if count == 1 else iter(())
+        survey = self.survey if sign > 0.0 else self.survey.reversed
+        if within is None and len(self.values) == 1:  # straight lines are lowest at a sample
+            value = sure = survey.lowest
+            near = sign * self.values[0] <= value + SAME * survey.largest
+            time = float(self.time[int(np.argmax(near))])
+        elif found := self._lowest_of_pieces(sign, within, survey):
+            value, time, sure = found
+        else:
+            return Extreme(math.nan, math.nan)
+        beyond = min(sign * float(self.values[0][end]) for end in self._ends(time)) - value
+        coarse = beyond > max(COARSE * (survey.highest - value), SAME * survey.largest)
+        return Extreme(sign * value, time, coarse, sign * (sure + ROUNDING * survey.largest))
+
+    def _lowest_of_pieces(
+        self, sign: float, within: Sequence[Stretch] | None, survey: Survey
+    ) -> tuple[float, float, float] | None:
+        """The same as value, time, and what is sure but for rounding; None where there is nothing within."""
+        values, same = sign * self.values[0], SAME * survey.largest
+        if within is None:
+            found, times = [values[:1]], [self.time[:1]]
+            best = sure = survey.lowest
+            pieces = self._pieces_below(sign, best + same)
         else:
             edges = np.array([time for each in within for time in each[:2]])
             found, times = [sign * self.along(edges)], [edges]
@@ -240,21 +310,18 @@ class Motion:
         for intervals, low, high in pieces:
             points = bernstein.clipped(sign * self.points(intervals), low, high)
             best = min(best, float(np.min(points[[0, -1]])))
-            near = points.min(axis=0) <= max(best + SAME * largest, sure)
+            near = points.min(axis=0) <= max(best + same, sure)
             lowest, share = bernstein.lowest(points[:, near])
             sure = min(sure, float(np.min(lowest + self.doubt(intervals[near]), initial=math.inf)))
             share = np.where(share < 1.0, low[near] + share * (high[near] - low[near]), high[near])
             before, after = self.time[intervals[near]], self.time[intervals[near] + 1]
             found.append(lowest)
             times.append(np.where(share < 1.0, before + share * (after - before), after))
-        moments, extremes = np.concatenate(times), np.concatenate(found)
+        extremes = np.concatenate(found)
         if not len(extremes):
-            return Extreme(math.nan, math.nan)
-        value, time = first_lowest(extremes, moments, SAME * largest)
-        beyond = float(np.min(values[self._ends(time)])) - value
-        coarse = beyond > max(COARSE * (float(values.max()) - value), SAME * largest)
-        sure = (sure if math.isfinite(sure) else value) + ROUNDING * largest
-        return Extreme(sign * value, time, coarse, sign * sure)
+            return None
+        value, time = first_lowest(extremes, np.concatenate(times), same)
+        return value, time, sure if math.isfinite(sure) else value
 
     def _lowest_sample(self, sign: float, within: Sequence[Stretch] | None) -> Extreme:
         inside = self._inside(within)
@@ -276,7 +343,7 @@ class Motion:
         """The samples on both sides of a time."""
         if len(self.time) == 1:
             return [0]
-        interval = int(self.interval(np.array([time]))[0])
+        interval = self._interval(time)
         return [interval, interval + 1]
 
     def _pieces_below(self, sign: float, level: float) -> Iterator[tuple[Integers, Floats, Floats]]:

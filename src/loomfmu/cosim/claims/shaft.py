@@ -43,19 +43,10 @@ def needed_angle(trace: Signals) -> Motion:
 def times_at(trace: Signals, wanted: float) -> list[float]:
     """All times at which the shaft stands at an angle of its revolution."""
     turning = needed_angle(trace)
-    turned = (turning.values[0] - wanted) / TURN
-    whole = np.floor(turned)
-    times = []
-    for interval in np.flatnonzero(whole[1:] != whole[:-1]).tolist():
-        low, high = sorted((int(whole[interval]), int(whole[interval + 1])))
-        for turn in range(low + 1, high + 1):
-            level = wanted + TURN * turn
-            before, after = (abs(end - level) for end in turning.values[0][interval : interval + 2].tolist())
-            # to rounding the level may be the sample itself
-            nearest = turning.moment(interval, float(after < before))
-            times += turning.crossings(level, range(interval, interval + 1)) or [nearest]
+    times = turning.passes(wanted, TURN)
     for end in (0, -1):  # a run that begins or ends there, to rounding
-        if abs(turned[end] - round(float(turned[end]))) < 1e-9:
+        turned = (float(turning.values[0][end]) - wanted) / TURN
+        if abs(turned - round(turned)) < 1e-9:
             times.append(float(turning.time[end]))
     return sorted(set(times))
 

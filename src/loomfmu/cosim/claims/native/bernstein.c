@@ -15,8 +15,10 @@ static const double NARROWEST = 0x1p-60; /* halved more often than doubles can t
 
 struct motion { /* compiled.py has the same struct */
     ptrdiff_t samples, known;
-    const char *columns[4]; /* times, values, then their rates as far as they are known */
-    ptrdiff_t strides[4];   /* bytes from one sample to the next */
+    struct {
+        const char *first;
+        ptrdiff_t stride; /* bytes from one sample to the next */
+    } columns[4];         /* times, values, then their rates as far as they are known */
 };
 
 struct found {
@@ -27,7 +29,7 @@ struct found {
 
 static double sample(const struct motion *motion, ptrdiff_t column, ptrdiff_t place)
 {
-    return *(const double *)(motion->columns[column] + place * motion->strides[column]);
+    return *(const double *)(motion->columns[column].first + place * motion->columns[column].stride);
 }
 
 /* Points of the polynomial on an interval, and their number. */
@@ -136,31 +138,93 @@ EXPORT double value_at(const struct motion *motion, double time)
     return value(points, count, (time - before) / (after - before));
 }
 
-/* How often the motion passes a level in some intervals; as many of the times as there is room for. */
-EXPORT ptrdiff_t crossings(
-    const struct motion *motion, double level, ptrdiff_t first, ptrdiff_t end, double *times, ptrdiff_t room)
+/* Lowest and highest of the points of each interval; NaN where one of them is. */
+EXPORT void reach(const struct motion *motion, double *lowest, double *highest)
 {
-    struct found found = {motion, first, room, 0, times};
-    for (; found.interval < end; found.interval++) {
-        double points[MOST];
-        bool sound = true;
-        size_t count = piece(motion, found.interval, points);
-        for (size_t place = 0; place < count; place++) {
-            sound = sound && !isnan(points[place]);
-            points[place] -= level;
+    for (ptrdiff_t interval = 0; interval + 1 < motion->samples; interval++) {
+        double points[MOST], low, high;
+        size_t count = piece(motion, interval, points);
+        low = high = points[0];
+        for (size_t place = 1; place < count && low == low; place++) {
+            low = points[place] >= low ? low : points[place];
+            high = points[place] <= high ? high : points[place];
         }
-        if (sound)
-            sign_changes(points, count, 0.0, 1.0, &found);
+        lowest[interval] = low;
+        highest[interval] = low == low ? high : low;
+    }
+}
+
+/* How often the motion passes a level; as many of the times as there is room for. */
+EXPORT ptrdiff_t crossings(
+    const struct motion *motion, const double *lowest, const double *highest, double level, double *times,
+    ptrdiff_t room)
+{
+    struct found found = {motion, 0, room, 0, times};
+    for (; found.interval + 1 < motion->samples; found.interval++) {
+        if (!(lowest[found.interval] - level < 0.0 && highest[found.interval] - level >= 0.0))
+            continue;
+        double points[MOST];
+        size_t count = piece(motion, found.interval, points);
+        for (size_t place = 0; place < count; place++)
+            points[place] -= level;
+        sign_changes(points, count, 0.0, 1.0, &found);
     }
     return found.count;
 }
 
-/* Whether all values and rates are finite. */
-EXPORT bool finite(const struct motion *motion)
+static double whole(double turns)
 {
-    for (ptrdiff_t column = 1; column <= motion->known; column++)
-        for (ptrdiff_t place = 0; place < motion->samples; place++)
-            if (!isfinite(sample(motion, column, place)))
-                return false;
-    return true;
+    double cut = (double)(long long)turns;
+    return cut > turns ? cut - 1.0 : cut;
+}
+
+/* The same for all levels that are whole turns from one; to rounding a sample itself may be such a level. */
+EXPORT ptrdiff_t passes(const struct motion *motion, double level, double turn, double *times, ptrdiff_t room)
+{
+    struct found found = {motion, 0, room, 0, times};
+    for (; found.interval + 1 < motion->samples; found.interval++) {
+        double before = sample(motion, 1, found.interval), after = sample(motion, 1, found.interval + 1);
+        if (!isfinite(before) || !isfinite(after))
+            continue;
+        double low = whole((before - level) / turn), high = whole((after - level) / turn);
+        if (low > high) {
+            double swapped = low;
+            low = high;
+            high = swapped;
+        }
+        for (double turns = low + 1.0; turns <= high; turns++) {
+            double points[MOST], there = level + turn * turns;
+            size_t count = piece(motion, found.interval, points);
+            ptrdiff_t known = found.count;
+            for (size_t place = 0; place < count; place++)
+                points[place] -= there;
+            sign_changes(points, count, 0.0, 1.0, &found);
+            if (found.count == known)
+                add(&found, fabs(after - there) < fabs(before - there) ? 1.0 : 0.0);
+        }
+    }
+    return found.count;
+}
+
+/* Whether all values and rates are finite, and the values one way; lowest, highest, longest step. */
+EXPORT void survey(const struct motion *motion, double *facts)
+{
+    bool finite = true, rises = true, falls = true;
+    double before = sample(motion, 1, 0), lowest = before, highest = before, longest = 0.0;
+    for (ptrdiff_t place = 0; place < motion->samples; place++) {
+        double now = sample(motion, 1, place), step = fabs(now - before);
+        for (ptrdiff_t column = 1; column <= motion->known; column++)
+            finite = finite && isfinite(sample(motion, column, place));
+        rises = rises && now >= before;
+        falls = falls && now <= before;
+        lowest = now < lowest ? now : lowest;
+        highest = now > highest ? now : highest;
+        longest = step > longest ? step : longest;
+        before = now;
+    }
+    facts[0] = finite;
+    facts[1] = rises || falls;
+    facts[2] = lowest;
+    facts[3] = highest;
+    facts[4] = longest;
 }
