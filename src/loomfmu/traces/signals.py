@@ -162,6 +162,7 @@ class Recording(Signals):
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
         self._wires = wires
+        self._parameters: dict[str, float] = {}
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
 
@@ -252,8 +253,10 @@ class Recording(Signals):
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""
-        instance, _, name = signal.partition(".")
-        value = self._parameter(instance, name)
-        if value is None:
-            raise LoomfmuError(f"{self.name}: parameter {signal!r} is not recorded")
-        return float(value)
+        if signal not in self._parameters:
+            instance, _, name = signal.partition(".")
+            value = self._parameter(instance, name)
+            if value is None:
+                raise LoomfmuError(f"{self.name}: parameter {signal!r} is not recorded")
+            self._parameters[signal] = float(value)
+        return self._parameters[signal]

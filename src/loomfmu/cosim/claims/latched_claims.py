@@ -91,16 +91,17 @@ def _reached(trace: Signals, latch: str, followed: Floats) -> float:
         latch: the signal that keeps the extreme
         followed: samples of what it follows, with a sign by which the extreme is the lowest
     """
-    time, kept = trace.time, np.abs(trace[latch] - trace[latch][-1])
-    step = int(np.argmax(kept <= ALIKE * np.max(np.abs(followed))))
+    time, latched = trace.time, trace[latch]
+    largest = max(float(followed.max()), -float(followed.min()))
+    step = int(np.argmax(np.abs(latched - latched[-1]) <= ALIKE * largest))
     if step == 0:
         return float(time[0])
     lowest = step if followed[step] <= followed[step - 1] else step - 1
     if not 0 < lowest < len(time) - 1:
         return float(time[lowest])
-    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2] for each in (time, followed))
+    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2].tolist() for each in (time, followed))
     before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
     if after <= before:
-        return float(time[lowest])
+        return t1
     turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
-    return float(np.clip(turn, time[step - 1], time[step]))
+    return min(max(turn, float(time[step - 1])), float(time[step]))

@@ -6,13 +6,12 @@ Third-party FMUs always run: they may be there for what they do, such as to log 
 """
 
 from collections.abc import Iterable
-from copy import copy
 from dataclasses import dataclass, replace
 
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.graph import Wire
-from ..scenes.instances import Instance
+from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import FOLLOWED, follows, turning
 from .requested import claims_of
@@ -40,8 +39,8 @@ class Pruned:
             name: _turning(scene.instances[name], shafts.get(self.turning.get(name, "")))
             for name in self.scene.instances
         }
-        left = replace(scene, instances=instances, wires=self.scene.wires, drives=self.scene.drives)
-        return replace(self, scene=left, shafts=shafts)
+        left = altered(scene, instances=instances, wires=self.scene.wires, drives=self.scene.drives)
+        return altered(self, scene=left, shafts=shafts)
 
 
 def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pruned:
@@ -88,9 +87,7 @@ class Effective:
 
     def of(self, scene: Scene, kept: Pruned) -> "Effective":
         """The same of this scene, which differs in values alone."""
-        found = copy(self)
-        found._instances, found._running = scene.instances, kept.scene.instances
-        return found
+        return altered(self, _instances=scene.instances, _running=kept.scene.instances)
 
     def value(self, name: str, variable: str) -> Value | None:
         """A start value; None where there is none that has an effect."""
@@ -167,7 +164,7 @@ def _turning(instance: Instance, shaft: ConstantShaft | None) -> Instance:
     """An instance; if it follows a shaft that is left out, it turns by itself instead."""
     if shaft is None:
         return instance
-    return replace(instance, values=instance.values | turning(shaft.speed, shaft.start_angle))
+    return altered(instance, values=instance.values | turning(shaft.speed, shaft.start_angle))
 
 
 def _skipped(

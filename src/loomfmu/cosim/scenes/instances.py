@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
@@ -39,6 +39,8 @@ NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
+
+Copied = TypeVar("Copied")
 
 _declared: dict[type[Component], Mapping[str, Variable]] = {}  # by name
 
@@ -168,6 +170,16 @@ class Instance:
             return otherwise
         start = self.values.get(name, port.start)
         return otherwise if start is None else TYPES[port.kind](start)
+
+
+def altered(original: Copied, **others: Any) -> Copied:
+    """A shallow copy of an object that has no slots, with other attributes.
+
+    A tenth of what `dataclasses.replace` costs, which a run of a prepared scene would call a dozen times.
+    """
+    made = object.__new__(type(original))
+    made.__dict__.update(original.__dict__, **others)
+    return made
 
 
 def truth(given: Any, where: str) -> bool:

@@ -1,13 +1,12 @@
 """Other values for a scene that was read: where nothing else depends on them, it is not read again."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from ...errors import LoomfmuError
 from ...machines import TAKERS
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
-from .instances import Instance
+from .instances import Instance, altered
 from .overrides import components, overridden
 from .scene import Scene
 from .standard_loom import FOLLOWING
@@ -72,7 +71,7 @@ class Values:
         def copied(name: str) -> Instance:
             if name not in changed:
                 old = self.scene.instances[name]
-                changed[name] = replace(old, values=dict(old.values), doubts=dict(old.doubts))
+                changed[name] = altered(old, values=dict(old.values), doubts=dict(old.doubts))
             return changed[name]
 
         own: set[tuple[str, str]] = set()
@@ -89,7 +88,7 @@ class Values:
         for name, each in changed.items():
             if any(each.doubts.values()) or any(self.scene.instances[name].doubts.values()):
                 raise LoomfmuError(f"{name}: its values change what the scene warns of")
-        scene = replace(self.scene, instances=self.scene.instances | changed, overrides=overrides)
+        scene = altered(self.scene, instances=self.scene.instances | changed, overrides=overrides)
         if "shaft" in changed and "speed" in scene.instances["shaft"].fmu.ports:
             check_times(self._times, scene.speed)
         return scene
