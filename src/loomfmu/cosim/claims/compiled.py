@@ -36,7 +36,6 @@ class Compiled:
         self._library, self._intervals = library, samples - 1
         places = [each for column in columns for each in (column.place, column.values.strides[0])]
         self._motion = _MOTION[len(columns)].pack(samples, len(columns) - 1, *places)
-        self._reach: tuple[int, int] | None = None
 
     def at(self, time: float) -> float:
         """Value at a time."""
@@ -52,14 +51,17 @@ class Compiled:
     def reach(self) -> tuple[Floats, Floats]:
         """Lowest and highest of the points of each interval."""
         lowest, highest = np.empty(self._intervals), np.empty(self._intervals)
-        self._reach = lowest.ctypes.data, highest.ctypes.data
-        self._library.reach(self._motion, *self._reach)
+        self._library.reach(self._motion, lowest.ctypes.data, highest.ctypes.data)
         return lowest, highest
+
+    @cached_property
+    def _reach_places(self) -> tuple[int, int]:
+        lowest, highest = self.reach
+        return lowest.ctypes.data, highest.ctypes.data
 
     def crossings(self, level: float) -> list[float]:
         """Times at which the motion passes a level."""
-        places = self._reach or (self.reach and self._reach)
-        return _all(self._library.crossings, self._motion, *places, level)
+        return _all(self._library.crossings, self._motion, *self._reach_places, level)
 
     def passes(self, level: float, turn: float) -> list[float]:
         """Times at which it passes a level or one that is whole turns from it."""

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...traces import Signals
 from . import bernstein
@@ -320,14 +320,14 @@ class Motion:
         extremes = np.concatenate(found)
         if not len(extremes):
             return None
-        value, time = first_lowest(extremes, np.concatenate(times), same)
+        value, time = _first_lowest(extremes, np.concatenate(times), same)
         return value, time, sure if math.isfinite(sure) else value
 
     def _lowest_sample(self, sign: float, within: Sequence[Stretch] | None) -> Extreme:
         inside = self._inside(within)
         if not inside.any():
             return Extreme(math.nan, math.nan)
-        value, time = first_lowest(sign * self.values[0][inside], self.time[inside])
+        value, time = _first_lowest(sign * self.values[0][inside], self.time[inside])
         return Extreme(sign * value, time, sure=sign * value)
 
     def _inside(self, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
@@ -385,9 +385,16 @@ class Motion:
         return Extreme(value, time, any(each.coarse for each in found))
 
 
-def first_lowest(values: ArrayLike, times: ArrayLike, same: float = SAME) -> tuple[float, float]:
-    """The lowest value, and the time of the first one that is equal to it."""
-    values, times = np.asarray(values, dtype=float), np.asarray(times, dtype=float)
+def first_lowest(values: Sequence[float], times: Sequence[float], same: float = SAME) -> tuple[float, float]:
+    """The lowest of a few values, NaN if there is one, and the time of the first one that is equal to it."""
+    if unknown := [time for value, time in zip(values, times, strict=True) if math.isnan(value)]:
+        return math.nan, min(unknown)
+    lowest = min(values)
+    return lowest, min(time for value, time in zip(values, times, strict=True) if value <= lowest + same)
+
+
+def _first_lowest(values: Floats, times: Floats, same: float = SAME) -> tuple[float, float]:
+    """The same of many."""
     lowest = float(np.min(values))  # NaN if there is one
     equal = np.isnan(values) if math.isnan(lowest) else values <= lowest + same
     return lowest, float(np.min(times[equal]))

@@ -7,8 +7,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import ClassVar
 
-import numpy as np
-
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
@@ -148,9 +146,9 @@ class DwellContains(_Lifted):
     def judge(self, trace: Signals) -> Verdict:
         signals = lifts(self.heald, self.lifted_by, trace)
         motions = [motion_of(trace, signal) for signal in signals]
-        times, notes = np.array(self.landings(trace).times), [motions[0].note]
+        times, notes = self.landings(trace).times, [motions[0].note]
         worst, time = math.nan, math.nan
-        if len(times):
+        if times:
             (worst, time), *others = [self._farthest(trace, lift, times) for lift in motions]
             notes += [f"its frame: {100 * away:.7g} %" for away, _time in others]
         else:
@@ -158,12 +156,11 @@ class DwellContains(_Lifted):
         text = f"dwell at {angles_text(self.angles)}"
         return self.verdict(trace, text, signals[0], self.tolerance, worst, time, *notes)
 
-    def _farthest(self, trace: Signals, lift: Motion, times: Floats) -> tuple[float, float]:
+    def _farthest(self, trace: Signals, lift: Motion, times: list[float]) -> tuple[float, float]:
         """The largest distance from an end, as a share of the stroke, and its time."""
         stroke = trace.parameter(f"{self.heald}.stroke")
-        lifts_there = np.array([lift.at(time) for time in times.tolist()])
-        away = np.minimum(np.abs(lifts_there), np.abs(stroke - lifts_there)) / stroke
-        lowest, time = first_lowest(-away, times)
+        there = [lift.at(time) for time in times]
+        lowest, time = first_lowest([-min(abs(each), abs(stroke - each)) / stroke for each in there], times)
         return -lowest, time
 
     def landings(self, trace: Signals) -> Landings:

@@ -102,6 +102,6 @@ def _reached(trace: Signals, latch: str, followed: Floats) -> float:
     (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2].tolist() for each in (time, followed))
     before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
     if after <= before:
-        return t1
+        return float(t1)
     turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
-    return min(max(turn, float(time[step - 1])), float(time[step]))
+    return float(min(max(turn, time[step - 1]), time[step]))

@@ -165,8 +165,9 @@ class Slave:
         except FMICallException as error:
             failure = error
             self._note(error.status)
-        new = self.messages[seen:]
-        if failure or (new and any(status >= DISCARD for status, _text in new)):
+        if failure or (
+            len(self.messages) > seen and any(status >= DISCARD for status, _text in self.messages[seen:])
+        ):
             raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
@@ -188,9 +189,10 @@ class Slave:
 
     def _call(self, name: str, *arguments: Any) -> None:
         """Call a function of the FMU. Raises FMICallException, as fmpy's methods do."""
-        if name not in self._functions:
-            self._functions[name] = self._library[f"{self.standard}{name}"]
-        status = self._functions[name](self._component, *arguments)
+        function = self._functions.get(name)
+        if function is None:
+            function = self._functions[name] = self._library[f"{self.standard}{name}"]
+        status = function(self._component, *arguments)
         if not OK <= status <= WARNING:
             raise FMICallException(f"{self.standard}{name}", status)
 

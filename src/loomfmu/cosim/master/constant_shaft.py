@@ -15,8 +15,8 @@ class ConstantShaft:
     speed: float
     start_angle: float
 
-    def values(self, variable: str, time: Floats) -> Floats:
-        """An output of the shaft along times [s]."""
+    def values(self, variable: str, time: Floats) -> Floats | float:
+        """An output of the shaft along times [s]; one number where it is the same at all of them."""
         if variable == "angle":
             return self.start_angle + self.speed * time
-        return np.full(len(time), self.speed if variable == "velocity" else 0.0)
+        return self.speed if variable == "velocity" else 0.0

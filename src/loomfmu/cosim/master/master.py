@@ -100,15 +100,12 @@ class Master:
         self._guards = ExitStack()
         self.interrupted.value, self.steps, self.ended = 0, 0, None
         scene = self.scene
+        inside = [name for name in self.order if not scene.isolates(name)]
         # one that is given as a file may be live, too
-        live = any(
-            not scene.isolates(name) and each.fmu.flavour != "native"
-            for name, each in scene.instances.items()
-        )
+        live = any(scene.instances[name].fmu.flavour != "native" for name in inside)
         self._guards.enter_context(interruptible(self.interrupted, scene.step_timeout, live))
         try:
             self._limits = Limits(scene.step_timeout, scene.run_timeout, self.interrupted)
-            inside = [name for name in self.order if not scene.isolates(name)]
             self._guards.enter_context(exit_named(inside))
             for name in self.order:
                 limits, fmu = None if name in inside else self._limits, scene.instances[name].fmu

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, Protocol, cast
+from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -208,7 +208,7 @@ class CompiledStepper:
             self._advance(
                 ctypes.byref(self._plan),
                 ctypes.c_int64(len(span)),
-                *(ctypes.c_void_p(array.ctypes.data) for array in arrays),
+                *(_place(array) for array in arrays),
                 ctypes.byref(self._outcome),
             )
         )
@@ -224,6 +224,11 @@ class CompiledStepper:
         # a value that was not handed over is tried again by Python, which says which one it is
         known = None if status == REFUSED else status
         return stopped(self._actions[place:], known, span, step, self._memory, reals, integers)
+
+
+def _place(array: NDArray[Any]) -> Any:
+    """Where a contiguous array begins in memory, as an argument: a fifth of the cost of `ctypes.data`."""
+    return ctypes.byref(ctypes.c_char.from_buffer(cast(Any, array))) if array.size else None
 
 
 def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path | None:
