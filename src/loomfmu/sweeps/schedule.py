@@ -8,7 +8,7 @@ from .pools import Died, Pool, Task
 from .worker import Batch, Job, failed, run_rows
 
 BATCH = 1.5  # s, what a batch should take: far above the cost of handing it over, little to lose
-SMALLEST = 10  # part of such a batch that the last ones still are
+SMALLEST = 50  # part of such a batch that the last ones still are: the workers end within its time
 GROWTH = 4  # of a batch over those before, until the time of a row is known well
 
 

@@ -7,6 +7,8 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import ClassVar
 
+import numpy as np
+
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
