@@ -51,7 +51,7 @@ class Extreme(NamedTuple):
 class Survey(NamedTuple):
     """What the samples of a motion show: whether all are `finite`, whether their values go one way alone.
 
-    `longest` is the longest step from one value to the next. Without finite samples only that has a meaning.
+    `longest` is the longest step from one value to the next; the others are NaN if a value is.
     """
 
     finite: float
@@ -281,9 +281,9 @@ class Motion:
             return self._lowest_sample(sign, within)
         survey = self.survey if sign > 0.0 else self.survey.reversed
         if within is None and len(self.values) == 1:  # straight lines are lowest at a sample
-            value = sure = survey.lowest
-            near = sign * self.values[0] <= value + SAME * survey.largest
-            time = float(self.time[int(np.argmax(near))])
+            values = sign * self.values[0]
+            value = sure = float(np.min(values))
+            time = float(self.time[int(np.argmax(values <= value + SAME * survey.largest))])
         elif found := self._lowest_of_pieces(sign, within, survey):
             value, time, sure = found
         else:

@@ -217,8 +217,8 @@ EXPORT void survey(const struct motion *motion, double *facts)
             finite = finite && isfinite(sample(motion, column, place));
         rises = rises && now >= before;
         falls = falls && now <= before;
-        lowest = now < lowest ? now : lowest;
-        highest = now > highest ? now : highest;
+        lowest = now < lowest || isnan(now) ? now : lowest;
+        highest = now > highest || isnan(now) ? now : highest;
         longest = step > longest ? step : longest;
         before = now;
     }
