@@ -395,7 +395,7 @@ def _summarise(trace: "Trace") -> None:
     say(f"{trace.rows} samples over {end:.6g} s, {_revolutions(f'{turned:.4g}')}", "")
     rows = [("signal", *(f"{word:>12}" for word in ("lowest", "highest", "last")), "unit")]
     for name in trace:
-        values = trace[name]
+        values = trace.read(name)  # one at a time: a long run does not fit in memory
         if len(values):
             factor, unit = trace.displayed(name)
             values = values / factor

@@ -180,9 +180,7 @@ def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark])
 
 
 def _curve(revolution: Revolution, row: Row, top: float) -> Iterator[Point]:
-    along, values = revolution.curves[row.name]
-    every = max(1, len(along) // 180)
-    for angle, value in zip(along[::every], values[::every], strict=True):
+    for angle, value in zip(*revolution.curves[row.name], strict=True):
         yield _x(float(angle)), top + 6.0 + (ROW - 10.0) * (1.0 - float(value))
 
 

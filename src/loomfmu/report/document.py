@@ -1,6 +1,7 @@
 """The report as one HTML file: its sections in their order, with style and scripts inline."""
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,11 @@ def write(
     path = Path(output) if output is not None else opened[0].path.with_suffix(".html")
     inputs = [trace.path for trace in opened]
     check_target(path, REPORT, inputs, overwrite)
-    return write_file(path, page(Subject(opened)).encode(), REPORT, inputs, overwrite)
+    with ExitStack() as files:
+        for trace in opened:
+            files.enter_context(trace)
+        content = page(Subject(opened)).encode()
+    return write_file(path, content, REPORT, inputs, overwrite)
 
 
 def page(subject: Subject) -> str:

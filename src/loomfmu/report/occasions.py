@@ -3,23 +3,28 @@
 A row has intervals in which a rule is positive, and a curve between 0 and 1 that shows how it moves.
 Edges are interpolated between the samples. Rules are data, which the script of a page evaluates, too: the
 name of a signal or of a parameter, a number, or an operation followed by its operands.
+
+Signals are read one revolution at a time and not kept; extremes of the whole run are found block by block.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import cached_property, reduce
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, partial, reduce
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..traces import Trace
+from ..traces.excerpt import READ
 from .section import TURN, Subject
 
 Floats = NDArray[np.float64]
 Interval = tuple[float, float]
 Rule = str | float | list[Any]
 SMALL = 1e-300  # so that nothing is divided by 0
+EXTREMES = {"lowest": np.min, "highest": np.max}  # operations on the whole run
+CURVE = 180  # points of a curve, about
 
 OPERATIONS: dict[str, Callable[..., Any]] = {
     "-": np.subtract,
@@ -42,7 +47,8 @@ def evaluated(rule: Rule, of: Callable[[str], Any]) -> Any:
         return of(rule)
     if isinstance(rule, list):
         operation, *operands = rule
-        return OPERATIONS[operation](*(evaluated(each, of) for each in operands))
+        with np.errstate(invalid="ignore"):  # what does not move has no share of its range
+            return OPERATIONS[operation](*(evaluated(each, of) for each in operands))
     return rule
 
 
@@ -93,6 +99,7 @@ class Occasions:
     """The rows of a trace whose shaft turns, and its revolutions."""
 
     subject: Subject
+    _known: dict[str, float] = field(default_factory=dict)  # extremes by their rules
 
     @cached_property
     def rows(self) -> list[Row]:
@@ -104,21 +111,29 @@ class Occasions:
                 rows += make(trace, instance)
         return rows
 
-    def value(self, rule: Rule) -> Floats:
-        """The values of a rule at the samples."""
-        trace, samples = self.subject.trace, self.subject.positions
-        with np.errstate(invalid="ignore"):  # what does not move has no share of its range
-            found = evaluated(rule, lambda name: trace[name] if name in trace else trace.parameter(name))
-        return np.broadcast_to(np.asarray(found, dtype=float), samples.shape)
+    @cached_property
+    def _bars(self) -> dict[tuple[str, str], Rule]:
+        return {(row.name, bar.label): self._settled(bar.rule) for row in self.rows for bar in row.bars}
 
     @cached_property
-    def _bars(self) -> dict[tuple[str, str], Floats]:
-        return {(row.name, bar.label): self.value(bar.rule) for row in self.rows for bar in row.bars}
+    def _curves(self) -> dict[str, Rule]:
+        return {row.name: self._settled(row.curve) for row in self.rows}
 
-    @cached_property
-    def _curves(self) -> dict[str, Floats]:
-        curves = {row.name: self.value(row.curve) for row in self.rows}
-        return {name: curve for name, curve in curves.items() if np.isfinite(curve).all()}
+    def _settled(self, rule: Rule) -> Rule:
+        """A rule with parameters and extremes as numbers: of names, those of signals are left."""
+        if isinstance(rule, str):
+            return rule if rule in self.subject.trace else self.subject.trace.parameter(rule)
+        if not isinstance(rule, list):
+            return rule
+        settled = [rule[0], *map(self._settled, rule[1:])]
+        if rule[0] not in EXTREMES:
+            return settled
+        key = repr(settled)
+        if key not in self._known:
+            blocks = (slice(start, start + READ) for start in range(0, self.subject.trace.rows, READ))
+            found = [evaluated(settled, partial(self.subject.trace.read, rows=rows)) for rows in blocks]
+            self._known[key] = float(EXTREMES[rule[0]](found))
+        return self._known[key]
 
     @property
     def numbers(self) -> range:
@@ -128,24 +143,30 @@ class Occasions:
 
     def revolution(self, number: int) -> Revolution:
         """The rows in one revolution."""
-        positions = self.subject.positions
+        trace, every = self.subject.trace, self.subject.positions
         start = (number - 1) * TURN
-        first, last = max(start, float(positions[0])), min(start + TURN, float(positions[-1]))
-        inside = positions[(positions > first) & (positions < last)]
-        along = np.concatenate([[first], inside, [last]])
+        first, last = max(start, float(every[0])), min(start + TURN, float(every[-1]))
+        rows = slice(
+            max(int(np.searchsorted(every, first, side="right")) - 1, 0),
+            int(np.searchsorted(every, last)) + 1,
+        )
+        positions = every[rows]
+        along = np.concatenate([[first], positions[(positions > first) & (positions < last)], [last]])
+        read = lru_cache(maxsize=8)(partial(trace.read, rows=rows))  # the signals of a few rows
+
+        def on(rule: Rule, places: Floats) -> Floats:
+            found = np.asarray(evaluated(rule, read), dtype=float)
+            return np.asarray(np.interp(places, positions, np.broadcast_to(found, positions.shape)))
+
+        shown = along[:: max(1, len(along) // CURVE)]
+        curves = {row: (shown - start, on(rule, shown)) for row, rule in self._curves.items()}
         return Revolution(
             number,
             {
-                bar: [
-                    (low - start, high - start)
-                    for low, high in positive(along, np.interp(along, positions, values))
-                ]
-                for bar, values in self._bars.items()
+                bar: [(low - start, high - start) for low, high in positive(along, on(rule, along))]
+                for bar, rule in self._bars.items()
             },
-            {
-                row: (along - start, np.interp(along, positions, values))
-                for row, values in self._curves.items()
-            },
+            {row: curve for row, curve in curves.items() if np.isfinite(curve[1]).all()},
             (first - start, last - start),
         )
 

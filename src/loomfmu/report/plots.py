@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..traces import Trace
+from ..traces.excerpt import READ
 from .section import Section, Subject, labels
 from .templates import template
 
 Floats = NDArray[np.float64]
 MOST_POINTS, FEWEST_POINTS = 10_000, 200  # of a curve
 SHARE = 150_000  # points of the signals of claims, and of all others: 1.6 MB of a report
-READ = 65_536  # samples that are read at a time
 ALONG = 2000  # points between which the page interpolates time over shaft angle
 
 

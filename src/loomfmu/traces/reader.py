@@ -125,12 +125,8 @@ class Trace(Signals):
         if not isinstance(signal, str):
             raise self._unknown(signal)
         if signal not in self._cache:
-            self._cache[signal] = self._read(signal)
+            self._cache[signal] = self.read(signal)
         return self._cache[signal]
-
-    def _read(self, signal: str) -> NDArray[Any]:
-        with self._dataset(signal) as dataset:
-            return self._values(dataset, slice(self.rows))
 
     def blocks(self, signal: str, rows: int) -> Iterator[NDArray[Any]]:
         """The values of a signal, so many rows at a time: none are kept, however long the run was."""
@@ -145,9 +141,12 @@ class Trace(Signals):
             raise LoomfmuError(f"{self.given}: {dataset.name} cannot be read ({error})") from None
         return values.astype(bool) if dataset.attrs.get("dtype") == "bool" else values
 
-    def read(self, signal: str) -> NDArray[Any]:
-        """The values of a signal, as `trace[signal]`, which this does not keep in memory."""
-        return self._cache[signal] if signal in self._cache else self._read(signal)
+    def read(self, signal: str, rows: slice = slice(None)) -> NDArray[Any]:
+        """The values of a signal, as `trace[signal]`, or some of them; this does not keep them in memory."""
+        if signal in self._cache:
+            return self._cache[signal][rows]
+        with self._dataset(signal) as dataset:
+            return self._values(dataset, slice(*rows.indices(self.rows)))
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._signals
@@ -206,12 +205,12 @@ class Trace(Signals):
     @cached_property
     def time(self) -> Floats:
         """Time of the samples [s]."""
-        return self._read("time")
+        return self.read("time")
 
     @cached_property
     def shaft_angle(self) -> Floats:
         """Shaft angle of the samples, not wrapped [rad]."""
-        return self._read("shaft_angle")
+        return self.read("shaft_angle")
 
     @property
     def attributes(self) -> dict[str, Any]:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from ...physics.belt import MOST_BENT, complete_elliptic
 from .recorded import instances, mm
 from .sketch import Figure, Sketch, Value, title
-from .tracks import Tracks
+from .tracks import FINEST, Tracks
 
 Floats = NDArray[np.float64]
-FINER = 4  # keyframes for each of other drawings: a belt buckles within a degree
+FINER = FINEST  # a belt buckles within a degree
 POINTS = 33  # of a buckled belt
 SHAPES = 41  # between a straight belt and the one that is bent most
 HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
@@ -72,7 +72,7 @@ class Belt:
 
 def tracked(tracks: Tracks, name: str) -> Belt:
     """The tracks of a belt that records its free length and its deflection."""
-    trace = tracks.subject.trace
+    trace = tracks.trace
     free, bent = mm(trace, f"{name}.free_length"), mm(trace, f"{name}.deflection")
     idle, head = (1000.0 * trace.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
     outside = np.maximum(free, 0.0)
@@ -103,7 +103,7 @@ def tracked(tracks: Tracks, name: str) -> Belt:
 
 def width(tracks: Tracks, belt: Belt) -> Figure:
     """The head's way across the loom, with the wheel on which the belt is wound."""
-    trace = tracks.subject.trace
+    trace = tracks.trace
     reach = float(np.max(mm(trace, f"{belt.name}.free_length"))) + belt.head
     back = belt.idle + belt.head
     wheels = [
@@ -139,7 +139,7 @@ def width(tracks: Tracks, belt: Belt) -> Figure:
 
 def between(tracks: Tracks, belt: Belt) -> Figure:
     """The free section between guide and head, large enough to see it bend."""
-    trace = tracks.subject.trace
+    trace = tracks.trace
     free, bent = mm(trace, f"{belt.name}.free_length"), mm(trace, f"{belt.name}.deflection")
     at_risk = np.asarray(bent > 0.0)
     if not np.any(at_risk) and f"{belt.name}.axial_force" in trace:

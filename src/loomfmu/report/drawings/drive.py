@@ -53,7 +53,7 @@ def planar(weft: WeftInsertion, angle: float) -> list[Place]:
 
 def drive(tracks: Tracks, name: str) -> Figure | None:
     """The drive of a rapier; None if it does not follow the shaft of the trace."""
-    weft: WeftInsertion | None = follows(tracks.subject, name, WeftInsertion, "travel")
+    weft: WeftInsertion | None = follows(tracks.trace, name, WeftInsertion, "travel")
     if weft is None:
         return None
     angles = TURN * tracks.shares
@@ -93,7 +93,7 @@ def _cycles(tracks: Tracks, name: str, places: list[list[Place]]) -> list[Point]
 def _wheel(sketch: Sketch, weft: WeftInsertion, name: str, at: Place, radius: float) -> None:
     """The wheel with its belt, which leaves where the turning wheel pushes it to the right."""
     side = -1.0 if weft.travel_per_angle < 0.0 else 1.0
-    travel = mm(sketch.tracks.subject.trace, f"{name}.travel")
+    travel = mm(sketch.tracks.trace, f"{name}.travel")
     sketch.tracks.add(f"{name}.travel", travel)
     turn = sketch.tracks.add(f"{name}.wheel", -side * np.degrees(travel / radius))
     sketch.circle(at, radius, "body")

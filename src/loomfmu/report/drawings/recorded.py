@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ...errors import LoomfmuError
 from ...traces import Trace
 from ..occasions import in_order
-from ..section import Subject
 
 AGREES = 1e-6  # m by which a recorded signal may differ from the component's
 COMPARED = 50  # samples at which they are compared
@@ -31,13 +30,13 @@ def mm(trace: Trace, signal: str) -> NDArray[np.float64]:
     return 1000.0 * np.asarray(trace[signal], dtype=np.float64)
 
 
-def follows(subject: Subject, instance: str, kind: Callable[[], Any], signal: str) -> Any:
+def follows(trace: Trace, instance: str, kind: Callable[[], Any], signal: str) -> Any:
     """A component with the recorded parameters of an instance, moved by `start_angle`.
 
     None unless it is the shaft's angle alone that moves it: unless it has the recorded signal there.
     """
-    component, trace = kind(), subject.trace
-    if not subject.turns:
+    component = kind()
+    if not trace.turns:
         return None
     for each in fields(component):
         try:

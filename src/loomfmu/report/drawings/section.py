@@ -54,8 +54,7 @@ def still(subject: Subject) -> float:
 def _figures(tracks: Tracks) -> list[Figure]:
     """Drawings in the order of the weft's way, then of the warp's."""
     weft, belts, reeds = (
-        instances(tracks.subject.trace, fmu, *DRAWN[fmu])
-        for fmu in ("WeftInsertion", "BeltMonitor", "ReedBeatUp")
+        instances(tracks.trace, fmu, *DRAWN[fmu]) for fmu in ("WeftInsertion", "BeltMonitor", "ReedBeatUp")
     )
     drives = [drive(tracks, name) for name in weft]
     found = [tracked(tracks, name) for name in belts]

@@ -17,7 +17,7 @@ NARROWEST = 30.0  # mm: column of a frame
 
 def frames(tracks: Tracks) -> Figure | None:
     """The frames side by side, each with its carrier; None if none records its lift."""
-    trace = tracks.subject.trace
+    trace = tracks.trace
     names = instances(trace, "HealdFrame", "lift")
     if not names:
         return None
@@ -60,7 +60,7 @@ def _frame(sketch: Sketch, damper: str, side: float, half: float) -> None:
     sketch.box(-side, -half, side, half, role="body dwell")
     if not damper:
         return
-    trace = sketch.tracks.subject.trace
+    trace = sketch.tracks.trace
     stop = 1000.0 * trace.parameter(f"{damper}.free_travel") + CARRIER
     for y in (-stop, stop):
         sketch.line((-side, y), (side, y), role="path")
@@ -74,7 +74,7 @@ def shed(tracks: Tracks, tip: str) -> Figure | None:
 
     `tip` is the track of the rapier head in the shed, empty if there is none.
     """
-    trace = tracks.subject.trace
+    trace = tracks.trace
     names = instances(trace, "HealdFrame", "lift")
     if not names:
         return None
@@ -125,7 +125,7 @@ def _lengths(trace: Trace) -> tuple[float, float, bool]:
 
 def _reed(sketch: Sketch) -> bool:
     """The reed, at its distance from its front limit, which is the fell."""
-    trace = sketch.tracks.subject.trace
+    trace = sketch.tracks.trace
     for name in instances(trace, "ReedBeatUp", "position", "front_limit"):
         behind = mm(trace, f"{name}.position") - 1000.0 * trace[f"{name}.front_limit"][-1]
         with sketch.group(shift=(sketch.tracks.add(f"{name}.behind", behind), 0.0)):
@@ -138,7 +138,7 @@ def _head(sketch: Sketch, tip: str, station: float, low: float) -> str:
     """The head in the shed, of the height that a claim gives it; what is to be said of it."""
     heights = [
         1000.0 * verdict.bound
-        for verdict in sketch.tracks.subject.trace.verdicts
+        for verdict in sketch.tracks.trace.verdicts
         if re.fullmatch(r"2 \|\w+\.warp_height\|", verdict.signal)
     ]
     height = heights[0] if heights else 8.0

@@ -7,11 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...traces import Trace
+from ...traces.excerpt import Excerpt
 from ..section import TURN, Subject
 
 A_TURN = 361  # keyframes over a revolution: one a degree
 A_RUN = 1801  # keyframes over a run without a shaft
+FINEST = 4  # keyframes for each usual one, at most
 MOST = 500  # revolutions that are drawn
+SAMPLES = 100_000  # of a signal in memory; of a longer run, the first 30 revolutions or so are drawn
 BUDGET = 60_000  # numbers in all: about 200 kB
 LARGEST = 1e9  # steps, so that differences fit: 10 km in steps of 0.01 mm
 EQUAL = 2  # steps by which two frames may differ and still be one
@@ -45,14 +49,33 @@ class Tracks:
         return TURN if self.subject.turns else max(float(positions[-1] - positions[0]), 1e-300)
 
     @cached_property
+    def trace(self) -> Trace:
+        """The trace; of a long one, the samples beside the keyframes."""
+        whole = self.subject.trace
+        if whole.rows <= SAMPLES:
+            return whole
+        after = np.searchsorted(self.subject.positions, self._places(FINEST).ravel())
+        return Excerpt(whole, np.unique(np.clip([after - 1, after], 0, whole.rows - 1)))
+
+    @cached_property
+    def numbers(self) -> NDArray[np.int64]:
+        """The windows that are drawn, counted from 0: those at the start, and that of the still position."""
+        last, low = float(self.subject.positions[-1]) / self.span, self._first / self.span
+        count = max(int(np.ceil(last - low - 1e-9)), 1)
+        most = MOST if self.subject.trace.rows <= SAMPLES else SAMPLES // (2 * FINEST * len(self.shares))
+        now = min(max(int(self.still / self.span - low), 0), count - 1)
+        return np.unique([*range(min(count, max(most, 1))), now])
+
+    @cached_property
+    def _first(self) -> float:
+        """Where the first window starts."""
+        first = float(self.subject.positions[0])
+        return TURN * float(np.floor(first / TURN + 1e-9)) if self.subject.turns else first
+
+    @cached_property
     def starts(self) -> NDArray[np.float64]:
-        """Where the windows start."""
-        first, last = (float(self.subject.positions[place]) for place in (0, -1))
-        if not self.subject.turns:
-            return np.array([first])
-        low = np.floor(first / TURN + 1e-9)
-        count = max(np.ceil(last / TURN - 1e-9) - low, 1.0)
-        return np.asarray(TURN * (low + np.arange(min(count, MOST))))
+        """Where the windows start that are drawn."""
+        return np.asarray(self._first + self.span * self.numbers)
 
     @cached_property
     def shares(self) -> NDArray[np.float64]:
@@ -69,9 +92,13 @@ class Tracks:
 
         `finer` is the number of keyframes for each usual one, for what moves at a jump.
         """
+        along = self.subject.along(self.trace)
+        return self._keep(name, np.interp(self._places(finer), along, values), step)
+
+    def _places(self, finer: int) -> NDArray[np.float64]:
+        """Positions of the keyframes, a row for each window."""
         shares = np.linspace(0.0, 1.0, finer * (len(self.shares) - 1) + 1)
-        places = self.starts[:, None] + self.span * shares
-        return self._keep(name, np.interp(places, self.subject.positions, values), step)
+        return np.asarray(self.starts[:, None] + self.span * shares)
 
     def cycle(self, name: str, values: Any, step: float = 0.01) -> str:
         """Let a name move as values of the keyframes, the same in each window; returns the name."""
@@ -99,15 +126,15 @@ class Tracks:
         after that have no frame.
         """
         kept: dict[str, list[Frames]] = {name: [] for name in self.made}
-        shown: list[dict[str, int]] = [{} for _ in self.starts]
-        for window in sorted(range(len(shown)), key=lambda each: each != self.now):
+        shown: list[dict[str, int]] = [{} for _ in range(self.numbers[-1] + 1)]
+        for window in sorted(range(len(self.numbers)), key=lambda each: each != self.now):
             if sum(frame.size for frames in kept.values() for frame in frames) > BUDGET:
                 break
             for name, track in self.made.items():
                 frame = track.frames[min(window, len(track.frames) - 1)]
-                shown[window][name] = _place(kept[name], frame)
+                shown[self.numbers[window]][name] = _place(kept[name], frame)
         return {
-            "first": float(self.starts[0]),
+            "first": self._first,
             "span": self.span,
             "tracks": {
                 name: {

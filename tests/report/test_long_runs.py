@@ -1,0 +1,54 @@
+"""Reports of long runs: in memory that does not grow with the run."""
+
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import loomfmu
+from loomfmu.report import diagram, drawings
+from loomfmu.report.drawings.tracks import SAMPLES
+from loomfmu.report.section import Section, Subject
+from loomfmu.traces import Trace
+
+SIMS = Path(__file__).parents[2] / "sims"
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """A run, and one of four times its length: the second is too long for its signals to be kept."""
+    folder = tmp_path_factory.mktemp("runs")
+    return [
+        loomfmu.run(
+            SIMS / "wl680_3600.toml", set={"revolutions": number}, output=folder / f"{number}.h5"
+        ).path
+        for number in (40, 160)
+    ]
+
+
+@pytest.mark.parametrize("make", [diagram.section, drawings.section], ids=["diagram", "motion"])
+def test_memory_does_not_grow_with_the_signals_of_a_long_run(
+    runs: list[Path], make: Callable[[Subject], Section | None]
+) -> None:
+    peaks, rows = [], []
+    for path in runs:
+        with Trace(path) as trace:
+            rows.append(trace.rows)
+            tracemalloc.start()
+            assert make(Subject([trace])) is not None
+            peaks.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+    # the shaft's angle and the distances of its samples; signals that were kept took seven columns and more
+    assert peaks[1] - peaks[0] < 3 * 8 * (rows[1] - rows[0])
+
+
+def test_a_long_run_moves_in_its_first_revolutions_as_a_short_one_does(runs: list[Path]) -> None:
+    short, long = (drawings.section(Subject([Trace(path)])) for path in runs)
+    assert short is not None and long is not None and Trace(runs[1]).rows > SAMPLES
+    for name, track in short.data["tracks"].items():
+        other = long.data["tracks"][name]
+        kept = len(other["shown"])
+        assert 10 < kept < 40  # of 160
+        assert other["shown"] == track["shown"][:kept]
+        assert [each.tolist() for each in other["frames"]] == [each.tolist() for each in track["frames"]]
