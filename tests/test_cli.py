@@ -845,7 +845,7 @@ def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.Cap
     assert main(["run", path, "--set", "shaft.speed=400rpm", "--set", "shaft.speed=500rpm"]) == 2
     assert one_line(capsys) == "--set shaft.speed is given twice: 400rpm and 500rpm"
     assert main(["run", path, "--output", "x.csv"]) == 2
-    assert one_line(capsys) == "x.csv: a trace is an HDF5 file; name it x.h5"
+    assert one_line(capsys) == "x.csv: a trace of loomfmu ends in .h5; name it x.h5"
     assert not Path("x.csv").exists()
 
 

@@ -36,23 +36,25 @@ class Kind:
 
     name: str
     ours: Callable[[Path], bool]
+    suffixes: tuple[str, ...] = ()  # the usual one first
+    advice: str = ""  # for who wants another format
 
 
-def starts_with(name: str, *starts: bytes) -> Kind:
+def starts_with(name: str, *starts: bytes, suffix: str = "", advice: str = "") -> Kind:
     """The kind of files that begin in one of these ways."""
 
     def ours(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(max(map(len, starts))).startswith(starts)
 
-    return Kind(name, ours)
+    return Kind(name, ours, (suffix,) if suffix else (), advice)
 
 
 ANY = Kind("", lambda _path: True)  # other checks tell whose file it is
 PICTURE = starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n")
 
 
-def zip_with(name: str, member: str) -> Kind:
+def zip_with(name: str, member: str, suffix: str) -> Kind:
     """The kind of archives of which a member names this package as its maker."""
 
     def ours(path: Path) -> bool:
@@ -62,7 +64,7 @@ def zip_with(name: str, member: str) -> Kind:
         except (zipfile.BadZipFile, KeyError, RuntimeError, NotImplementedError):
             return False
 
-    return Kind(name, ours)
+    return Kind(name, ours, (suffix,))
 
 
 MOST_UNPACKED = 2_000_000_000  # bytes of all files of an archive: one at a time is held in memory
@@ -111,17 +113,18 @@ def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite:
         folder = next((folder for folder in path.parents if folder.exists()), path)
         if folder != path and not folder.is_dir():
             raise LoomfmuError(f"{path}: cannot be written ({folder} is not a directory)")
-        if not path.exists():
-            return
-        if not stat.S_ISREG(path.stat().st_mode):
+        free = not path.exists()
+        if not free and not stat.S_ISREG(path.stat().st_mode):
             raise LoomfmuError(f"{path}: cannot be written ({NOT_A_FILE})")
-        if overwrite or path.stat().st_size == 0 or kind.ours(path):
-            return
+        if not (free or overwrite or path.stat().st_size == 0 or kind.ours(path)):
+            raise LoomfmuError(
+                f"{path}: exists and is not {kind.name}; --force (overwrite=True in Python) replaces it"
+            )
     except OSError as error:
         raise cannot_write(path, error) from None
-    raise LoomfmuError(
-        f"{path}: exists and is not {kind.name}; --force (overwrite=True in Python) replaces it"
-    )
+    if kind.suffixes and path.suffix.lower() not in ("", *kind.suffixes):
+        name = path.with_suffix(kind.suffixes[0]).name
+        raise LoomfmuError(f"{path}: {kind.name} ends in {kind.suffixes[0]}; name it {name}{kind.advice}")
 
 
 def write_file(

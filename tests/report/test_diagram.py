@@ -7,6 +7,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from browser import NARROW
 
 import loomfmu
 from loomfmu import LoomfmuError, report
@@ -88,6 +89,39 @@ def test_coarse_samples_are_not_shown_as_if_they_were_fine(
     if steps == 24:
         with pytest.raises(LoomfmuError, match="there is no timing diagram: the samples are up to 15° apart"):
             diagram.write(trace, tmp_path / "coarse.svg")
+
+
+def test_labels_can_be_read_on_a_narrow_screen(whole: Trace, tmp_path: Path, opened: Open) -> None:
+    page = opened(report.write([whole], tmp_path / "whole.html"), NARROW)
+    for picture in ("straight", "round"):
+        size = page.evaluate(
+            "name => { const text = document.querySelector(`#diagram-${name} text`);"
+            " return parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a; }",
+            picture,
+        )
+        assert size >= 11.0
+    names = page.locator("#diagram-straight text.text").all()
+    frame = page.locator("#diagram-straight").bounding_box()
+    assert all(name.bounding_box()["x"] >= frame["x"] for name in names if name.is_visible())
+
+
+def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path) -> None:
+    output = copied.with_name("picture.svg")
+    diagram.write(Trace(copied), output, 2)
+    shown = [each.text for each in ElementTree.parse(output).iter("{http://www.w3.org/2000/svg}text")]
+    assert shown[0].endswith("plain weave: timing diagram, revolution 2")
+    assert {"in the shed", "outside and compressed", "buckled", "dwells"} <= {*shown}
+
+
+def test_a_revolution_beyond_those_that_are_kept_is_not_drawn(
+    whole: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagram, "MOST_DRAWN", 1)
+    page = opened(report.write([whole], tmp_path / "short.html"))
+    assert page.locator("#diagram-missing").is_hidden()
+    page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
+    assert page.locator("#diagram-missing").is_visible()
+    assert page.locator("#diagram-straight g[data-drawing]:not([hidden])").count() == 0
 
 
 def test_a_trace_without_mechanisms_says_what_a_diagram_needs(tmp_path: Path) -> None:

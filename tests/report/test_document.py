@@ -96,6 +96,31 @@ def test_the_command_writes_it_beside_the_trace(
     assert capsys.readouterr().err.strip().endswith("(it is an input of this command)")
 
 
+def test_a_page_is_not_written_under_the_name_of_another_format(
+    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", str(demo.path), "--output", str(tmp_path / "x.pdf")]) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.endswith("ends in .html; name it x.html, and print the page to PDF in a browser")
+    assert not (tmp_path / "x.pdf").exists()
+
+
+def test_the_end_of_a_run_is_the_end_of_its_last_revolution(written: Path, opened: Open) -> None:
+    found = opened(written)
+    found.keyboard.press("End")
+    assert found.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
+    assert found.inner_text("#diagram-revolution") == "3"
+
+
+def test_a_report_of_two_traces_says_what_is_of_the_first(demo: Trace, tmp_path: Path, opened: Open) -> None:
+    copy = tmp_path / "copy.h5"
+    os.link(demo.path, copy)
+    found = opened(report.write([demo, copy], tmp_path / "both.html"))
+    for section in ("claims", "diagram", "motion", "provenance"):
+        assert "Of the first trace, demo.h5." in found.inner_text(f"#{section}")
+    assert "Of the first trace" not in found.inner_text("#plots")
+
+
 def test_without_a_trace_there_is_nothing_to_report() -> None:
     with pytest.raises(LoomfmuError, match="name at least one"):
         report.write([])

@@ -1,13 +1,17 @@
 """When things happen over the main shaft: against published and analytic angles."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import loomfmu
 from loomfmu.report.occasions import Occasions, positive
 from loomfmu.report.section import Subject
 from loomfmu.traces import Trace
+
+SIMS = Path(__file__).parents[2] / "sims"
 
 
 def degrees(found: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -20,6 +24,19 @@ def test_the_window_of_risk_is_the_published_one(demo: Trace) -> None:
     # published for this machine: 92.5 to 103.9 deg, to a tenth; the motion is symmetric about 180 deg
     assert pressed == pytest.approx((92.5, 103.9), abs=0.05)
     assert back == pytest.approx((360.0 - 103.9, 360.0 - 92.5), abs=0.05)
+
+
+def test_the_belt_is_buckled_at_and_beyond_its_critical_load(demo: Trace, tmp_path: Path) -> None:
+    assert Occasions(Subject([demo])).revolution(2).intervals["belt", "buckled"] == []
+    values = {"shaft.speed": "700rpm", "revolutions": 1}
+    fast = loomfmu.run(SIMS / "wl680_3600.toml", set=values, output=tmp_path / "fast.h5").trace
+    along, load = np.degrees(fast.shaft_angle), 1.0 - fast["belt.margin"]
+    (first, last) = degrees(Occasions(Subject([fast])).revolution(1).intervals["belt", "buckled"])
+    beyond = along[load >= 1.0]
+    step = 0.25  # deg between samples
+    for (low, high), (start, end) in ((first, (0.0, 180.0)), (last, (180.0, 360.0))):
+        inside = beyond[(beyond > start) & (beyond < end)]
+        assert inside[0] - step <= low <= inside[0] and inside[-1] <= high <= inside[-1] + step
 
 
 def test_the_dwell_is_the_one_that_the_drive_computes(demo: Trace) -> None:

@@ -18,7 +18,6 @@ from .provenance import attributes, groups
 from .scenes.scene_files import files_of
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
-SUFFIXES = ("", ".h5", ".hdf5", ".hdf")  # of a trace: any other belongs to other kinds of files
 LARGE_TRACE = 300_000_000  # bytes from which its size is reported before the run
 
 
@@ -62,8 +61,6 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     """
     inputs = files_of(plan.scene)
     check_target(path, TRACE, inputs, overwrite)
-    if path.suffix.lower() not in SUFFIXES:
-        raise LoomfmuError(f"{path}: a trace is an HDF5 file; name it {path.with_suffix('.h5').name}")
     check_target(partial_of(path), PARTIAL, inputs, overwrite)
     kinds = [output_port(plan.scene, signal, "record").kind for signal in plan.signals]
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))

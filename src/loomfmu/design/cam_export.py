@@ -16,8 +16,8 @@ COLUMNS = (
     "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
     "curvature_radius_mm",
 )  # fmt: skip
-TABLE = starts_with("a table of a cam", ",".join(COLUMNS).encode())
-DRAWING = starts_with("a DXF drawing", b"  0\nSECTION\n")
+TABLE = starts_with("a table of a cam", ",".join(COLUMNS).encode(), suffix=".csv")
+DRAWING = starts_with("a DXF drawing", b"  0\nSECTION\n", suffix=".dxf")
 STRAIGHT = 1e4  # mm: an arc of a larger radius is written as a line
 
 

@@ -27,7 +27,7 @@ from .description.terminals import terminal_files
 from .live import live_slave, live_state, live_wrapper
 from .source import flatten
 
-FMU = zip_with("an FMU of loomfmu", "modelDescription.xml")
+FMU = zip_with("an FMU of loomfmu", "modelDescription.xml", ".fmu")
 TEXTS = {name: name for name in ("README.md", "drawing.svg", "icon.png")}  # that lie with a component
 HEADERS = Path(fmpy.__file__).with_name("c-code")  # those of the standard
 LIVE = (live_slave, live_state, live_wrapper)  # what is copied into each live FMU

@@ -23,7 +23,7 @@ from ..files import check_target, starts_with, write_file
 from ..fmi.system.builder import module
 from ..fmi.system.system import component_of
 from ..report import claims, diagram, provenance
-from ..report.document import assembled
+from ..report.document import PRINT, assembled
 from ..report.occasions import Occasions
 from ..report.section import Section, Subject
 from ..report.templates import check, template, text
@@ -32,7 +32,7 @@ from ..variables import Variable, variables_of
 from .knobs import Knob, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
-PAGE = starts_with("a page of loomfmu", MARK.encode())
+PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 POLICY = " 'wasm-unsafe-eval'"
 FIRST = 4  # plots that a page begins with, at most
 

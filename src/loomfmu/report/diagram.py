@@ -13,7 +13,7 @@ from ..traces import Trace, Verdict
 from . import pictures
 from .occasions import Bar, Occasions, Revolution, Row
 from .section import COARSEST, TURN, Section, Subject
-from .shapes import Drawing, Point, Shape, Text, file, on_circle, ring, svg
+from .shapes import Drawing, Point, Shape, Text, file, headed, on_circle, ring, svg
 from .templates import template
 
 LEFT, RIGHT, TOP, ROW, WIDTH = 110.0, 20.0, 34.0, 30.0, 900.0
@@ -41,7 +41,7 @@ def section(subject: Subject) -> Section | None:
         return Section("diagram", "Timing diagram", f"<p>Not drawn: {escape(reason)}.</p>")
     drawn: list[Revolution] = []
     marks: list[list[Mark]] = []
-    shown: dict[int, int] = {}
+    shown: dict[int, int | None] = {}
     for revolution in occasions.revolutions():
         its = marks_in(subject.trace.verdicts, revolution.number)
         same = (k for k, other in enumerate(drawn) if revolution.same(other) and marks[k] == its)
@@ -50,7 +50,7 @@ def section(subject: Subject) -> Section | None:
             place = len(drawn)
             drawn.append(revolution)
             marks.append(its)
-        shown[revolution.number] = len(drawn) - 1 if place is None else place
+        shown[revolution.number] = place
     height = straight_size(occasions.rows)[1]
     html = template("diagram.html.j2").render(
         width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
@@ -94,6 +94,7 @@ def write(
     drawing = (round_ if circular else straight)(occasions.rows, *its)
     size = (SQUARE, SQUARE) if circular else straight_size(occasions.rows)
     title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
+    drawing, size = headed(title, _legend(occasions.rows), drawing, size)
     kind = pictures.kind(output)
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
 

@@ -16,11 +16,12 @@ from .diagram import section as diagram
 from .drawings import section as motion
 from .plots import section as plots
 from .provenance import section as provenance
-from .section import Section, Subject, embedded
+from .section import Section, Subject, embedded, labels
 from .templates import template, text
 
 MARK = "<!DOCTYPE html>\n<!-- a report of loomfmu -->\n"
-REPORT = starts_with("a report of loomfmu", MARK.encode())
+PRINT = ", and print the page to PDF in a browser"
+REPORT = starts_with("a report of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 CURSOR_POINTS = 2000  # between which the cursor's time is interpolated
 
 SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, motion, plots, provenance)
@@ -68,6 +69,7 @@ def assembled(subject: Subject, sections: Sequence[Section], mark: str = MARK, p
         title=str(trace.attributes["title"]),
         software=str(trace.attributes["software"]),
         sections=sections,
+        first=labels(subject.traces)[0] if len(subject.traces) > 1 else "",
         policy=policy,
         style="\n".join([text("style.css"), *(section.style for section in sections)]),
         cursor=text("cursor.js"),

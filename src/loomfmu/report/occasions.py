@@ -233,6 +233,8 @@ def _belt(trace: Trace, belt: str) -> Iterator[Row]:
     bars = [Bar("outside its guide", "belt", free)]
     if force in trace:
         bars.append(Bar("outside and compressed", "risk", ["min", _scaled(free), _scaled(force)]))
+    if f"{belt}.margin" in trace:
+        bars.append(Bar("buckled", "buckled", ["-", 0.0, f"{belt}.margin"]))
     yield Row(belt, "Belt", tuple(bars), _share(free))
 
 

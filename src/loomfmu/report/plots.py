@@ -105,7 +105,7 @@ def section(subject: Subject) -> Section | None:
         "signals": signals,
         "first": claimed or names[:1],
     }
-    return Section("plots", "Plots", html, "plots.js", data, "uplot/uPlot")
+    return Section("plots", "Plots", html, "plots.js", data, "uplot/uPlot", of_first=False)
 
 
 def _points(subject: Subject, names: list[str]) -> int:

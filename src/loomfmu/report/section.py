@@ -31,6 +31,7 @@ class Section:
     script: str = ""
     data: Any = None
     library: str = ""
+    of_first: bool = True  # whether it shows the first trace alone
 
     @property
     def code(self) -> str:

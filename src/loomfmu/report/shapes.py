@@ -1,8 +1,8 @@
 """Flat pictures made of few shapes: as SVG for pages, by matplotlib for files that are not SVG."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from html import escape
 from typing import Any, Literal
 
@@ -11,11 +11,14 @@ import numpy as np
 from ..traces import plotting
 from .pictures import content
 
+MARGIN, LINE, CHARACTER = 10.0, 18.0, 7.0  # px
+
 Point = tuple[float, float]
 Anchor = Literal["start", "middle", "end"]
 # for files, in which no style sheet chooses: the colours of Okabe and Ito on white
 COLOURS = {
-    "weft": "#0072b2", "belt": "#e69f00", "risk": "#d55e00", "shed": "#56b4e9", "dwell": "#009e73",
+    "weft": "#0072b2", "belt": "#e69f00", "risk": "#d55e00", "buckled": "#1a1a1a",
+    "shed": "#56b4e9", "dwell": "#009e73",
     "change": "#d4d4d4", "reed": "#a8578a", "lock": "#5c5c5c", "curve": "#1a1a1a", "line": "#d4d4d4",
     "holds": "#006d4f", "fails": "#b34700", "text": "#1a1a1a", "faint": "#5c5c5c",
 }  # fmt: skip
@@ -62,6 +65,29 @@ def _element(each: Shape | Text) -> str:
 
 def _short(value: float) -> str:
     return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def headed(
+    title: str, legend: Mapping[str, str], drawing: Drawing, size: tuple[float, float]
+) -> tuple[Drawing, tuple[float, float]]:
+    """A drawing below its title and what its roles mean, by their labels, and its new size."""
+    x, y = MARGIN, 1.5 * LINE
+    above: list[Shape | Text] = [Text((x, y), title)]
+    y += LINE
+    for label, role in legend.items():
+        width = 24.0 + CHARACTER * len(label)
+        if x + width > size[0]:
+            x, y = MARGIN, y + LINE
+        box = [(x, y - 10.0), (x + 12.0, y - 10.0), (x + 12.0, y), (x, y)]
+        above += [Shape(box, role), Text((x + 17.0, y), label)]
+        x += width + 10.0
+    moved = [
+        replace(each, place=(each.place[0], each.place[1] + y))
+        if isinstance(each, Text)
+        else replace(each, points=[(px, py + y) for px, py in each.points])
+        for each in drawing
+    ]
+    return [*above, *moved], (size[0], size[1] + y)
 
 
 def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -> bytes:

@@ -14,5 +14,5 @@ def _is_partial(path: Path) -> bool:
         return file.read(len(SIGNATURE)) in (SIGNATURE, bytes(len(SIGNATURE)))
 
 
-TRACE = Kind("a trace of loomfmu", is_trace)
+TRACE = Kind("a trace of loomfmu", is_trace, (".h5", ".hdf5", ".hdf"))
 PARTIAL = Kind("a partial trace of an interrupted run", _is_partial)

@@ -98,6 +98,13 @@ def test_bad_pegs_are_refused(given):
         weave.parse(given, Path())
 
 
+def test_a_shorter_string_repeats_within_the_longest_or_is_refused():
+    assert weave.parse("1/10/1001", Path()).picks == 4
+    message = r"frame 3 has 3 picks and another frame 4; write all frames with the same number of picks"
+    with pytest.raises(LoomfmuError, match=message):
+        weave.parse("1100/0110/001", Path())
+
+
 def test_a_missing_wif_names_its_path():
     with pytest.raises(LoomfmuError, match=r"nowhere.wif: cannot be read \(No such file"):
         weave.parse("nowhere.wif", Path())

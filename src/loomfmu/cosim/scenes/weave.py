@@ -50,7 +50,15 @@ def parse(given: object, directory: Path) -> Weave:
             f'weave = {shown(given)} is neither pegs such as "10/01" nor the name of a WIF file'
         )
     _check_frames(len(pegs), "weave")
-    return Weave(tuple(check_pegs(frame, f"weave, frame {number}") for number, frame in enumerate(pegs, 1)))
+    checked = tuple(check_pegs(frame, f"weave, frame {number}") for number, frame in enumerate(pegs, 1))
+    longest = max(len(frame) for frame in checked)
+    for number, frame in enumerate(checked, 1):
+        if longest % len(frame):  # else it repeats within the longest
+            raise LoomfmuError(
+                f"weave, frame {number} has {len(frame)} picks and another frame {longest};"
+                " write all frames with the same number of picks"
+            )
+    return Weave(checked)
 
 
 def is_wif(given: object) -> bool:

@@ -27,7 +27,7 @@ from ..scenes.scene_files import files_of
 from .layout import Box, bends, layout
 from .xml import FMU, OMS, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
 
-PACKAGE = zip_with("a system package of loomfmu", SSD_FILE)
+PACKAGE = zip_with("a system package of loomfmu", SSD_FILE, ".ssp")
 SET_NAME = "parameters"  # of every instance's set: ecos takes all sets of one name, libcosim the first
 
 Files = dict[str, bytes]

@@ -32,7 +32,8 @@ const loomfmu = (() => {
   function label(where) {
     const time = `${interpolate(positions, times, where).toPrecision(6)} s`;
     if (!axis.turns) return time;
-    const turns = Math.floor(where / TURN + 1e-12);
+    let turns = Math.floor(where / TURN + 1e-12);
+    if (where >= last && where > first && where - turns * TURN < 1e-9) turns -= 1; // the end of the last one
     return `rev. ${turns + 1}, ${((where - turns * TURN) / DEGREE).toFixed(1)}°, ${time}`;
   }
 

@@ -5,11 +5,15 @@
   const numbers = Object.keys(shown).map(Number), first = Math.min(...numbers), last = Math.max(...numbers);
   const number = position => Math.min(Math.max(Math.floor(position / TURN + 1e-9) + 1, first), last);
 
+  const name = document.getElementById("diagram-revolution"), missing = document.getElementById("diagram-missing");
+
   loomfmu.follow(position => {
     const turn = number(position), angle = position - (turn - 1) * TURN;
     for (const picture of [straight, round])
       for (const group of picture.querySelectorAll("g[data-drawing]"))
         group.toggleAttribute("hidden", Number(group.dataset.drawing) !== shown[turn]);
+    name.textContent = turn;
+    missing.hidden = shown[turn] !== null;
     const x = left + (right - left) * angle / TURN, line = straight.querySelector(".cursor");
     line.setAttribute("x1", x);
     line.setAttribute("x2", x);
