@@ -162,3 +162,12 @@ def test_a_notebook_shows_it_escaped(tmp_path: Path) -> None:
     assert "a&lt;b&gt;.h5" in text and "<b>" not in text
     with h5py.File(a) as file:
         assert file["belt"].attrs["signal"] == "x"
+
+
+def test_a_page_that_cannot_be_written_is_refused_before_anything_is_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = str(trace(tmp_path / "a.h5"))
+    assert cli.main(["compare", path, path, "--report", "x.pdf"]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and "x.pdf: a report of loomfmu ends in .html" in said.err

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from . import printed, units
 from .arguments import parser
 from .errors import LoomfmuError, described, why
+from .files import check_target
 from .printed import complain, say
 
 BEGUN = perf_counter()  # when the command started
@@ -365,8 +366,14 @@ def _compare(options: argparse.Namespace) -> int:
     shares = [text for text in options.tolerance if "=" not in text]
     if len(shares) > 1:
         raise LoomfmuError(f"--tolerance is given twice: {shares[0]} and {shares[1]}")
-    for path in (options.first, options.second):
-        check(Path(path))
+    inputs = [Path(path) for path in (options.first, options.second)]
+    for path in inputs:
+        check(path)
+    if options.report:  # before anything is printed
+        from . import report
+
+        report.check()
+        check_target(Path(options.report), report.REPORT, inputs, options.force)
     found = compare(
         options.first, options.second, ignore=options.ignore, over=options.over,
         tolerance=units.parse(shares[0], "1") if shares else TOLERANCE,
@@ -374,8 +381,6 @@ def _compare(options: argparse.Namespace) -> int:
     )  # fmt: skip
     found.show()
     if options.report:
-        from . import report
-
         say(f"report: {report.write([options.first, options.second], options.report, options.force)}")
     return 0 if found else 1
 

@@ -87,7 +87,7 @@ class Trace(Signals):
         except FileNotFoundError:
             raise LoomfmuError(f"{self.given}: there is no such file") from None
         except (OSError, RuntimeError) as error:
-            reason = getattr(error, "strerror", None) or error
+            reason = getattr(error, "strerror", None) or _damage(self.path) or error
             raise LoomfmuError(f"{self.given}: cannot be read as a trace ({reason})") from None
 
     @contextmanager
@@ -348,6 +348,17 @@ def _hdf5(path: Path) -> Any:
         if not marked or path.stat().st_size < length:
             raise  # HDF5 would look for the rest of a file that was cut off again and again
     return h5py.File(path, "r", swmr=True)
+
+
+def _damage(path: Path) -> str:
+    """Why HDF5 cannot open a file, where that can be seen; empty elsewhere."""
+    try:
+        size, length = path.stat().st_size, superblock(path)[2]
+        if not h5py.is_hdf5(path):
+            return "it is not an HDF5 file" if size else "it is empty"
+    except (OSError, RuntimeError):
+        return ""
+    return f"it is cut off: {size} of its {length} bytes are left" if size < length else ""
 
 
 def _lacking(file: Any) -> str:
