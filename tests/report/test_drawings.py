@@ -17,10 +17,11 @@ from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.physics.belt import complete_elliptic, elastica_deflection
 from loomfmu.report.drawings import section
-from loomfmu.report.drawings.belt import elastica, half_slopes
+from loomfmu.report.drawings.belt import elastica, half_slope
 from loomfmu.report.drawings.drive import BALL, planar, spherical
 from loomfmu.report.drawings.reed import joints
 from loomfmu.report.drawings.tracks import BUDGET, Tracks
+from loomfmu.report.rules import evaluated
 from loomfmu.report.section import TURN, Section, Subject
 from loomfmu.traces import Trace
 
@@ -159,7 +160,7 @@ def test_the_drawn_belt_has_the_recorded_deflection_and_length(
 def test_the_elastica_is_that_of_the_physics() -> None:
     for load in (1.0029, 1.05, 1.5, 3.0, 10.0):
         bend = np.array([elastica_deflection(load, 1.0)])
-        (half,) = half_slopes(bend, np.ones(1), load)
+        (half,) = evaluated(half_slope("bend", 1.0, load), {"bend": bend}.__getitem__)
         modulus = math.sin(half)
         assert (2.0 * complete_elliptic(modulus) / math.pi) ** 2 == pytest.approx(load, rel=1e-4)
         x, y = elastica(modulus)
@@ -225,7 +226,7 @@ def test_the_section_is_small(name: str, request: pytest.FixtureRequest) -> None
 def test_equal_revolutions_are_kept_once_and_the_budget_is_kept(demo: Trace) -> None:
     subject = Subject([demo])
     tracks = Tracks(subject, 0.0)
-    tracks.add("same", np.sin(subject.positions))
+    tracks.add("same", "weft.travel", 0.001)
     noise = np.random.default_rng(1).normal(size=len(subject.positions))
     for number in range(2 * BUDGET // 361):
         tracks.add(f"other {number}", noise)
@@ -252,7 +253,7 @@ def test_a_revolution_that_is_not_kept_says_so(
 
 def test_play_moves_the_head(pages: dict[str, Path], opened: Open) -> None:
     page = opened(pages["buckled"])
-    value = page.locator('#motion-width-belt output[data-value="belt.travel"]')
+    value = page.locator('#motion-width-belt output[data-value="belt.travelled"]')
     seek(page, 100.0)
     assert value.inner_text() == "963.4"
     page.keyboard.press("ArrowRight")

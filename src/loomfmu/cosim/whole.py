@@ -43,17 +43,22 @@ def export(
     return [*scene.notes, *[grid] * (scene.grid != UNIFORM)]
 
 
-def system(scene: Scene) -> System:
-    """What a scene's components are as one. Raises LoomfmuError for what cannot be part of it."""
+def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str = "use --ssp") -> System:
+    """What a scene's components are as one. Raises LoomfmuError for what cannot be part of it.
+
+    `whole` is what messages call it, `instead` what they advise.
+    """
     signals = recorded(scene)
     needed = prune(scene, signals, keep_shafts=True).scene
     order, lagged = step_order(needed.instances, needed.wires)
     if lagged:
         raise LoomfmuError(
-            f"loop: {lagged[0]} closes an algebraic loop, which one FMU of a whole scene cannot hold:"
-            f' use --ssp, or cut the wire: [wires] "{".".join(lagged[0].sink)}" = false'
+            f"loop: {lagged[0]} closes an algebraic loop, which {whole} cannot hold: {instead},"
+            f' or cut the wire: [wires] "{".".join(lagged[0].sink)}" = false'
         )
-    parts = tuple(_part(needed.instances[name]) for name in order)
+    parts = tuple(
+        _part(needed.instances[name], f"{whole} is made of components alone: {instead}") for name in order
+    )
     return System(
         name=_identifier(scene.name, {part.component.__name__ for part in parts}),
         title=scene.title,
@@ -71,13 +76,10 @@ def system(scene: Scene) -> System:
     )
 
 
-def _part(instance: Instance) -> Part:
+def _part(instance: Instance, rule: str) -> Part:
     fmu = instance.fmu
     if fmu.component is None or not fmu.built:
-        raise LoomfmuError(
-            f"{instance.name} is an FMU file, {fmu.path}; one FMU of a whole scene is made of components"
-            " alone: use --ssp"
-        )
+        raise LoomfmuError(f"{instance.name} is an FMU file, {fmu.path}; {rule}")
     return Part(instance.name, fmu.component, instance.values)
 
 

@@ -82,6 +82,11 @@ def _port(scene: Scene, known: set[str], key: str, where: str) -> tuple[Port, tu
         raise LoomfmuError(f"--vary {error}") from None
     if any(port.causality not in ("parameter", "input") for port in ports):
         raise LoomfmuError(f"{where}: {key} is computed and cannot be set")
+    sources = {wire.sink: ".".join(wire.source) for wire in scene.wires}
+    for pair in pairs:
+        if pair in sources:
+            cut = f'to vary it, cut the wire: [wires] "{".".join(pair)}" = false'
+            raise LoomfmuError(f"{where}: {key} gets its values from {sources[pair]}; {cut}")
     targets = tuple(f"{name}.{each}" for name, each in pairs if f"{name}.{each}" in known)
     if not targets:
         raise LoomfmuError(f"{where}: {key} has no effect on what this scene records")
@@ -109,6 +114,14 @@ def _choices(port: Port) -> tuple[tuple[int, str], ...]:
     return tuple(zip(port.numbers, port.choices, strict=True))
 
 
+def _has_no_unit(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _range(port: Port, key: str, wanted: str, start: float, where: str) -> tuple[Value, Value]:
     """Both ends, in SI and within the limits of the variable."""
     if not wanted:
@@ -121,10 +134,15 @@ def _range(port: Port, key: str, wanted: str, start: float, where: str) -> tuple
             ends = [min(end, port.maximum) for end in ends]
         low, high = (float(round(end)) if port.kind == "Integer" else end for end in ends)
     else:
-        first, dots, last = wanted.partition("..")
-        if not dots:
+        first, _, last = (end.strip() for end in wanted.partition(".."))
+        if not (first and last):
             raise LoomfmuError(f"{where}={wanted}: not a range; {FORM}")
-        low, high = (port.value(end.strip(), f"{where}: {key}") for end in (first, last))
+        for end in (first, last):
+            if port.display != "1" and _has_no_unit(end):
+                unit = f"write the unit of both ends, such as {end}{port.display}"
+                raise LoomfmuError(f"{where}={wanted}: {end} has no unit; {unit}")
+        low, high = (port.value(end, where) for end in (first, last))
     if not low < high:
-        raise LoomfmuError(f"{where}={wanted}: the range is empty; the lower end comes first")
+        order = "the lower end comes first" if low > high else "both ends are equal"
+        raise LoomfmuError(f"{where}={wanted}: the range is empty; {order}")
     return low, high

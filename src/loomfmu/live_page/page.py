@@ -6,7 +6,7 @@ Beside them it holds a run of the scene, which can be read and printed before an
 import tempfile
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +22,9 @@ from ..errors import path_of
 from ..files import check_target, starts_with, write_file
 from ..fmi.system.builder import module
 from ..fmi.system.system import component_of
-from ..report import claims, diagram, provenance
-from ..report.document import PRINT, assembled
-from ..report.occasions import Occasions
+from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
-from ..report.templates import check, template, text
+from ..report.templates import check, template
 from ..traces import Trace
 from ..variables import Variable, variables_of
 from .knobs import Knob, knobs
@@ -34,22 +32,7 @@ from .knobs import Knob, knobs
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 POLICY = " 'wasm-unsafe-eval'"
-FIRST = 4  # plots that a page begins with, at most
-
-
-@dataclass(frozen=True)
-class _Live(Section):
-    """A section of a report that follows the run of the page, by more scripts."""
-
-    more: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, section: Section, data: Any, *more: str) -> "_Live":
-        return cls(section.name, section.title, section.html, section.script, data, more=more)
-
-    @property
-    def code(self) -> str:
-        return "\n".join([super().code, *map(text, self.more)])
+SCRIPTS = ("live.js", "live_rules.js", "live_curves.js", "live_judge.js")
 
 
 def write(
@@ -77,46 +60,26 @@ def write(
     path = path_of(output, "output") if output else Path("results") / f"{loaded.name}_page.html"
     inputs = files_of(loaded)
     check_target(path, PAGE, inputs, overwrite)
-    whole = system(loaded)
+    whole = system(loaded, "a page that runs the scene", "use loomfmu run --report")
     rows = {each.name: (number, each) for number, each in enumerate(variables_of(component_of(whole)))}
     varied = knobs(loaded, [name for name, (_, each) in rows.items() if each.settable], vary)
     wasm = module(whole)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as directory:
         started = run(loaded, output=Path(directory) / "start.h5")
         with started.trace as trace:
-            subject = Subject([trace])
-            data = _data(loaded, trace, rows, varied, wasm) | {
-                "turns": subject.turns,
-                "fmus": len(whole.parts),
-            }
-            content = assembled(subject, _sections(loaded, subject, varied, data), MARK, POLICY)
+            subject = Subject([trace], live=True)
+            data = _data(loaded, subject, rows, varied, wasm) | {"fmus": len(whole.parts)}
+            controls = template("live.html.j2").render(knobs=varied)
+            live = Section("live", "Values", controls, SCRIPTS, data)
+            content = assembled(subject, [live, *sections(subject)], MARK, POLICY)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 
 
-def _sections(scene: Scene, subject: Subject, varied: Sequence[Knob], data: dict[str, Any]) -> list[Section]:
-    controls = template("live.html.j2").render(knobs=varied)
-    drawn = diagram.section(subject)
-    found = [
-        Section("live", "Values", controls, "live.js", data),
-        _Live.of(claims.section(subject), _claims(scene, subject), "live_motion.js", "live_judge.js"),
-    ]
-    if drawn and drawn.data:
-        layout = diagram.layout(Occasions(subject).rows)
-        found.append(_Live.of(drawn, drawn.data | layout, "live_diagram.js"))
-    elif drawn:
-        found.append(drawn)
-    names = [name for name in subject.trace if name in data["signals"]]
-    first = [each.signal for each in subject.trace.verdicts if each.signal in names]
-    lines = template("live_plots.html.j2").render(names=names)
-    shown = {"first": list(dict.fromkeys([*first, *names]))[: max(FIRST, len(set(first)))]}
-    found.append(Section("plots", "Signals", lines, "live_plots.js", shown))
-    return [*found, provenance.section(subject)]
-
-
 def _data(
-    scene: Scene, trace: Trace, rows: dict[str, tuple[int, Variable]], varied: Sequence[Knob], wasm: bytes
+    scene: Scene, subject: Subject, rows: dict[str, tuple[int, Variable]], varied: Sequence[Knob], wasm: bytes
 ) -> dict[str, Any]:
     """What the script needs to run the module: rows of variables, and values that it does not hold."""
+    trace = subject.trace
     names = [name for name in trace if name in rows]
     parameters = {name: row for name, (row, each) in rows.items() if each.settable}
     constants = {
@@ -132,6 +95,8 @@ def _data(
         "parameters": parameters,
         "constants": constants,
         "knobs": [asdict(knob) for knob in varied],
+        "turns": subject.turns,
+        "claims": _claims(scene, trace),
     }
 
 
@@ -147,18 +112,18 @@ def _signal(trace: Trace, name: str, row: int, variable: Variable) -> dict[str, 
     }
 
 
-def _claims(scene: Scene, subject: Subject) -> list[dict[str, Any]]:
+def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """What the script judges: the kind and the arguments of each claim, and how its values are shown.
 
     `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
     the page holds: the script leaves out a claim that it would judge otherwise.
     """
     found = []
-    for table, claim, verdict in zip(scene.claims, claims_of(scene), subject.trace.verdicts, strict=True):
+    for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
         arguments = {name: getattr(claim, name) for name in type(claim).declared() if name != "name"}
         frames = arguments.get("healds") or [arguments[key] for key in ("heald",) if key in arguments]
         if arguments.get("healds") == ():  # all of them
-            frames = sorted({name.split(".")[0] for name in subject.trace if name.startswith("heald_")})
+            frames = sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
         unit = "" if verdict.label == "1" else verdict.label
         lifted_by = str(arguments.get("lifted_by", ""))
         found.append({
@@ -166,7 +131,8 @@ def _claims(scene: Scene, subject: Subject) -> list[dict[str, Any]]:
             "kind": table["kind"],
             "sense": verdict.sense,
             "signal": verdict.signal,
-            "lifts": {frame: lift_of(frame, lifted_by, subject.trace) for frame in frames},
+            "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
+            "lifts": {frame: lift_of(frame, lifted_by, trace) for frame in frames},
             "shown": {"factor": verdict.displayed(1.0), "unit": unit},
             "native": {"holds": verdict.holds, "worst": verdict.worst},
         })  # fmt: skip

@@ -20,7 +20,7 @@ def section(subject: Subject) -> Section:
             word="unknown" if not (trace.judged and verdicts) else "fails" if failing else "holds",
             rows=[_row(subject, verdict) for verdict in verdicts],
         ),
-        "claims.js",
+        ("claims.js",),
     )  # fmt: skip
 
 

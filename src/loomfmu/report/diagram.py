@@ -62,10 +62,14 @@ def section(subject: Subject) -> Section | None:
         legend=_legend(occasions.rows), coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
     )  # fmt: skip
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
-    return Section("diagram", "Timing diagram", html, "diagram.js", data)
+    scripts: tuple[str, ...] = ("diagram.js",)
+    if subject.live:
+        data |= _layout(occasions.rows)
+        scripts += ("live_diagram.js",)
+    return Section("diagram", "Timing diagram", html, scripts, data)
 
 
-def layout(rows: Sequence[Row]) -> dict[str, Any]:
+def _layout(rows: Sequence[Row]) -> dict[str, Any]:
     """What a script needs to draw the rows as this module does: their rules, places and sizes."""
     width = (OUTER - INNER) / len(rows)
     return {

@@ -59,7 +59,12 @@ def write(
 
 def page(subject: Subject) -> str:
     """The whole page. Raises LoomfmuError if the extra `report` is not installed."""
-    return assembled(subject, [section for make in SECTIONS if (section := make(subject))])
+    return assembled(subject, sections(subject))
+
+
+def sections(subject: Subject) -> list[Section]:
+    """What there is to show, in its order."""
+    return [section for make in SECTIONS if (section := make(subject))]
 
 
 def assembled(subject: Subject, sections: Sequence[Section], mark: str = MARK, policy: str = "") -> str:

@@ -1,55 +1,28 @@
 """What happens when, over the main shaft: the rows of a timing diagram.
 
 A row has intervals in which a rule is positive, and a curve between 0 and 1 that shows how it moves.
-Edges are interpolated between the samples. Rules are data, which the script of a page evaluates, too: the
-name of a signal or of a parameter, a number, or an operation followed by its operands.
+Edges are interpolated between the samples.
 
 Signals are read one revolution at a time and not kept; extremes of the whole run are found block by block.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial, reduce
-from typing import Any
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..traces import Trace
 from ..traces.excerpt import READ
+from .rules import Rule, evaluated
 from .section import TURN, Subject
 
 Floats = NDArray[np.float64]
 Interval = tuple[float, float]
-Rule = str | float | list[Any]
 SMALL = 1e-300  # so that nothing is divided by 0
 EXTREMES = {"lowest": np.min, "highest": np.max}  # operations on the whole run
 CURVE = 180  # points of a curve, about
-
-OPERATIONS: dict[str, Callable[..., Any]] = {
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
-    "abs": np.abs,
-    "min": lambda *values: reduce(np.minimum, values),
-    "lowest": lambda *values: min(float(np.min(each)) for each in values),
-    "highest": lambda *values: max(float(np.max(each)) for each in values),
-}
-
-
-def evaluated(rule: Rule, of: Callable[[str], Any]) -> Any:
-    """The value of a rule; `of` gives those of names.
-
-    >>> evaluated(["-", "x", ["lowest", "x"]], {"x": np.array([1.0, 3.0])}.__getitem__).tolist()
-    [0.0, 2.0]
-    """
-    if isinstance(rule, str):
-        return of(rule)
-    if isinstance(rule, list):
-        operation, *operands = rule
-        with np.errstate(invalid="ignore"):  # what does not move has no share of its range
-            return OPERATIONS[operation](*(evaluated(each, of) for each in operands))
-    return rule
 
 
 @dataclass(frozen=True)

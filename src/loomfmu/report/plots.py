@@ -21,6 +21,7 @@ from .templates import template
 Floats = NDArray[np.float64]
 MOST_POINTS, FEWEST_POINTS = 10_000, 200  # of a curve
 SHARE = 150_000  # points of the signals of claims, and of all others: 1.6 MB of a report
+LIVE = ["this run", "the scene's own values"]  # what a page draws that runs the scene itself
 ALONG = 2000  # points between which the page interpolates time over shaft angle
 
 
@@ -92,20 +93,23 @@ def section(subject: Subject) -> Section | None:
     for name in names:
         row, signals[name] = _signal(subject, name, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
+    names_of_curves = LIVE if subject.live else labels(subject.traces)
+    along = [_along(subject, trace) for trace in subject.traces]
     html = template("plots.html.j2").render(
         turns=subject.turns,
         groups=[(name, list(found)) for name, found in groupby(rows, lambda row: row["instance"])],
         count=len(names),
         several=len(subject.traces) > 1,
-        labels=labels(subject.traces),
+        labels=names_of_curves,
     )
     data = {
-        "traces": [_along(subject, trace) for trace in subject.traces],
-        "labels": labels(subject.traces),
+        "traces": along * len(LIVE) if subject.live else along,
+        "labels": names_of_curves,
         "signals": signals,
         "first": claimed or names[:1],
     }
-    return Section("plots", "Plots", html, "plots.js", data, "uplot/uPlot", of_first=False)
+    scripts = ("plots.js", "live_plots.js") if subject.live else ("plots.js",)
+    return Section("plots", "Plots", html, scripts, data, "uplot/uPlot", of_first=False)
 
 
 def _points(subject: Subject, names: list[str]) -> int:
@@ -128,7 +132,8 @@ def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], d
         found = outline(trace, name, points)
         continuous = found.continuous
         along = trace.shaft_angle if trace.turns else trace.time
-        drawn.append([_packed(along[found.places]), _packed(found.values / factor)])
+        curve = [_packed(along[found.places]), _packed(found.values / factor)]
+        drawn += [None] * len(LIVE) if subject.live else [curve]
         numbers = (f"{value / factor:.6g}" for value in (found.lowest, found.highest, found.last))
         summaries.append((label, *numbers))
     instance, _, variable = name.partition(".")

@@ -21,23 +21,22 @@ COARSEST = math.radians(10.0)  # between samples: beyond, neither motions nor in
 class Section:
     """A part of the page: `html` below the heading `title`, and what makes it follow the cursor.
 
-    `data` is what `script`, a file of the folder `page`, finds by `loomfmu.data(name)`. `library` names the
-    script and the style sheet of others that it needs, without suffix.
+    `data` is what `scripts`, files of the folder `page`, find by `loomfmu.data(name)`. `library` names the
+    script and the style sheet of others that they need, without suffix.
     """
 
     name: str
     title: str
     html: str
-    script: str = ""
+    scripts: tuple[str, ...] = ()
     data: Any = None
     library: str = ""
     of_first: bool = True  # whether it shows the first trace alone
 
     @property
     def code(self) -> str:
-        """The text of the script."""
-        library = text(f"{self.library}.js") if self.library else ""
-        return library + text(self.script) if self.script else ""
+        """The text of the scripts."""
+        return "\n".join(map(text, ((f"{self.library}.js",) if self.library else ()) + self.scripts))
 
     @property
     def style(self) -> str:
@@ -76,10 +75,13 @@ def _plain(data: Any) -> Any:
 class Subject:
     """What a report is about: the traces, the first of which is the one that is judged and shown moving.
 
+    On a `live` page the FMUs themselves run: what it draws and judges then changes with each run.
+
     Places are positions on one axis: the shaft's angle, not wrapped [rad], or time [s] where no shaft turns.
     """
 
     traces: Sequence[Trace]
+    live: bool = False
 
     @property
     def trace(self) -> Trace:

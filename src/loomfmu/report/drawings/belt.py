@@ -1,13 +1,14 @@
 """The rapier's belt: across the loom's width, and between its guide and the head, buckled as it is."""
 
 from dataclasses import dataclass
-from math import pi, sin
+from math import asin, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...physics.belt import MOST_BENT, complete_elliptic
-from .recorded import instances, mm
+from ...physics.belt import LARGEST_BEND, MOST_BENT, complete_elliptic
+from ..rules import TABLE, Rule, mm
+from .recorded import instances
 from .sketch import Figure, Sketch, Value, title
 from .tracks import FINEST, Tracks
 
@@ -17,10 +18,19 @@ POINTS = 33  # of a buckled belt
 SHAPES = 41  # between a straight belt and the one that is bent most
 HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
 
-# every elastica that there is: half the slope of its ends [rad], its modulus, its quarter period
-HALVES = np.linspace(0.0, 0.5 * pi - 1e-6, 4000)
-MODULI = np.sin(HALVES)
-QUARTERS = np.array([complete_elliptic(float(modulus)) for modulus in MODULI])
+
+def _quarters(halves: Floats) -> Floats:
+    """Quarter periods of elasticas, by half the slope of their ends."""
+    return np.array([complete_elliptic(sin(half)) for half in halves])
+
+
+# Every elastica that there is, by half the slope of its ends [rad]: deflections over the length up to the
+# largest one, then loads over the critical one.
+MOST = asin(MOST_BENT)
+RISING = np.linspace(0.0, MOST, 400).round(9).tolist()
+SHARES = (np.sin(RISING) / _quarters(RISING)).round(9).tolist()
+BENT_BACK = (0.5 * pi - np.geomspace(0.5 * pi - MOST, 1e-6, 500)).round(9).tolist()
+LOADS = ((2.0 / pi * _quarters(BENT_BACK)) ** 2).round(6).tolist()
 
 
 def elastica(modulus: float) -> tuple[Floats, Floats]:
@@ -40,19 +50,20 @@ def elastica(modulus: float) -> tuple[Floats, Floats]:
     return x[::32], modulus * np.cos(p[::32]) / quarter
 
 
-def half_slopes(deflection: Floats, free_length: Floats, load: Floats | float) -> Floats:
-    """Half the slope of the belt's ends at each sample [rad], from its recorded deflection.
+def half_slope(deflection: Rule, free_length: Rule, load: Rule) -> Rule:
+    """Half the slope of the belt's ends [rad], from its recorded deflection.
 
     Beyond 2.2 times its critical load a column is bent back and its deflection falls again: `load` over the
     critical one, 0 if it is not known, tells which of the two shapes it has.
     """
-    length = np.maximum(free_length, 1e-9)
-    bent_back = MODULI >= MOST_BENT
-    rising = ~bent_back
-    found = np.interp(deflection / length, (MODULI / QUARTERS)[rising], HALVES[rising])
-    loads = (2.0 / pi * QUARTERS[bent_back]) ** 2
-    found = np.where(load > loads[0], np.interp(load, loads, HALVES[bent_back]), found)
-    return np.where((deflection > 0.0) & (free_length > 0.0), found, 0.0)
+    share: Rule = ["/", deflection, ["max", free_length, 1e-9]]
+    bent = [
+        "if positive",
+        ["-", load, LOADS[0]],
+        [TABLE, load, LOADS, BENT_BACK],
+        [TABLE, share, SHARES, RISING],
+    ]
+    return ["if positive", ["min", deflection, free_length], bent, 0.0]
 
 
 @dataclass(frozen=True)
@@ -64,6 +75,8 @@ class Belt:
     inside: str
     tail: str
     tip: str
+    deflection: str
+    travel: str
     slope: str  # half that of its ends [rad]; empty if it never buckles
     pressed: str  # empty if its compression is not recorded
     idle: float
@@ -72,42 +85,42 @@ class Belt:
 
 def tracked(tracks: Tracks, name: str) -> Belt:
     """The tracks of a belt that records its free length and its deflection."""
-    trace = tracks.trace
-    free, bent = mm(trace, f"{name}.free_length"), mm(trace, f"{name}.deflection")
-    idle, head = (1000.0 * trace.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
-    outside = np.maximum(free, 0.0)
-    slope, tail = "", free
-    if np.any(bent > 0.0):
-        margin = f"{name}.margin"
-        found = half_slopes(bent, free, 1.0 - trace[margin] if margin in trace else 0.0)
-        slope = tracks.add(f"{name}.slope", found, 1e-4, FINER)
-        grid = np.linspace(0.0, float(np.max(found)), 100)
-        chords = np.array([elastica(sin(each))[0][-1] for each in grid])
-        tail = np.where(free > 0.0, free * np.interp(found, grid, chords), free)
-    pressed = ""
-    if f"{name}.axial_force" in trace:
-        force = trace[f"{name}.axial_force"]
-        shares = [each / max(float(np.max(np.abs(each))), 1e-300) for each in (free, force)]
-        pressed = tracks.add(f"{name}.pressed", np.minimum(*shares), 1e-3)
-    tracks.add(f"{name}.deflection", bent, finer=FINER if slope else 1)
-    tracks.add(f"{name}.travel", free + idle + head)
+    trace, live = tracks.trace, tracks.subject.live
+    free, bent, force = (f"{name}.{each}" for each in ("free_length", "deflection", "axial_force"))
+    idle, head = (1000.0 * tracks.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
+    slope, tail = "", mm(free)
+    if live or tracks.values(["highest", bent]) > 0.0:
+        load: Rule = ["-", 1.0, f"{name}.margin"] if f"{name}.margin" in trace else 0.0
+        slope = tracks.add(f"{name}.slope", half_slope(bent, free, load), 1e-4, FINER)
+        grid = np.linspace(0.0, _steepest(tracks, slope), 100)
+        chords = [round(float(elastica(sin(each))[0][-1]), 7) for each in grid]
+        tail = ["if positive", free, ["*", mm(free), [TABLE, slope, grid.tolist(), chords]], mm(free)]
+    finer = FINER if slope else 1
+    pressed = tracks.add(f"{name}.pressed", ["min", mm(free), force], 1e-3) if force in trace else ""
     return Belt(
         name,
-        tracks.add(f"{name}.outside", outside),
-        tracks.add(f"{name}.inside", np.minimum(free, 0.0)),
-        tracks.add(f"{name}.tail", tail, finer=FINER if slope else 1),
-        tracks.add(f"{name}.tip", tail + head, finer=FINER if slope else 1),
+        tracks.add(f"{name}.outside", mm(["max", free, 0.0])),
+        tracks.add(f"{name}.inside", mm(["min", free, 0.0])),
+        tracks.add(f"{name}.tail", tail, finer=finer),
+        tracks.add(f"{name}.tip", ["-", tail, -head], finer=finer),
+        tracks.mm(bent, finer),
+        tracks.add(f"{name}.travelled", ["-", mm(free), -idle - head]),
         slope, pressed, idle, head,
     )  # fmt: skip
+
+
+def _steepest(tracks: Tracks, slope: str) -> float:
+    """The largest half slope that is drawn: any, if the page itself runs the belt."""
+    return BENT_BACK[-1] if tracks.subject.live else float(np.max(tracks.values(slope)))
 
 
 def width(tracks: Tracks, belt: Belt) -> Figure:
     """The head's way across the loom, with the wheel on which the belt is wound."""
     trace = tracks.trace
-    reach = float(np.max(mm(trace, f"{belt.name}.free_length"))) + belt.head
+    reach = float(tracks.values(["highest", mm(f"{belt.name}.free_length")])) + belt.head
     back = belt.idle + belt.head
     wheels = [
-        1000.0 * trace.parameter(f"{each}.wheel_diameter")
+        1000.0 * tracks.parameter(f"{each}.wheel_diameter")
         for each in (*instances(trace, "WeftInsertion"), *instances(trace, "BeltWrap"))
     ]
     radius = 0.5 * wheels[0] if wheels else 0.0
@@ -132,21 +145,22 @@ def width(tracks: Tracks, belt: Belt) -> Figure:
         f"width-{belt.name}", title("Across the loom", belt.name, "belt"),
         f"The rapier head on its way from the guide across the loom's width, up to {reach:.0f} mm into the"
         " shed.",
-        [Value("head into the shed", belt.tip, "mm"), Value("travel", f"{belt.name}.travel", "mm")],
+        [Value("head into the shed", belt.tip, "mm"), Value("travel", belt.travel, "mm")],
         "The axis counts mm from the end of the guide. Heights of head and guide are schematic.",
     )  # fmt: skip
 
 
 def between(tracks: Tracks, belt: Belt) -> Figure:
     """The free section between guide and head, large enough to see it bend."""
-    trace = tracks.trace
-    free, bent = mm(trace, f"{belt.name}.free_length"), mm(trace, f"{belt.name}.deflection")
+    live = tracks.subject.live
+    free, bent = (tracks.values(mm(f"{belt.name}.{each}")) for each in ("free_length", "deflection"))
     at_risk = np.asarray(bent > 0.0)
-    if not np.any(at_risk) and f"{belt.name}.axial_force" in trace:
-        at_risk = trace[f"{belt.name}.axial_force"] > 0.0
+    if not np.any(at_risk) and belt.pressed:
+        at_risk = tracks.values(belt.pressed) > 0.0
     longest = float(np.max(free[at_risk])) if np.any(at_risk) else 200.0
     right = max(200.0, 1.6 * longest)
-    sketch = Sketch(tracks, -0.2 * right, -30.0, right, max(60.0, 1.15 * float(np.max(bent))))
+    top = LARGEST_BEND * longest if live else 1.15 * float(np.max(bent))
+    sketch = Sketch(tracks, -0.2 * right, -30.0, right, max(60.0, top))
     for y in (-9.0, 9.0):
         sketch.line((sketch.left, y), (0.0, y), role="rail")
     sketch.line((0.0, 0.0), (right, 0.0), role="path")
@@ -158,11 +172,11 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
         if belt.slope
         else "The belt stays straight in this run."
     )
+    does = "." if live else f", which {'buckles' if belt.slope else 'stays straight'} in this run."
     return sketch.figure(
         f"belt-{belt.name}", title("Belt between guide and head", belt.name, "belt"),
-        "The free section of the belt between its guide and the rapier head"
-        + (", which buckles in this run." if belt.slope else ", which stays straight in this run."),
-        [Value("free length", belt.outside, "mm"), Value("deflection", f"{belt.name}.deflection", "mm")],
+        f"The free section of the belt between its guide and the rapier head{does}",
+        [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")],
         f"{shape} The deflection is not exaggerated. Red: outside the guide and compressed.",
     )  # fmt: skip
 
@@ -195,11 +209,7 @@ def _free(sketch: Sketch, belt: Belt, role: str) -> None:
 
 def shapes(tracks: Tracks) -> dict[str, object] | None:
     """Elasticas up to the largest slope that occurs, for the page; None if no belt buckles."""
-    largest = [
-        track.step * int(np.max(track.frames))
-        for name, track in tracks.made.items()
-        if name.endswith(".slope")
-    ]
+    largest = [_steepest(tracks, name) for name in tracks.made if name.endswith(".slope")]
     if not largest:
         return None
     rows = [elastica(sin(half)) for half in np.linspace(0.0, max(largest), SHAPES)]

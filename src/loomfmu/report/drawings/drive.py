@@ -1,13 +1,14 @@
 """The rapier's drive: spherical crank-rocker, four-bar, sector gear and wheel."""
 
-from math import cos, pi, radians, sin
+from math import cos, degrees, pi, radians, sin
 
 import numpy as np
 
 from ...components.weft_insertion import WeftInsertion
 from ...physics.linkage import spherical_rocker, wrapped
+from ..rules import mm
 from ..section import TURN
-from .recorded import follows, mm
+from .recorded import follows
 from .sketch import Figure, Point, Sketch, Value, title
 from .tracks import Tracks
 
@@ -53,7 +54,7 @@ def planar(weft: WeftInsertion, angle: float) -> list[Place]:
 
 def drive(tracks: Tracks, name: str) -> Figure | None:
     """The drive of a rapier; None if it does not follow the shaft of the trace."""
-    weft: WeftInsertion | None = follows(tracks.trace, name, WeftInsertion, "travel")
+    weft: WeftInsertion | None = follows(tracks, name, WeftInsertion, "travel")
     if weft is None:
         return None
     angles = TURN * tracks.shares
@@ -75,7 +76,7 @@ def drive(tracks: Tracks, name: str) -> Figure | None:
         "Rapier drive: the shaft's crank moves a spherical rocker,"
         + (" a four-bar C, D, K, G," if joints else "")
         + " a sector gear and the rapier wheel, on which the belt is wound.",
-        [Value("travel", f"{name}.travel", "mm")],
+        [Value("travel", tracks.mm(f"{name}.travel"), "mm")],
         "Linkage and wheel are to scale; radius of the spherical linkage, gears and place of the wheel are"
         " schematic.",
     )  # fmt: skip
@@ -93,9 +94,7 @@ def _cycles(tracks: Tracks, name: str, places: list[list[Place]]) -> list[Point]
 def _wheel(sketch: Sketch, weft: WeftInsertion, name: str, at: Place, radius: float) -> None:
     """The wheel with its belt, which leaves where the turning wheel pushes it to the right."""
     side = -1.0 if weft.travel_per_angle < 0.0 else 1.0
-    travel = mm(sketch.tracks.trace, f"{name}.travel")
-    sketch.tracks.add(f"{name}.travel", travel)
-    turn = sketch.tracks.add(f"{name}.wheel", -side * np.degrees(travel / radius))
+    turn = sketch.tracks.add(f"{name}.wheel", ["*", -side * degrees(1.0 / radius), mm(f"{name}.travel")])
     sketch.circle(at, radius, "body")
     with sketch.group(turn=(turn, *at)):
         for spoke in range(3):

@@ -5,12 +5,13 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
 from ...traces import Trace
 from ..occasions import in_order
+from .tracks import Tracks
 
+SHAFT = ("follow_shaft", "speed", "start_angle", "inputs_at_step_end")  # parameters of where the shaft stands
 AGREES = 1e-6  # m by which a recorded signal may differ from the component's
 COMPARED = 50  # samples at which they are compared
 
@@ -25,22 +26,19 @@ def instances(trace: Trace, fmu: str, *variables: str) -> list[str]:
     return sorted(found, key=in_order)
 
 
-def mm(trace: Trace, signal: str) -> NDArray[np.float64]:
-    """A length in mm."""
-    return 1000.0 * np.asarray(trace[signal], dtype=np.float64)
-
-
-def follows(trace: Trace, instance: str, kind: Callable[[], Any], signal: str) -> Any:
+def follows(tracks: Tracks, instance: str, kind: Callable[[], Any], signal: str) -> Any:
     """A component with the recorded parameters of an instance, moved by `start_angle`.
 
     None unless it is the shaft's angle alone that moves it: unless it has the recorded signal there.
     """
-    component = kind()
-    if not trace.turns:
+    component, trace = kind(), tracks.trace
+    if not tracks.subject.turns:
         return None
     for each in fields(component):
+        if each.name in SHAFT:
+            continue
         try:
-            value = trace.parameter(f"{instance}.{each.name}")
+            value = tracks.parameter(f"{instance}.{each.name}")
         except LoomfmuError:
             continue  # an input or an output
         setattr(component, each.name, type(getattr(component, each.name))(value))

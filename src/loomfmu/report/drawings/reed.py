@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from ...components.reed_beat_up import ReedBeatUp
 from ...physics.reed import servo_turn
+from ..rules import mm
 from ..section import TURN
-from .recorded import follows, mm
+from .recorded import follows
 from .sketch import Figure, Point, Sketch, Value, title
 from .tracks import Tracks
 
@@ -35,7 +36,7 @@ def joints(reed: ReedBeatUp, angle: float) -> list[Place]:
 
 def beat_up(tracks: Tracks, name: str) -> Figure | None:
     """The reed with what drives it; None if it does not follow the shaft of the trace."""
-    reed: ReedBeatUp | None = follows(tracks.trace, name, ReedBeatUp, "position")
+    reed: ReedBeatUp | None = follows(tracks, name, ReedBeatUp, "position")
     if reed is None:
         return None
     found = np.array([joints(reed, angle) for angle in TURN * tracks.shares])
@@ -64,7 +65,7 @@ def beat_up(tracks: Tracks, name: str) -> Figure | None:
         sketch.box(-6.0, -60.0, 6.0, 60.0, role="body reed")
     sketch.pivot(crank, (0.0, 0.0))
     sketch.joint(pin, end, arm, tip)
-    sketch.tracks.add(f"{name}.back", front - mm(tracks.trace, f"{name}.position"))
+    sketch.tracks.add(f"{name}.back", ["-", front, mm(f"{name}.position")])
     return sketch.figure(
         f"reed-{name}", title("Reed beat-up", name, "reed"),
         "The reed's six-bar: crank, coupler, rocker with its arm, rod, and the reed on its line.",

@@ -35,8 +35,9 @@ def section(subject: Subject) -> Section | None:
         return None
     place = _place(subject, tracks.still)
     html = template("motion.html.j2").render(coarse="", place=place, figures=figures)
-    data = tracks.data() | {"still": tracks.still, "bows": shapes(tracks)}
-    return Section("motion", "The loom in motion", html, "motion.js", data)
+    moved = tracks.rules() if subject.live else tracks.data()
+    data = moved | {"still": tracks.still, "bows": shapes(tracks)}
+    return Section("motion", "The loom in motion", html, ("motion.js",), data)
 
 
 def still(subject: Subject) -> float:

@@ -2,11 +2,9 @@
 
 import re
 
-import numpy as np
-
 from ...components.warp_tension import WarpTension
-from ...traces import Trace
-from .recorded import instances, mm
+from ..rules import Rule, mm
+from .recorded import instances
 from .sketch import Figure, Sketch, Value
 from .tracks import Tracks
 
@@ -22,18 +20,17 @@ def frames(tracks: Tracks) -> Figure | None:
     if not names:
         return None
     column = max(340.0 / max(len(names), 4), NARROWEST)
-    stroke = max(1000.0 * trace.parameter(f"{name}.stroke") for name in names)
+    stroke = max(1000.0 * tracks.parameter(f"{name}.stroke") for name in names)
     dampers = {name: f"damper_{name.rpartition('_')[2]}" for name in names}
     known = instances(trace, "HealdDamper", "displacement")
-    half = max([20.0, *(_room(trace, damper) for damper in dampers.values() if damper in known)])
+    half = max([20.0, *(_room(tracks, damper) for damper in dampers.values() if damper in known)])
     sketch = Sketch(tracks, -75.0, -half - 34.0, column * max(len(names), 4) + 5.0, stroke + half + 12.0)
     for level, label in ((0.0, "lowered"), (stroke, "raised")):
         sketch.line((sketch.left, level), (sketch.right, level), role="path")
         sketch.label(sketch.left, level, label, "start", (4.0, -5.0))
     for place, name in enumerate(names):
         x = column * (place + 0.5)
-        lift = tracks.add(f"{name}.lift", mm(trace, f"{name}.lift"))
-        with sketch.group(shift=(x, lift)):
+        with sketch.group(shift=(x, tracks.mm(f"{name}.lift"))):
             _frame(sketch, dampers[name] if dampers[name] in known else "", 0.42 * column, half)
         sketch.label(x, -half, name.rpartition("_")[2], shift=(0.0, 22.0))
     carriers = any(damper in known for damper in dampers.values())
@@ -50,22 +47,21 @@ def frames(tracks: Tracks) -> Figure | None:
     )  # fmt: skip
 
 
-def _room(trace: Trace, damper: str) -> float:
+def _room(tracks: Tracks, damper: str) -> float:
     """Half the height of a frame in which a carrier never meets the edge."""
-    free = 1000.0 * trace.parameter(f"{damper}.free_travel")
-    return max(free, float(np.max(np.abs(mm(trace, f"{damper}.displacement"))))) + CARRIER + 4.0
+    free = 1000.0 * tracks.parameter(f"{damper}.free_travel")
+    moved = float(tracks.values(["highest", ["abs", mm(f"{damper}.displacement")]]))
+    return max(free, moved) + CARRIER + 4.0
 
 
 def _frame(sketch: Sketch, damper: str, side: float, half: float) -> None:
     sketch.box(-side, -half, side, half, role="body dwell")
     if not damper:
         return
-    trace = sketch.tracks.trace
-    stop = 1000.0 * trace.parameter(f"{damper}.free_travel") + CARRIER
+    stop = 1000.0 * sketch.tracks.parameter(f"{damper}.free_travel") + CARRIER
     for y in (-stop, stop):
         sketch.line((-side, y), (side, y), role="path")
-    shift = sketch.tracks.add(f"{damper}.displacement", mm(trace, f"{damper}.displacement"))
-    with sketch.group(shift=(0.0, shift)):
+    with sketch.group(shift=(0.0, sketch.tracks.mm(f"{damper}.displacement"))):
         sketch.box(-0.75 * side, -CARRIER, 0.75 * side, CARRIER, role="carrier dwell")
 
 
@@ -78,16 +74,16 @@ def shed(tracks: Tracks, tip: str) -> Figure | None:
     names = instances(trace, "HealdFrame", "lift")
     if not names:
         return None
-    front, back, published = _lengths(trace)
-    half = max(500.0 * trace.parameter(f"{name}.stroke") for name in names)
+    front, back, published = _lengths(tracks)
+    half = max(500.0 * tracks.parameter(f"{name}.stroke") for name in names)
     pitch = min(BEHIND, 60.0 / len(names))
     sketch = Sketch(tracks, -front - pitch * len(names) - 15.0, -half - 36.0, 30.0, half + 36.0)
     sketch.line((0.0, 0.0), (30.0, 0.0), role="link cloth")
     sketch.label(0.0, 0.0, "fell", "start", (6.0, -8.0))
     sketch.line((sketch.left, 0.0), (0.0, 0.0), role="path")
     for place, name in enumerate(names):
-        lift = tracks.add(f"{name}.lift", mm(trace, f"{name}.lift"))
-        x, middle = -front - pitch * place, 500.0 * trace.parameter(f"{name}.stroke")
+        lift = tracks.mm(f"{name}.lift")
+        x, middle = -front - pitch * place, 500.0 * tracks.parameter(f"{name}.stroke")
         with sketch.group(shift=(0.0, -middle)):
             sketch.line((0.0, middle), (-front, lift), (x, lift), (-front - back, middle), role="sheet shed")
             with sketch.group(shift=(x, lift)):
@@ -95,14 +91,17 @@ def shed(tracks: Tracks, tip: str) -> Figure | None:
                     sketch.line((0.0, 0.0), (0.0, end), role="heald")
                     sketch.box(-0.35 * pitch, end - 4.0, 0.35 * pitch, end + 4.0, role="body dwell")
     reeds = _reed(sketch)
-    station = trace.parameter(f"{names[0]}.warp_ratio") * front
-    widest = 2.0 * half * trace.parameter(f"{names[0]}.warp_ratio")
-    note = _head(sketch, tip, station, widest) if tip else ""
-    tracks.add("opening", np.min([
-        2000.0 * trace.parameter(f"{name}.warp_ratio")
-        * np.abs(trace[f"{name}.lift"] - 0.5 * trace.parameter(f"{name}.stroke"))
+    ratio = tracks.parameter(f"{names[0]}.warp_ratio")
+    note = _head(sketch, tip, ratio * front, 2.0 * half * ratio) if tip else ""
+    openings: list[Rule] = [
+        [
+            "*",
+            ["*", 2000.0, f"{name}.warp_ratio"],
+            ["abs", ["-", f"{name}.lift", ["*", 0.5, f"{name}.stroke"]]],
+        ]
         for name in names
-    ], axis=0))  # fmt: skip
+    ]
+    tracks.add("opening", ["min", *openings])
     assumed = "" if published else " Distances along the warp are assumed: they are not in the trace."
     return sketch.figure(
         "shed", "The shed from its side",
@@ -113,11 +112,11 @@ def shed(tracks: Tracks, tip: str) -> Figure | None:
     )  # fmt: skip
 
 
-def _lengths(trace: Trace) -> tuple[float, float, bool]:
+def _lengths(tracks: Tracks) -> tuple[float, float, bool]:
     """Distances of the healds from fell and back rest [mm], and whether the trace has them."""
-    found = instances(trace, "WarpTension")
+    found = instances(tracks.trace, "WarpTension")
     if found:
-        front, back = (1000.0 * trace.parameter(f"{found[0]}.{each}_length") for each in ("front", "back"))
+        front, back = (1000.0 * tracks.parameter(f"{found[0]}.{each}_length") for each in ("front", "back"))
         return front, back, True
     assumed = WarpTension()
     return 1000.0 * assumed.front_length, 1000.0 * assumed.back_length, False
@@ -127,8 +126,8 @@ def _reed(sketch: Sketch) -> bool:
     """The reed, at its distance from its front limit, which is the fell."""
     trace = sketch.tracks.trace
     for name in instances(trace, "ReedBeatUp", "position", "front_limit"):
-        behind = mm(trace, f"{name}.position") - 1000.0 * trace[f"{name}.front_limit"][-1]
-        with sketch.group(shift=(sketch.tracks.add(f"{name}.behind", behind), 0.0)):
+        behind = sketch.tracks.add(f"{name}.behind", mm(["-", f"{name}.position", f"{name}.front_limit"]))
+        with sketch.group(shift=(behind, 0.0)):
             sketch.line((0.0, -55.0), (0.0, 55.0), role="link reed")
         return True
     return False

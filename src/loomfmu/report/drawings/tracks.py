@@ -1,4 +1,4 @@
-"""What moves, as keyframes: few enough for a page, and the same frames only once."""
+"""What moves: as rules, and as keyframes, few enough for a page and the same frames only once."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...traces import Trace
 from ...traces.excerpt import Excerpt
+from ..rules import Rule, evaluated, mm
 from ..section import TURN, Subject
 
 A_TURN = 361  # keyframes over a revolution: one a degree
@@ -25,22 +26,25 @@ Frames = NDArray[np.int32]  # a row for each window, or one for all
 
 @dataclass(frozen=True)
 class Track:
-    """Keyframes in steps of some unit."""
+    """Keyframes in steps of some unit, and the rule they follow; None if the angle alone counts."""
 
     frames: Frames
     step: float
+    rule: Rule | None = None
 
 
 @dataclass(frozen=True)
 class Tracks:
     """Named values that move with the cursor, in windows of one revolution; without a shaft, of the run.
 
-    `still` is the position of the drawings where nothing moves them.
+    `still` is the position of the drawings where nothing moves them. `fixed` collects the parameters on which
+    shapes and places depend that no track moves.
     """
 
     subject: Subject
     still: float
     made: dict[str, Track] = field(default_factory=dict)
+    fixed: set[str] = field(default_factory=set)
 
     @cached_property
     def span(self) -> float:
@@ -87,26 +91,46 @@ class Tracks:
         """The window of the still position."""
         return max(int(np.searchsorted(self.starts, self.still, side="right")) - 1, 0)
 
-    def add(self, name: str, values: Any, step: float = 0.01, finer: int = 1) -> str:
-        """Let a name move as values of the samples, rounded to a step; returns the name.
+    def parameter(self, name: str) -> float:
+        """A parameter of the run, which what stands still depends on."""
+        self.fixed.add(name)
+        return self.trace.parameter(name)
+
+    def values(self, rule: Rule) -> Any:
+        """What a rule gives at the samples, or a number; names are tracks, signals and parameters."""
+        trace = self.trace
+
+        def of(name: str) -> Any:
+            if name in self.made:
+                return self.values(self.made[name].rule or 0.0)
+            return trace[name] if name in trace else trace.parameter(name)
+
+        return evaluated(rule, of)
+
+    def add(self, name: str, rule: Rule, step: float = 0.01, finer: int = 1) -> str:
+        """Let a name move by a rule, rounded to a step; returns the name.
 
         `finer` is the number of keyframes for each usual one, for what moves at a jump.
         """
         along = self.subject.along(self.trace)
-        return self._keep(name, np.interp(self._places(finer), along, values), step)
+        return self._keep(name, np.interp(self._places(finer), along, self.values(rule)), step, rule)
 
     def _places(self, finer: int) -> NDArray[np.float64]:
         """Positions of the keyframes, a row for each window."""
         shares = np.linspace(0.0, 1.0, finer * (len(self.shares) - 1) + 1)
         return np.asarray(self.starts[:, None] + self.span * shares)
 
+    def mm(self, signal: str, finer: int = 1) -> str:
+        """Let a length move, in mm; returns the name."""
+        return self.add(f"{signal}_mm", mm(signal), finer=finer)
+
     def cycle(self, name: str, values: Any, step: float = 0.01) -> str:
         """Let a name move as values of the keyframes, the same in each window; returns the name."""
         return self._keep(name, np.asarray(values)[None, :], step)
 
-    def _keep(self, name: str, values: NDArray[np.float64], step: float) -> str:
+    def _keep(self, name: str, values: NDArray[np.float64], step: float, rule: Rule | None = None) -> str:
         steps = np.clip(np.nan_to_num(np.round(values / step)), -LARGEST, LARGEST)
-        self.made[name] = Track(steps.astype(np.int32), step)
+        self.made[name] = Track(steps.astype(np.int32), step, rule)
         return name
 
     def at(self, what: float | str) -> float:
@@ -118,6 +142,17 @@ class Tracks:
         share = (self.still - self.starts[self.now]) / self.span
         shares = np.linspace(0.0, 1.0, len(frame))
         return float(track.step * np.interp(share, shares, frame))
+
+    def rules(self) -> dict[str, Any]:
+        """What a page needs that runs the scene itself: the rules, and one revolution of what has none."""
+        return {
+            "first": 0.0, "span": self.span, "fixed": sorted(self.fixed),
+            "tracks": {
+                name: {"rule": track.rule} if track.rule is not None
+                else {"step": track.step, "frames": [np.diff(track.frames[0], prepend=0)], "shown": [0]}
+                for name, track in self.made.items()
+            },
+        }  # fmt: skip
 
     def data(self) -> dict[str, Any]:
         """All frames for the page, each as differences; `shown` has the frame of each window.

@@ -32,9 +32,15 @@ const loomfmu = (() => {
   function label(where) {
     const time = `${interpolate(positions, times, where).toPrecision(6)} s`;
     if (!axis.turns) return time;
-    let turns = Math.floor(where / TURN + 1e-12);
-    if (where >= last && where > first && where - turns * TURN < 1e-9) turns -= 1; // the end of the last one
-    return `rev. ${turns + 1}, ${((where - turns * TURN) / DEGREE).toFixed(1)}°, ${time}`;
+    const turn = revolution(where), degrees = (where - (turn - 1) * TURN) / DEGREE;
+    return `rev. ${turn}, ${degrees.toFixed(1)}°, ${time}`;
+  }
+
+  /* The revolution that a position is in, counted from 1; the run ends at 360° of its last one. */
+  function revolution(where) {
+    const begun = Math.floor(Math.min(first, last) / TURN) + 1;
+    const ended = Math.max(Math.ceil(Math.max(first, last) / TURN - 1e-9), begun);
+    return Math.min(Math.max(Math.floor(where / TURN + 1e-9) + 1, begun), ended);
   }
 
   function seek(where) {
@@ -97,13 +103,30 @@ const loomfmu = (() => {
     seek(position);
   }
 
+  /* Makes a function that draws an element: at once while it is in sight, else as soon as it is, or on paper. */
+  const drawn = new Map();
+  const sight = new IntersectionObserver(found => {
+    for (const { target, isIntersecting } of found) {
+      const each = drawn.get(target);
+      each.seen = isIntersecting;
+      if (each.seen && each.late) each.draw();
+    }
+  }, { rootMargin: "25%" });
+  function whenSeen(element, draw) {
+    const each = { seen: true, late: false, draw: () => { each.late = false; draw(); } };
+    drawn.set(element, each);
+    sight.observe(element);
+    return () => { if (each.seen) each.draw(); else each.late = true; };
+  }
+  addEventListener("beforeprint", () => { for (const each of drawn.values()) if (each.late) each.draw(); });
+
   slider.min = first;
   slider.max = last;
   slider.addEventListener("input", () => { pause(); seek(Number(slider.value)); });
   button.addEventListener("click", toggle);
   addEventListener("load", () => seek(position));
 
-  return { data, locate, interpolate, label, seek, play, pause, lay, turns: axis.turns, get first() { return first; }, get last() { return last; },
+  return { data, locate, interpolate, label, revolution, seek, play, pause, lay, whenSeen, turns: axis.turns, get first() { return first; }, get last() { return last; },
            follow: listener => { listeners.push(listener); }, get position() { return position; } };
 })();
 window.loomfmu = loomfmu;

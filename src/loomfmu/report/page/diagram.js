@@ -2,8 +2,7 @@
 (() => {
   const { shown, left, right, centre } = loomfmu.data("diagram"), TURN = 2 * Math.PI;
   const straight = document.getElementById("diagram-straight"), round = document.getElementById("diagram-round");
-  const numbers = Object.keys(shown).map(Number), first = Math.min(...numbers), last = Math.max(...numbers);
-  const number = position => Math.min(Math.max(Math.floor(position / TURN + 1e-9) + 1, first), last);
+  const number = loomfmu.revolution;
 
   const name = document.getElementById("diagram-revolution"), missing = document.getElementById("diagram-missing");
 

@@ -1,8 +1,8 @@
-/* The FMUs of the page, compiled to WebAssembly: `loomfmu.live.follow(run => ...)` is called after every run.
+/* The FMUs of the page, compiled to WebAssembly: `loomfmu.live.follow(part, run => ...)` is called after every run.
  * Of a run there are `time`, `positions`, `signal(name)`, `rate(name)` and `parameter(name)`, all in SI; it is
  * null where the values cannot be run. */
 loomfmu.live = (() => {
-  const plan = loomfmu.data("live"), names = Object.keys(plan.signals), listeners = [];
+  const plan = loomfmu.data("live"), names = Object.keys(plan.signals), listeners = new Map();
   const form = document.getElementById("live-knobs"), problem = document.getElementById("live-problem");
   const pace = document.getElementById("live-pace"), reset = form.querySelector("button");
   const values = plan.knobs.map(knob => knob.start);
@@ -44,12 +44,19 @@ loomfmu.live = (() => {
     current = failed ? null : found;
     problem.hidden = !failed;
     problem.textContent = failed ? `These values cannot be run: ${found}` : "";
-    for (const listener of listeners) listener(current);
-    if (current) loomfmu.lay(current.positions, current.time);
-    const drawn = performance.now();
-    pace.textContent = failed ? "" : `${plan.steps} steps of ${plan.fmus} FMUs in ${(stepped - begun).toFixed(0)} ms,`
-      + ` judged and drawn in ${(drawn - stepped).toFixed(0)} ms`;
-    loomfmu.live.pace = { run: stepped - begun, all: drawn - begun };
+    const took = { run: stepped - begun };
+    let before = stepped;
+    const mark = part => { const now = performance.now(); took[part] = now - before; before = now; };
+    for (const [part, listener] of listeners) { listener(current); mark(part); }
+    if (current) loomfmu.lay(current.positions, current.time); else loomfmu.seek(loomfmu.position);
+    mark("cursor");
+    setTimeout(() => { // plots are painted in microtasks
+      mark("paint");
+      took.all = before - begun;
+      pace.textContent = failed ? "" : `${plan.steps} steps of ${plan.fmus} FMUs in ${took.run.toFixed(0)} ms,`
+        + ` judged and drawn in ${(took.all - took.run).toFixed(0)} ms`;
+      loomfmu.live.pace = took; // in ms, by parts
+    });
   }
 
   function soon() {
@@ -74,7 +81,7 @@ loomfmu.live = (() => {
       select.addEventListener("change", () => { values[number] = Number(select.value); soon(); });
       return () => { select.value = values[number]; };
     }
-    const [slider, field] = box.querySelectorAll("input");
+    const [slider, field] = box.querySelectorAll("input"), refused = box.querySelector(".refused");
     slider.step = stepOf(knob);
     for (const input of [slider, field]) {
       input.min = short(knob.low / knob.factor);
@@ -82,6 +89,7 @@ loomfmu.live = (() => {
     }
     const show = () => {
       slider.value = values[number] / knob.factor;
+      refused.textContent = "";
       slider.setAttribute("aria-valuetext", `${short(values[number] / knob.factor)} ${knob.unit}`);
       return slider;
     };
@@ -92,8 +100,11 @@ loomfmu.live = (() => {
       soon();
     });
     field.addEventListener("input", () => {
-      const value = Number(field.value);
-      if (!field.value || !field.checkValidity() || (knob.whole && !Number.isInteger(value))) return;
+      const value = Number(field.value), unit = knob.unit && ` ${knob.unit}`;
+      const taken = field.value && field.checkValidity() && (!knob.whole || Number.isInteger(value));
+      refused.textContent = taken ? "" : `Write a ${knob.whole ? "whole number" : "number"} from ${field.min} to ${field.max}${unit};`
+        + ` the page shows ${short(values[number] / knob.factor)}${unit}.`;
+      if (!taken) return;
       values[number] = value * knob.factor;
       show();
       soon();
@@ -128,5 +139,6 @@ loomfmu.live = (() => {
     for (const input of form.elements) input.disabled = false;
     run();
   });
-  return { plan, follow: listener => { listeners.push(listener); }, get current() { return current; } };
+  const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
+  return { plan, changed, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
 })();

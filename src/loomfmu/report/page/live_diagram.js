@@ -1,44 +1,26 @@
 /* The timing diagram of the run: rows and rules are those of report/occasions.py, places those of diagram.py. */
 (() => {
   const { rows, left, right, centre, top, row: height, outer, width } = loomfmu.data("diagram"), TURN = 2 * Math.PI;
-  const SVG = "http://www.w3.org/2000/svg", EDGE = 1e-9, CURVE_POINTS = 180;
+  const SVG = "http://www.w3.org/2000/svg", CURVE_POINTS = 180;
   const pictures = ["straight", "round"].map(name => document.getElementById(`diagram-${name}`));
   const details = document.querySelector("#diagram details"), drawings = [];
-  let run = null, bars = [], curves = [], drawn = null, begun = false;
-
-  // ---- rules
-
-  const each = change => (...operands) => {
-    const lists = operands.filter(operand => typeof operand === "object");
-    if (!lists.length) return change(...operands);
-    return lists[0].map((_, k) => change(...operands.map(operand => typeof operand === "object" ? operand[k] : operand)));
-  };
-  const over = (choose, begin) => (...operands) => operands.reduce(
-    (found, operand) => typeof operand === "object" ? operand.reduce(choose, found) : choose(found, operand), begin);
-  const [less, more] = [(one, other) => Math.min(one, other), (one, other) => Math.max(one, other)];
-  const operations = {
-    "-": each((one, other) => one - other), "*": each((one, other) => one * other), "/": each((one, other) => one / other),
-    abs: each(Math.abs), min: each(Math.min), lowest: over(less, Infinity), highest: over(more, -Infinity),
-  };
-
-  function value(rule) {
-    if (typeof rule === "string") return run.has(rule) ? run.signal(rule) : run.parameter(rule);
-    return Array.isArray(rule) ? operations[rule[0]](...rule.slice(1).map(value)) : rule;
-  }
+  let run = null, bars = [], curves = [], drawn = null, begun = false; // bars and curves: functions of live_rules.js
 
   // ---- one revolution
 
-  /* A signal along one revolution, with its values at both ends: angles within the revolution, and values. */
-  function along(values, number) {
+  /* A rule along one revolution, with its values at both ends: angles within the revolution, and values. */
+  function along(value, number) {
     const { positions } = run, start = (number - 1) * TURN;
     const first = Math.max(start, positions[0]), last = Math.min(start + TURN, positions[positions.length - 1]);
-    const angles = [first - start], found = [loomfmu.interpolate(positions, values, first)];
-    for (let k = loomfmu.locate(positions, first)[0]; k < positions.length && positions[k] < last; k++)
-      if (positions[k] > first) { angles.push(positions[k] - start); found.push(values[k]); }
+    const [[from, share], [to, rest]] = [first, last].map(position => loomfmu.locate(positions, position));
+    const angles = [first - start], found = [between(value, from, share)];
+    for (let k = from; k <= to + 1 && positions[k] < last; k++)
+      if (positions[k] > first) { angles.push(positions[k] - start); found.push(value(k, 0)); }
     angles.push(last - start);
-    found.push(loomfmu.interpolate(positions, values, last));
+    found.push(between(value, to, rest));
     return [angles, found];
   }
+  const between = (value, k, share) => share ? value(k, 0) + share * (value(k + 1, 0) - value(k, 0)) : value(k, 0);
 
   function positive([angles, values]) {
     const edges = values[0] > 0 ? [angles[0]] : [];
@@ -84,11 +66,10 @@
           round.push(shape(ring(outside - 0.85 * width, outside - 0.15 * width, from, to), bar.role, text));
         }
       });
-      if (curves[place]) {
-        const [angles, values] = along(curves[place], number), every = Math.max(1, Math.floor(angles.length / CURVE_POINTS));
-        const points = angles.flatMap((angle, k) => k % every ? [] : [[x(angle), low + 6 + (height - 10) * (1 - values[k])]]);
-        straight.push(shape(points, "curve"));
-      }
+      const [angles, values] = along(curves[place], number), every = Math.max(1, Math.floor(angles.length / CURVE_POINTS));
+      if (!values.every(Number.isFinite)) return;
+      const points = angles.flatMap((angle, k) => k % every ? [] : [[x(angle), low + 6 + (height - 10) * (1 - values[k])]]);
+      straight.push(shape(points, "curve"));
     });
     for (const [verdict, at] of marks(number)) {
       const low = top + height * rows.length, role = verdict.holds ? "holds" : "fails", text = verdict.holds ? "holds" : "FAILS";
@@ -130,23 +111,19 @@
     begun = true;
   }
 
-  const number = position => {
-    const last = Math.ceil(loomfmu.last / TURN - EDGE), first = Math.floor(loomfmu.first / TURN) + 1;
-    return Math.min(Math.max(Math.floor(position / TURN + EDGE) + 1, first), last);
-  };
-
   function update(position) {
-    if (!run || drawn === number(position)) return;
-    drawn = number(position);
+    if (!run || drawn === loomfmu.revolution(position)) return;
+    drawn = loomfmu.revolution(position);
     draw(drawn);
   }
 
-  loomfmu.live.follow(found => {
+  loomfmu.live.follow("diagram", found => {
     if (!begun) begin();
     [run, drawn] = [found, null];
     if (!run) { for (const drawing of drawings) drawing.replaceChildren(); return; }
-    bars = rows.map(row => row.bars.map(bar => value(bar.rule)));
-    curves = rows.map(row => row.curve === null ? null : value(row.curve)).map(curve => curve && curve.every(Number.isFinite) ? curve : null);
+    const rule = loomfmu.rules(run);
+    bars = rows.map(row => row.bars.map(bar => rule(bar.rule)));
+    curves = rows.map(row => rule(row.curve === null ? NaN : row.curve));
   });
   loomfmu.follow(update);
   loomfmu.live.intervals = turn => rows.map((row, place) => row.bars.map((_, k) => positive(along(bars[place][k], turn))));

@@ -1,10 +1,10 @@
 /* The claims after each run. A verdict is given where the outputs hold it exactly or the curve between the samples
  * decides it; everything else is left to `loomfmu run`, and said so. */
 (() => {
-  const claims = loomfmu.data("claims"), TURN = 2 * Math.PI, DEGREE = Math.PI / 180, ALIKE = 1e-8;
+  const { claims } = loomfmu.live.plan, TURN = 2 * Math.PI, DEGREE = Math.PI / 180, ALIKE = 1e-8;
   const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector("#claims .outcome");
-  const last = values => values[values.length - 1], NOT_HERE = "not judged on this page: loomfmu run judges it";
-  const FARTHEST = TURN / 20 * (1 + 1e-11);
+  const last = values => values[values.length - 1], NOT_HERE = "loomfmu run judges it";
+  const COARSE = "the samples are too far apart to be sure", FARTHEST = TURN / 20 * (1 + 1e-11);
 
   // ---- what claims have in common
 
@@ -72,7 +72,7 @@
     const spans = [...lower, ...upper].filter(each => each.whole)
       .map(each => ({ turned: Math.abs(turning.at(each.end) - turning.at(each.start)), time: each.start }))
       .sort((one, other) => one.time - other.time);
-    if (!spans.length) return unknown(NOT_HERE);
+    if (!spans.length) return unknown(`no such span begins and ends within the run; ${NOT_HERE}`);
     const worst = Math.min(...spans.map(each => each.turned));
     return { worst, bound: claim.at_least, time: spans.find(each => each.turned <= worst + 1e-11).time };
   }
@@ -80,7 +80,7 @@
   function extreme(run, signal, bound, sense, within) {
     const found = motion(run, signal).lowest(sense, within);
     const between = sense * found.value < sense * bound && sense * found.sample >= sense * bound;
-    if (found.coarse || between) return unknown(`decided between the samples; ${NOT_HERE}`);
+    if (found.coarse || between) return unknown(`it is decided between the samples; ${NOT_HERE}`);
     return { worst: found.value, bound, time: found.time };
   }
 
@@ -127,48 +127,49 @@
         const value = lift.at(time);
         return { time, away: Math.min(Math.abs(value), Math.abs(stroke - value)) / stroke };
       }).sort((one, other) => one.time - other.time);
-      if (!found.length) return unknown(NOT_HERE);
+      if (!found.length) return unknown("the run never reaches these angles");
       const worst = Math.max(...found.map(each => each.away));
       return { worst, bound: claim.tolerance, time: found.find(each => each.away >= worst - 1e-11).time };
     },
     rapier_in_open_shed: (run, claim) => {
       const within = inShed(run, claim);
-      if (!within.length) return unknown(NOT_HERE);
+      if (!within.length) return unknown("the head never enters the shed in this run");
       const found = Object.entries(claim.lifts).map(([heald, lift]) => {
         const near = motion(run, lift).nearest(0.5 * run.parameter(`${heald}.stroke`), within);
         return { ...near, value: 2 * run.parameter(`${heald}.warp_ratio`) * near.value };
       });
-      if (found.some(each => each.coarse)) return unknown(NOT_HERE);
+      if (found.some(each => each.coarse)) return unknown(COARSE);
       const worst = Math.min(...found.map(each => each.value));
       const time = Math.min(...found.filter(each => each.value <= worst + 1e-11).map(each => each.time));
       return { worst, bound: claim.head_height, time };
     },
     reed_clear_of_rapier: (run, claim) => {
       const within = inShed(run, claim);
-      if (!within.length) return unknown(NOT_HERE);
+      if (!within.length) return unknown("the head never enters the shed in this run");
       const foremost = motion(run, `${claim.reed}.position`).lowest(-1, within);
-      if (foremost.coarse) return unknown(NOT_HERE);
+      if (foremost.coarse) return unknown(COARSE);
       return { worst: last(run.signal(`${claim.reed}.front_limit`)) - foremost.value, bound: claim.clearance, time: foremost.time };
     },
     locks_in_time: (run, claim) => {
-      if (claim.signal !== "shaft.velocity") return unknown(NOT_HERE);
+      if (claim.signal !== "shaft.velocity") return unknown(`the lock does not follow shaft.velocity; ${NOT_HERE}`);
       const limit = last(run.signal(`${claim.lock}.speed_limit`)), inTime = run.signal(`${claim.lock}.in_time`);
       const speed = run.signal("shaft.velocity");
-      if (inTime.some((each, k) => (Math.abs(speed[k]) <= limit) !== (each > 0))) return unknown(NOT_HERE);
+      if (inTime.some((each, k) => (Math.abs(speed[k]) <= limit) !== (each > 0))) return unknown(`the lock does not follow shaft.velocity; ${NOT_HERE}`);
       const [low, high] = [1, -1].map(sign => motion(run, "shaft.velocity").lowest(sign));
       const found = Math.abs(low.value) > Math.abs(high.value) ? low : high;
-      return found.coarse ? unknown(NOT_HERE) : { worst: Math.abs(found.value), bound: limit, time: found.time };
+      return found.coarse ? unknown(COARSE) : { worst: Math.abs(found.value), bound: limit, time: found.time };
     },
   };
 
   function judged(run, claim) {
     const judge = judges[claim.kind], angle = run.has("shaft.angle") ? run.signal("shaft.angle") : [];
-    if (!judge || claim.left) return unknown(NOT_HERE);
+    if (!judge) return unknown(`the page does not judge ${claim.kind}; ${NOT_HERE}`);
+    if (claim.left) return unknown(`the page would judge it unlike the native run; ${NOT_HERE}`);
     for (let k = 1; k < angle.length; k++)
-      if (Math.abs(angle[k] - angle[k - 1]) > FARTHEST) return unknown("the samples are too far apart to be sure");
+      if (Math.abs(angle[k] - angle[k - 1]) > FARTHEST) return unknown(COARSE);
     const found = judge(run, claim);
     if (found.holds === null) return found;
-    if (!Number.isFinite(found.worst)) return unknown(NOT_HERE);
+    if (!Number.isFinite(found.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
     return { ...found, holds: claim.sense * found.worst >= claim.sense * found.bound };
   }
 
@@ -235,8 +236,15 @@
     outcome.className = `outcome ${failed || !all ? "unknown" : failing ? "fails" : open ? "unknown" : "holds"}`;
   }
 
+  /* Bounds of the claims on a signal, as the plots draw them. */
+  loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, holds }, number) => {
+    const { signal, drawn, shown: { factor, unit } } = claims[number];
+    if (signal !== name || !drawn || holds === null) return [];
+    return [{ value: bound * factor, text: `bound ${short(bound * factor)}${unit && ` ${unit}`}`, holds }];
+  });
+
   outcome.setAttribute("aria-live", "polite");
-  loomfmu.live.follow(run => {
+  loomfmu.live.follow("claims", run => {
     kept = new Map();
     if (run && !checked) {
       for (const claim of claims) check(claim, judged(run, claim));

@@ -1,25 +1,27 @@
-// Moves the parts of the drawings to where the keyframes have them at the cursor's position.
+// Moves the parts of the drawings to where the keyframes have them at the cursor's position, or the run of the page.
 (() => {
-  const { first, span, tracks, bows, still } = loomfmu.data("motion");
+  const { first, span, tracks, bows, still, fixed } = loomfmu.data("motion"), { live } = loomfmu;
   const root = document.getElementById("motion"), missing = document.getElementById("motion-missing");
   for (const track of Object.values(tracks))
-    track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
-  const windows = Math.max(...Object.values(tracks).map(track => track.shown.length));
-  let window_ = 0, share = 0; // of the window that is past
+    if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
+  const windows = live ? Infinity : Math.max(...Object.values(tracks).map(track => track.shown.length));
+  let known = false, window_ = 0, share = 0, sample = null; // share of the window that is past; place and share among the samples
 
   const between = (values, place, part) => {
     const next = values[Math.min(place + 1, values.length - 1)];
     return values[place] + part * (next - values[place]);
   };
   const value = name => {
-    const track = tracks[name], frame = track.frames[track.shown[window_]];
+    const track = tracks[name];
+    if (track.rule) return track.value(...sample);
+    const frame = track.frames[track.shown[live ? 0 : window_]];
     const place = share * (frame.length - 1), index = Math.floor(place);
     return track.step * between(frame, index, place - index);
   };
   const follower = word => Number.isNaN(Number(word)) ? () => value(word) : () => Number(word);
   const followers = (how, move) => [...root.querySelectorAll(`[data-${how}]`)].map(element => {
     const words = element.getAttribute(`data-${how}`).split(" ").map(follower);
-    return () => move(element, words.map(word => word()));
+    return { element, move: () => move(element, words.map(word => word())) };
   });
 
   /* Points of an elastica by half the slope of its ends, between the two computed ones that are next to it. */
@@ -39,18 +41,34 @@
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
     ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(Number(element.dataset.digits)); }),
   ];
+  const figures = Array.from(root.querySelectorAll("figure"), figure => {
+    const its = moves.filter(({ element }) => figure.contains(element));
+    const draw = () => { if (known) for (const { move } of its) move(); };
+    return live ? loomfmu.whenSeen(figure, draw) : draw; // a run redraws what is in sight
+  });
 
   function draw(position) {
     const turns = (position - first) / span;
     window_ = Math.min(Math.max(Math.floor(turns + 1e-9), 0), windows - 1);
     share = Math.min(Math.max(turns - window_, 0), 1);
-    const known = turns < windows + 1e-9 && Object.values(tracks).every(track => track.shown[window_] !== null);
-    missing.hidden = known;
+    if (live && live.current) sample = loomfmu.locate(live.current.positions, position);
+    known = live ? live.current && !varied().length
+      : turns < windows + 1e-9 && Object.values(tracks).every(track => track.shown[window_] !== null);
+    missing.hidden = known || Boolean(live && !live.current);
+    if (live) missing.textContent = `The drawings have the scene’s own ${varied().join(", ")}, so they do not show this run.`;
     root.classList.toggle("stale", !known);
-    if (known) for (const move of moves) move();
+    for (const figure of figures) figure();
     document.getElementById("motion-place").textContent = loomfmu.label(position);
   }
 
+  /* Parameters of shapes that no track moves, and that differ from the scene's. */
+  const varied = () => live.changed().filter(target => fixed.includes(target));
+
+  if (live)
+    live.follow("motion", run => {
+      const rule = run && loomfmu.rules(run, tracks);
+      for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
+    });
   loomfmu.follow(draw);
   // on paper: where the cursor was moved to, else where the worst claim is
   matchMedia("print").addEventListener("change", event =>

@@ -4,13 +4,16 @@
 (() => {
   const { traces, labels, signals, first } = loomfmu.data("plots"), DEGREE = Math.PI / 180, TURN = 2 * Math.PI;
   const ROLES = ["--blue", "--red", "--green", "--purple", "--orange", "--ink"];
-  const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [14, 5], [5, 2, 1, 2, 1, 2]], HEIGHT = 190, PAPER = 680;
+  const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [14, 5], [5, 2, 1, 2, 1, 2]], HEIGHT = 190, PAPER = 680, BUCKETS = 600;
   const home = document.getElementById("plots-drawn"), choice = document.getElementById("plots-choice");
   const boxes = [...choice.querySelectorAll("input[type=checkbox]")], plots = new Map();
-  const unpack = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
+  const unpacked = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
   let over = loomfmu.turns ? "angle" : "time", range = null, setting = 0, printing = false;
 
-  for (const trace of traces) for (const key of ["positions", "times"]) trace[key] = unpack(trace[key]);
+  for (const trace of traces) for (const key of ["positions", "times"]) trace[key] = unpacked(trace[key]);
+  const later = loomfmu.live ? loomfmu.whenSeen : (_, draw) => draw; // a run redraws what is in sight
+  // a curve for each trace: positions and values; a page that runs its scene has others
+  let curves = name => signals[name].curves.map(curve => curve && curve.map(unpacked));
 
   // ---- from positions, angles [rad] or times [s], to what the axis shows: degrees or seconds; and back
 
@@ -20,12 +23,12 @@
     : traces[0].turns ? loomfmu.interpolate(traces[0].times, traces[0].positions, x) : x;
   const whole = () => [shown(traces[0], loomfmu.first), shown(traces[0], loomfmu.last)];
 
-  function tables(signal) {
-    return signal.curves.map((curve, number) => {
+  function tables(name) {
+    return curves(name).map((curve, number) => {
       const trace = traces[number];
       if (!curve || (over === "angle" && !trace.turns)) return [[], []];
-      const along = Array.from(unpack(curve[0]), position => shown(trace, position));
-      return [along, Array.from(unpack(curve[1]), value => Number.isNaN(value) ? null : value)];
+      const along = Array.from(curve[0], position => shown(trace, position));
+      return [along, Array.from(curve[1], value => Number.isNaN(value) ? null : value)];
     });
   }
 
@@ -50,11 +53,11 @@
   function options(signal, width, logarithmic) {
     const stepped = uPlot.paths.stepped({ align: 1 }), path = signal.step ? { paths: stepped } : {};
     const line = { width: 1.5, points: { show: false }, pxAlign: 0 };
-    const series = signal.curves.map((_, number) => ({
-      label: labels[number], stroke: () => colour(ROLES[number % ROLES.length]), dash: DASHES[number % DASHES.length],
+    const series = labels.map((label, number) => ({
+      label, stroke: () => colour(ROLES[number % ROLES.length]), dash: DASHES[number % DASHES.length],
       ...line, ...path }));
-    const bounds = signal.bounds.map(bound => ({
-      label: bound.text, stroke: () => colour(bound.holds ? "--holds" : "--fails"), dash: [3, 3], ...line }));
+    const bounds = signal.bounds.map(({ text }, number) => ({
+      label: text, stroke: () => colour(signal.bounds[number].holds ? "--holds" : "--fails"), dash: [3, 3], ...line }));
     const angles = over === "angle" ? { incrs: [1, 2, 5, 10, 15, 30, 60, 90, 180, 360, 720, 1800, 3600, 7200, 36000] } : {};
     return {
       width, height: HEIGHT, legend: { show: false }, series: [{}, ...series, ...bounds],
@@ -66,9 +69,32 @@
     };
   }
 
-  function contents(signal) {
-    const found = tables(signal), ends = whole();
-    const lines = signal.bounds.map(bound => [ends, [bound.value, bound.value]]);
+  /* Curves at the same places as one table, of what is in sight the lowest and the highest of each few values; null if
+   * their places differ. A run is drawn in half the time that all its samples would take. */
+  function together(found) {
+    const [[along], ...others] = found, last = along.length - 1;
+    const alike = ([its]) => its.length === along.length && [0, last >> 1, last].every(k => Math.abs(its[k] - along[k]) < 1e-9 * along[last]);
+    if (last < 0 || !others.every(alike)) return null;
+    const { min, max } = bounded(range), from = loomfmu.locate(along, min)[0], to = Math.min(loomfmu.locate(along, max)[0] + 1, last);
+    const size = Math.max(1, Math.ceil((to - from) / BUCKETS)), places = new Set([0, last]);
+    for (let start = from; start <= to; start += size)
+      for (const [, values] of found) {
+        let low = start, high = start;
+        for (let k = start; k < Math.min(start + size, to + 1); k++) {
+          if (values[k] < values[low]) low = k;
+          if (values[k] > values[high]) high = k;
+        }
+        places.add(low).add(high);
+      }
+    const kept = [...places].sort((one, other) => one - other);
+    return [along, ...found.map(([, values]) => values)].map(each => kept.map(k => each[k]));
+  }
+
+  function contents(name) {
+    const found = tables(name), ends = whole(), { bounds } = signals[name];
+    const one = loomfmu.live && together(found);
+    if (one) return { found, data: [...one, ...bounds.map(bound => one[0].map(() => bound.value))] };
+    const lines = bounds.map(bound => [ends, [bound.value, bound.value]]);
     const all = [...found, ...lines];
     return { found, data: all.length === 1 ? found[0] : uPlot.join(all) };
   }
@@ -79,7 +105,6 @@
     const inside = document.createElement("div"), line = document.createElement("div");
     title.textContent = name;
     about.className = "about";
-    about.textContent = [signal.about, ...signal.bounds.map(bound => bound.text)].filter(Boolean).join("; ");
     value.setAttribute("aria-live", "off");
     caption.append(title, " ", value, " ", about);
     inside.className = "plot";
@@ -89,25 +114,35 @@
     figure.dataset.name = name;
     figure.append(caption, inside);
     home.append(figure);
-    const made = { figure, value, line, signal, inside };
+    const made = { name, figure, value, about, line, signal, inside, stale: false };
+    made.follow = later(figure, () => { if (made.stale) render(made, false); else point(made, loomfmu.position); });
     plots.set(name, made);
     render(made);
   }
 
-  function render(made) {
-    if (made.plot) made.plot.destroy();
-    const { found, data } = contents(made.signal);
+  /* Draw a plot, or with other curves than before, if it is not to be made anew. */
+  function render(made, fresh = true) {
+    const { found, data } = contents(made.name), logarithmic = wide(data), { about, bounds } = made.signal;
+    made.about.textContent = [about, ...bounds.map(bound => bound.text)].filter(Boolean).join("; ");
     made.found = found;
+    made.stale = false;
     setting += 1;
-    made.plot = new uPlot(options(made.signal, made.inside.clientWidth || 600, wide(data)), data, made.inside);
+    if (fresh || made.logarithmic !== logarithmic || made.plot.series.length !== data.length) begin(made, data, logarithmic);
+    else made.plot.setData(data, false);
     made.plot.setScale("x", bounded(range));
+    queueMicrotask(() => { setting -= 1; point(made, loomfmu.position); });
+  }
+
+  function begin(made, data, logarithmic) {
+    if (made.plot) made.plot.destroy();
+    made.logarithmic = logarithmic;
+    made.plot = new uPlot(options(made.signal, made.inside.clientWidth || 600, logarithmic), data, made.inside);
     made.plot.over.append(made.line);
     made.plot.over.addEventListener("click", event => {
       if (made.plot.select.width > 2) return;
       const box = made.plot.over.getBoundingClientRect();
       loomfmu.seek(placed(made.plot.posToVal(event.clientX - box.left, "x")));
     });
-    queueMicrotask(() => { setting -= 1; point(made, loomfmu.position); });
   }
 
   // ---- the range of all plots
@@ -124,8 +159,11 @@
     const limits = bounded(wanted);
     range = wanted && [limits.min, limits.max];
     setting += 1;
-    for (const { plot } of plots.values()) plot.setScale("x", limits);
-    queueMicrotask(() => { setting -= 1; follow(loomfmu.position); });
+    for (const made of plots.values()) {
+      made.plot.setScale("x", limits);
+      made.stale = Boolean(loomfmu.live);
+    }
+    queueMicrotask(() => { setting -= 1; follow(); });
   }
 
   const zooms = {
@@ -163,8 +201,8 @@
     made.value.textContent = valueAt(made, x);
   }
 
-  function follow(position) {
-    for (const made of plots.values()) point(made, position);
+  function follow() {
+    for (const made of plots.values()) made.follow();
   }
 
   loomfmu.follow(position => {
@@ -172,7 +210,7 @@
     if (range && (x < range[0] || x > range[1])) {
       const width = range[1] - range[0], start = x > range[1] && x < range[1] + width ? x : x - width / 2;
       show([start, start + width]);
-    } else follow(position);
+    } else follow();
   });
 
   // ---- what is chosen
@@ -213,7 +251,7 @@
 
   const fit = width => {
     for (const { plot, inside } of plots.values()) plot.setSize({ width: width || inside.clientWidth, height: HEIGHT });
-    queueMicrotask(() => follow(loomfmu.position));
+    queueMicrotask(follow);
   };
   const repaint = () => { for (const { plot } of plots.values()) plot.redraw(false, true); };
   let width = 0;
@@ -230,6 +268,14 @@
   addEventListener("beforeprint", () => print(true));
   addEventListener("afterprint", () => print(false));
 
+  loomfmu.plots = {
+    traces, signals,
+    /* Other curves, of the same signals; drawn as the cursor moves. */
+    show(found) {
+      curves = found;
+      for (const made of plots.values()) made.stale = true;
+    },
+  };
   for (const box of boxes) box.checked = first.includes(box.value);
   for (const name of first) choose(name, true);
 })();

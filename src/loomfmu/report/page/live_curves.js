@@ -19,7 +19,10 @@ loomfmu.motion = (run, name) => {
   const lows = new Float64Array(count - 1), highs = new Float64Array(count - 1);
   for (let i = 0; i < count - 1; i++) {
     const all = points(i);
-    [lows[i], highs[i]] = [Math.min(...all), Math.max(...all)];
+    let low = all[0], high = all[0];
+    for (const each of all) { if (each < low) low = each; else if (each > high) high = each; }
+    lows[i] = low;
+    highs[i] = high;
   }
 
   function split(all, share) {
@@ -90,30 +93,35 @@ loomfmu.motion = (run, name) => {
     return found;
   }
 
-  /* The pieces in some stretches of time, whole or cut: index, points, shares at which it begins and ends. */
+  /* The intervals in some stretches of time: index, and the shares at which the stretch begins and ends. */
   function* pieces(within) {
-    if (!within) { for (let i = 0; i < count - 1; i++) yield [i, points(i), 0, 1]; return; }
+    if (!within) { for (let i = 0; i < count - 1; i++) yield [i, 0, 1]; return; }
     for (const { start, end } of within)
       for (let i = intervalOf(start); i < count - 1 && (time[i] < end || start === end); i++) {
         const h = time[i + 1] - time[i];
-        const low = Math.max((start - time[i]) / h, 0), high = Math.min((end - time[i]) / h, 1);
-        let all = points(i);
-        if (high < 1) all = split(all, high)[0];
-        if (low > 0) all = high > 0 ? split(all, Math.min(low / high, 1))[1] : all;
-        yield [i, all, low, high];
+        yield [i, Math.max((start - time[i]) / h, 0), Math.min((end - time[i]) / h, 1)];
         if (start === end) break;
       }
   }
 
+  function cut(i, low, high) {
+    let all = points(i);
+    if (high < 1) all = split(all, high)[0];
+    return low > 0 ? (high > 0 ? split(all, Math.min(low / high, 1))[1] : all) : all;
+  }
+
   /* Where `sign` times the motion is lowest: value, the first time of equal ones, whether samples are too coarse. */
   function lowest(sign, within) {
-    let best = Infinity, found = [], sample = Infinity;
-    for (const [i, raw, low, high] of pieces(within)) {
-      const all = sign > 0 ? raw : raw.map(each => -each);
-      sample = Math.min(sample, all[0], all[all.length - 1]);
-      if (Math.min(...all) > best + SAME * largest) continue;
-      const [extreme, share] = values.length === 1 ? [Math.min(all[0], all[all.length - 1]), all[all.length - 1] < all[0] ? 1 : 0]
-        : lowestOf(all);
+    const found = [];
+    let best = Infinity, sample = Infinity;
+    for (const [i, low, high] of pieces(within)) {
+      if (low === 0 && high === 1) {
+        sample = Math.min(sample, sign * own[i], sign * own[i + 1]);
+        if ((sign > 0 ? lows[i] : -highs[i]) > best + SAME * largest) continue;
+      }
+      const all = cut(i, low, high).map(each => sign * each), end = all[all.length - 1];
+      sample = Math.min(sample, all[0], end);
+      const [extreme, share] = values.length === 1 ? [Math.min(all[0], end), end < all[0] ? 1 : 0] : lowestOf(all);
       if (extreme <= best + SAME * largest) found.push([extreme, moment(i, low + share * (high - low)), i]);
       best = Math.min(best, extreme);
     }
