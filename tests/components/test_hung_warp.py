@@ -7,7 +7,8 @@ import pytest
 from hung_warp_reference import Hung, stepped
 from looms import RPM
 
-from loomfmu.components import HealdDamper, WarpTension
+from loomfmu.components import HealdDamper, WarpTension, damper_motion
+from loomfmu.physics.hung_warp import settled_load
 
 
 @pytest.mark.parametrize(("rpm", "turns", "contacts"), [(200, 1, 0), (450, 2, 4)])
@@ -54,3 +55,21 @@ def test_the_load_is_that_of_the_threads_at_the_carrier():
     warp.step(0.0, 50e-4)
     # the springs yield by 300 N / 4e9 N/m = 8e-8 m, which changes the load by 1e-5 at most while they swing
     assert damper.warp_load == pytest.approx(warp.frame_load, rel=1e-5)
+
+
+@pytest.mark.parametrize("displacement", [1e300, -1e300])
+def test_a_piece_that_never_settles_ends_the_step(displacement, monkeypatch):
+    """Such values come from states that somebody forged; they took minutes."""
+    tried = 0
+
+    def counted(*arguments):
+        nonlocal tried
+        tried += 1
+        assert tried <= damper_motion.MOST_PIECES + damper_motion.MOST_HALVINGS
+        return settled_load(*arguments)
+
+    monkeypatch.setattr(damper_motion, "settled_load", counted)
+    damper = HealdDamper(thread_count=200)
+    damper.initialize(0.0)
+    damper.displacement = displacement
+    assert damper.step(0.0, 1e-3) != 0

@@ -9,7 +9,7 @@ from ..physics.hung_warp import force_after, settled_load, warp_stiffness
 from ..physics.numerics.motion import joined_area, moved_on
 from .damper_variables import DamperVariables
 
-# Pieces of motion in one step: some 10 us each in Python
+# Pieces of motion in one step, and attempts at one: some 10 us each in Python, up to 600 with threads
 MOST_PIECES = 10000
 # A piece is short against the motion of the carrier: by as much, and with threads by as much, whose load
 # is a cubic along it
@@ -63,9 +63,12 @@ class DamperMotion(DamperVariables):
             if own * piece > short:
                 piece = short / own
             weight = load + load_rate * elapsed
-            changed = self.move_with_threads(
+            changed, halvings = self.move_with_threads(
                 stiffness, damping, preload, here, speed, b0, b1, b2, a3, weight, load_rate, piece
             )
+            if halvings > MOST_HALVINGS:
+                return 1  # however short, a piece never settles
+            pieces = pieces + halvings
             if changed >= rest:
                 elapsed = duration
             else:
@@ -86,8 +89,12 @@ class DamperMotion(DamperVariables):
     def move_with_threads(
         self, stiffness: float, damping: float, preload: float, lift: float, velocity: float,
         a0: float, a1: float, a2: float, a3: float, load: float, load_rate: float, piece: float,
-    ) -> float:  # fmt: skip
-        """Move carrier and threads over one piece, or up to the change of contact in it; the time it took."""
+    ) -> tuple[float, int]:  # fmt: skip
+        """Move carrier and threads over one piece, or up to the change of contact in it.
+
+        Returns:
+            the time it took [s], and how often the piece was halved, more than `MOST_HALVINGS` if in vain
+        """
         mass = self.carrier_mass
         u0 = preload + load / mass - a0
         u1 = load_rate / mass - a1
@@ -100,7 +107,7 @@ class DamperMotion(DamperVariables):
             self.take_work(
                 stiffness, damping, preload, position, rate, u0, u1, -a2, -a3, velocity, a0, a1, a2, a3, taken
             )
-            return taken
+            return taken, 0
         eyes = lift + self.eye_offset()
         threads = self.thread_count * self.thread_stiffness
         taken = piece
@@ -109,15 +116,19 @@ class DamperMotion(DamperVariables):
             a0, a1, a2, a3, self.thread_count * self.pretension, threads, self.creep_rate,
             self.relaxation_rate, self.front_length, self.back_length, taken,
         )  # fmt: skip
+        halvings = 0
         for _ in range(MOST_HALVINGS):
             if settled:
                 break
+            halvings = halvings + 1
             taken = 0.5 * taken
             d0, d1, d2, d3, settled = settled_load(
                 position, rate, self.thread_force, mass, stiffness, damping, u0, u1, -a2, -a3, eyes, velocity,
                 a0, a1, a2, a3, self.thread_count * self.pretension, threads, self.creep_rate,
                 self.relaxation_rate, self.front_length, self.back_length, taken,
             )  # fmt: skip
+        if not settled:
+            return taken, MOST_HALVINGS + 1
         acceleration = u0 + a0 + d0 / mass - stiffness * position - damping * rate
         taken = self.move_piece(
             stiffness, damping, preload, u0 + d0 / mass, u1 + d1 / mass, d2 / mass - a2, d3 / mass - a3,
@@ -138,7 +149,7 @@ class DamperMotion(DamperVariables):
             self.thread_force, threads, self.creep_rate, self.relaxation_rate,
             self.front_length, self.back_length, taken,
         )  # fmt: skip
-        return taken
+        return taken, halvings
 
     def move_piece(
         self, stiffness: float, damping: float, preload: float,
