@@ -1,7 +1,8 @@
 """The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
 
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
-runs, `sweep` runs it with many values, `limit` finds how far a value may go; `Trace` reads a recorded run,
+runs, `sweep` runs it with many values, `limit` finds how far a value may go, `fit`
+finds values from measured curves; `Trace` reads a recorded run,
 `judge` judges a claim on it, `compare` compares two. `design` solves the same physics for a design.
 """
 
@@ -20,8 +21,12 @@ if TYPE_CHECKING:
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
     from .studies.boundary import limit as limit
+    from .studies.fitting.fit import Fit as Fit
+    from .studies.fitting.fit import fit as fit
     from .studies.results import Boundary as Boundary
     from .studies.results import Limits as Limits
+    from .studies.tolerances import Tolerances as Tolerances
+    from .studies.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
     from .traces import Comparison as Comparison
@@ -34,11 +39,13 @@ _HOMES = {
     "Boundary": "studies.results",
     "Comparison": "traces",
     "Evaluation": "cosim.results",
+    "Fit": "studies.fitting.fit",
     "Limits": "studies.results",
     "LoomfmuError": "errors",
     "Prepared": "cosim.prepared",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
+    "Tolerances": "studies.tolerances",
     "Trace": "traces",
     "Verdict": "traces",
     "compare": "traces",
@@ -46,9 +53,11 @@ _HOMES = {
     "evaluate": "cosim.run",
     "prepare": "cosim.run",
     "judge": "cosim.claims.claims",
+    "fit": "studies.fitting.fit",
     "limit": "studies.boundary",
     "run": "cosim.run",
     "sweep": "sweeps.run",
+    "tolerances": "studies.tolerances",
 }
 
 

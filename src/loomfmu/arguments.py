@@ -51,6 +51,8 @@ def parser() -> argparse.ArgumentParser:
         _compare,
         _sweep,
         _limit,
+        _tolerances,
+        _fit,
         _list,
         _init,
         _new,
@@ -201,6 +203,43 @@ def _limit(commands: Any) -> None:
         "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"
     )
     _add_force(limit, "the file even if it is not such a table or picture")
+
+
+def _tolerances(commands: Any) -> None:
+    tolerances = commands.add_parser(
+        "tolerances", help="find the worst case of every claim within tolerances",
+        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails; 2 bad input or a failed FMU.",
+    )  # fmt: skip
+    tolerances.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    tolerances.add_argument(
+        "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        help="a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
+        " [tolerances] by default",
+    )  # fmt: skip
+    _add_set(tolerances)
+    tolerances.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
+    _add_force(tolerances, "the picture even if it is not one")
+
+
+def _fit(commands: Any) -> None:
+    fit = commands.add_parser("fit", help="find parameters of a scene from measured curves")
+    fit.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    fit.add_argument(
+        "data", metavar="DATA.csv|h5",
+        help="columns with units, such as shaft_angle [deg],heald_1.displacement [mm]; or a trace",
+    )  # fmt: skip
+    fit.add_argument(
+        "--vary", action="append", required=True, metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        help="a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
+    )  # fmt: skip
+    fit.add_argument(
+        "--signal", action="append", default=[], metavar="SIGNAL",
+        help="what is fitted of the data (repeatable); all columns of a table by default",
+    )  # fmt: skip
+    _add_set(fit)
+    fit.add_argument("--output", metavar="FILE.toml", help="also write the scene with the fitted values")
+    fit.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw measured and computed curves")
+    _add_force(fit, "these files even if they are not a scene and a picture")
 
 
 def _list(commands: Any) -> None:

@@ -193,6 +193,18 @@ def _limit(options: argparse.Namespace) -> int:
     return command.run(options, _pairs(options.overrides))
 
 
+def _tolerances(options: argparse.Namespace) -> int:
+    from .studies import tolerances_command
+
+    return tolerances_command.run(options, _pairs(options.overrides))
+
+
+def _fit(options: argparse.Namespace) -> int:
+    from .studies.fitting import command
+
+    return command.run(options, _pairs(options.overrides))
+
+
 def _sweep(options: argparse.Namespace) -> int:
     from .sweeps.run import sweep
 
@@ -439,6 +451,8 @@ COMMANDS = {
     "export": _export,
     "sweep": _sweep,
     "limit": _limit,
+    "tolerances": _tolerances,
+    "fit": _fit,
     "build": _build,
     "list": _list,
     "init": _init,

@@ -46,6 +46,10 @@ class Span:
         """What a value in that unit is multiplied by to give SI."""
         return units.unit(self.varied.display).factor
 
+    def at(self, share: float) -> float:
+        """The value at a share of the range, 0 to 1; its ends exactly."""
+        return float(min(max(self.low + share * (self.high - self.low), self.low), self.high))
+
     def setting(self, value: float) -> dict[str, Any]:
         """What sets the value in a prepared scene."""
         return {self.key: self.varied.setting(value)}

@@ -79,14 +79,15 @@ def draw(axes: Any, curves: Sequence[Curve], over: str, fold: bool) -> None:
     axes.set_ylabel(" ".join([*([named] if named else []), *([f"[{unit}]"] if unit != "1" else [])]))
     axes.set_xlabel("Shaft angle [deg]" if over == "angle" else "Time [s]")
     if over == "angle":
-        axes.xaxis.set_major_locator(_degrees())
+        axes.xaxis.set_major_locator(degrees())
     axes.margins(x=0.0)
     axes.grid(color="#d4d4d4", linewidth=0.6)
     if len(curves) > 1:
         axes.legend(frameon=False)
 
 
-def _degrees() -> Any:
+def degrees() -> Any:
+    """What places the ticks of an axis in degrees."""
     from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(nbins=12, steps=[1, 1.5, 3, 4.5, 6, 9, 10])

@@ -33,6 +33,7 @@ KEYS = (
     "wires",
     "inputs",
     "claims",
+    "tolerances",
 )
 TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")

@@ -35,7 +35,8 @@ class Scene:
     `coarse_steps_per_revolution` outside of the windows that the claims look into. `file` or the system
     package `package` is what it was read from, `package_sha256` is the package's, `texts` are those of the
     other files that its text names, `overrides` the values that differ from it, `notes` what the user is to
-    be warned of. `isolated` says whether FMUs run in processes of their own; by default third-party ones do.
+    be warned of. `tolerances` are the ends between which values may lie, as the scene states them. `isolated`
+    says whether FMUs run in processes of their own; by default third-party ones do.
     A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s].
     """
 
@@ -51,6 +52,7 @@ class Scene:
     drives: list[Drive]
     record: list[str]
     claims: list[dict[str, Any]]
+    tolerances: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     step: float | None = None
     coupling: str = LAGGED
     grid: str = UNIFORM
@@ -178,6 +180,7 @@ def assemble(
         drives=drives,
         record=_record(instances, tables.get("record", ["*"])),
         claims=_claims(tables.get("claims", [])),
+        tolerances=_tolerances(tables.get("tolerances", {})),
         step=times.step,
         coupling=choice(tables, "coupling", COUPLINGS),
         grid=choice(tables, "grid", GRIDS),
@@ -257,3 +260,17 @@ def _claims(tables: Any) -> list[dict[str, Any]]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise LoomfmuError("claims are written as [[claims]] tables")
     return tables
+
+
+def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
+    """The ends between which values may lie, by their keys; what they name is checked where they are used."""
+    if not isinstance(table, dict):
+        raise LoomfmuError(
+            'tolerances are a table, such as [tolerances] "belt.guide_clearance" = ["0.2 mm", "0.5 mm"]'
+        )
+    for key, ends in table.items():
+        if not (isinstance(ends, list) and len(ends) == 2):
+            raise LoomfmuError(
+                f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'
+            )
+    return {key: (ends[0], ends[1]) for key, ends in table.items()}

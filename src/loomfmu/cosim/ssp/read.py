@@ -33,6 +33,7 @@ KEPT = (
     "record",
     "inputs",
     "claims",
+    "tolerances",
 )  # keys of a scene that no structure can hold
 Names = Mapping[tuple[str, ...], str]
 

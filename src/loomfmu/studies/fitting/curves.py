@@ -1,0 +1,96 @@
+"""Computed curves at the places of measured ones."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LoomfmuError
+from ...traces import Signals
+from .measured import Measured
+
+Floats = NDArray[np.float64]
+TURN = 2.0 * math.pi
+ROUNDING = 1e-9  # of a turn, or of the time
+COARSE = 0.1  # of the difference from the measurement: an error of the interpolation as large is noted
+REFINED = 15.0  # a cubic's error at every second sample, less that at all of them, in errors at all
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A signal (SI) at the places where it was measured, shape (n,): measured and computed."""
+
+    signal: str
+    unit: str
+    factor: float
+    along: Floats
+    measured: Floats
+    computed: Floats
+    interpolation: float
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the difference."""
+        return float(np.sqrt(np.mean((self.computed - self.measured) ** 2)))
+
+    @property
+    def note(self) -> str:
+        """What is to be said of the interpolation between samples."""
+        if self.interpolation <= COARSE * self.rms:
+            return ""
+        off, rest = (f"{value / self.factor:.2g} {self.unit}" for value in (self.interpolation, self.rms))
+        return f"{self.signal}: interpolation is off by {off} where {rest} remain; take more steps"
+
+
+def compared(data: Measured, run: Signals) -> list[Compared]:
+    """The measured curves beside those of a run, by cubic splines through its samples.
+
+    Raises LoomfmuError where the run does not reach what was measured.
+    """
+    axis = run.shaft_angle if data.over == "shaft_angle" else run.time
+    if data.over == "shaft_angle" and not run.turns:
+        raise LoomfmuError(
+            f"{data.path}: it is measured over the shaft angle, but no shaft turns in this scene"
+        )
+    places = _places(data, axis)
+    found = []
+    for signal, values in data.columns.items():
+        here = np.isfinite(values)
+        fine = _spline(axis, run[signal], places[here])
+        coarse = _spline(axis[::2], run[signal][::2], places[here]) if len(axis) > 8 else fine
+        off = float(np.sqrt(np.mean((fine - coarse) ** 2))) / REFINED if here.any() else 0.0
+        factor, unit = run.displayed(signal)
+        found.append(Compared(signal, unit, factor, data.along[here], values[here], fine, off))
+    return found
+
+
+def _spline(axis: Floats, values: Floats, places: Floats) -> Floats:
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(axis, values)(places))
+
+
+def _places(data: Measured, axis: Floats) -> Floats:
+    """Where the measured places lie on the run's own axis."""
+    low, high = float(np.min(data.along)), float(np.max(data.along))
+    if data.over == "time":
+        return _reached(data, data.along, axis, 1.0, "s")
+    turns = math.floor((axis[-1] - axis[0]) / TURN + ROUNDING)
+    if low >= 0.0 and high <= TURN * (1.0 + ROUNDING) and turns >= 1:
+        # angles within a revolution: the last one, in which what was at rest at the start has settled
+        before = TURN * math.floor((axis[-1] + ROUNDING * TURN) / TURN - 1.0)
+        return np.asarray(np.clip(before + data.along, axis[0], axis[-1]))
+    return _reached(data, data.along, axis, math.radians(1.0), "deg")
+
+
+def _reached(data: Measured, places: Floats, axis: Floats, factor: float, unit: str) -> Floats:
+    """The places, if the run reaches them."""
+    slack = ROUNDING * max(abs(axis[0]), abs(axis[-1]))
+    if places.min() < axis[0] - slack or places.max() > axis[-1] + slack:
+        measured = f"{places.min() / factor:.6g} to {places.max() / factor:.6g} {unit}"
+        raise LoomfmuError(
+            f"{data.path}: measured from {measured}, but the run goes from {axis[0] / factor:.6g} to"
+            f" {axis[-1] / factor:.6g} {unit}"
+        )
+    return np.asarray(np.clip(places, axis[0], axis[-1]))

@@ -1,0 +1,157 @@
+"""Measured curves over shaft angle or time, read from CSV or from a trace."""
+
+import csv
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import units
+from ...cosim.planning.requested import output_port
+from ...cosim.scenes.scene import Scene
+from ...errors import LoomfmuError, shown
+from ...files import text_of
+from ...traces import Trace
+from ...traces.damage import check
+
+Floats = NDArray[np.float64]
+ALONG = {"shaft_angle": "rad", "time": "s"}  # what curves are measured over: name of the column, unit in SI
+FORM = "name the columns such as: shaft_angle [deg],heald_1.displacement [mm]"
+_COLUMN = re.compile(r"([^\[\]]+)\[([^\[\]]+)\]")
+NOT_MEASURED = ("", "nan")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Measured values (SI) of signals, NaN where one was not measured, over `shaft_angle` or `time`.
+
+    `along` are the places, [rad] or [s], shape (n,); each of the `columns` has the same shape.
+    """
+
+    path: Path
+    over: str
+    along: Floats
+    columns: dict[str, Floats]
+
+    @property
+    def count(self) -> int:
+        """Number of measured values."""
+        return sum(int(np.isfinite(values).sum()) for values in self.columns.values())
+
+
+def read(path: str | Path, scene: Scene, signals: Sequence[str] = ()) -> Measured:
+    """Read a measurement; `signals` chooses some of a CSV file, all of them by default, and those of a trace.
+
+    Raises:
+        LoomfmuError: a column without a unit, or one that does not fit the scene's output of that name
+    """
+    path = Path(path)
+    found = _trace(path, signals) if path.suffix in (".h5", ".hdf5") else _table(path, scene, signals)
+    for signal in found.columns:
+        if output_port(scene, signal, f"{path}").kind != "Real":
+            raise LoomfmuError(f"{path}: {signal} is not a real number: only curves can be fitted")
+    if not found.count:
+        raise LoomfmuError(f"{path}: there are no measured values")
+    return found
+
+
+def _trace(path: Path, signals: Sequence[str]) -> Measured:
+    if not signals:
+        raise LoomfmuError(f"{path}: name the signals of this trace that are to be fitted, with --signal")
+    check(path)
+    with Trace(path) as trace:
+        over = "shaft_angle" if trace.turns else "time"
+        along = np.array(trace.shaft_angle if trace.turns else trace.time)
+        return Measured(path, over, along, {name: np.array(trace[name], float) for name in signals})
+
+
+def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
+    lines = [line for line in text_of(path).splitlines() if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise LoomfmuError(f"{path}: the file is empty; {FORM}")
+    if ";" in lines[0] and "," not in lines[0]:
+        raise LoomfmuError(f"{path}: separate the columns with commas, and write decimals with points")
+    heading, *rows = csv.reader(lines)
+    over, factor, named = _headings(path, heading, scene)
+    numbers = _numbers(path, heading, rows)
+    columns = {name: numbers[:, place] * scale for name, (place, scale) in named.items()}
+    if missing := [name for name in signals if name not in columns]:
+        raise LoomfmuError(f"{path}: there is no column {missing[0]!r}; it has {', '.join(columns)}")
+    along = numbers[:, 0] * factor
+    if not np.all(np.isfinite(along)):
+        row = int(np.flatnonzero(~np.isfinite(along))[0]) + 1
+        raise LoomfmuError(f"{path}: row {row} has no {over}")
+    return Measured(path, over, along, {name: columns[name] for name in signals or columns})
+
+
+def _headings(
+    path: Path, heading: Sequence[str], scene: Scene
+) -> tuple[str, float, dict[str, tuple[int, float]]]:
+    """What the first column is, what it is multiplied by; and of each signal its column and factor to SI."""
+    over, unit = _named(path, heading[0])
+    if over not in ALONG:
+        raise LoomfmuError(f"{path}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
+    named: dict[str, tuple[int, float]] = {}
+    for place, text in enumerate(heading[1:], start=1):
+        name, stated = _named(path, text)
+        if name in named:
+            raise LoomfmuError(f"{path}: two columns are called {name}")
+        port = output_port(scene, name, f"{path}")
+        named[name] = place, _factor(path, name, stated, port.unit)
+    if not named:
+        raise LoomfmuError(f"{path}: there is no column beside {over}; {FORM}")
+    return over, _factor(path, over, unit, ALONG[over]), named
+
+
+def _named(path: Path, text: str) -> tuple[str, str]:
+    """A column's name and unit. Raises LoomfmuError for one without."""
+    match = _COLUMN.fullmatch(text.strip())
+    if match is None:
+        raise LoomfmuError(
+            f"{path}: column {shown(text.strip())} has no unit; write it in brackets, such as"
+            f" {shown(text.strip() + ' [mm]')}, or [1] for a pure number"
+        )
+    return match.group(1).strip(), match.group(2).strip()
+
+
+def _factor(path: Path, name: str, stated: str, wanted: str) -> float:
+    """What values in the stated unit are multiplied by. Raises LoomfmuError for one that does not fit."""
+    misfit = f"{path}: column {name} is in {shown(stated)}, which does not fit {units.fitted(wanted)}"
+    if wanted not in units.UNITS:  # a third-party FMU's own
+        if stated != wanted:
+            raise LoomfmuError(misfit)
+        return 1.0
+    try:
+        given = units.unit(stated, like=wanted)
+    except units.UnitError as error:
+        raise LoomfmuError(f"{path}: column {name}: {error}") from None
+    if given.dimension != units.unit(wanted).dimension:
+        raise LoomfmuError(misfit)
+    return given.factor / units.unit(wanted).factor
+
+
+def _numbers(path: Path, heading: Sequence[str], rows: Iterable[Sequence[str]]) -> Floats:
+    found = []
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(heading):
+            raise LoomfmuError(f"{path}: row {number} has {len(row)} values for {len(heading)} columns")
+        found.append([_number(path, number, name, text) for name, text in zip(heading, row, strict=True)])
+    return np.array(found, float).reshape(-1, len(heading))
+
+
+def _number(path: Path, row: int, name: str, text: str) -> float:
+    """A value, NaN where there is none."""
+    text = text.strip()
+    if text.lower() in NOT_MEASURED:
+        return math.nan
+    try:
+        value = float(text)
+    except ValueError:
+        raise LoomfmuError(f"{path}: row {row}, {name}: {shown(text)} is not a number") from None
+    if not math.isfinite(value):
+        raise LoomfmuError(f"{path}: row {row}, {name}: {text} is not finite")
+    return value

@@ -1,0 +1,67 @@
+"""A fit as people read it."""
+
+from itertools import combinations
+
+import numpy as np
+
+from ... import printed
+from ...printed import say
+from .fit import Fit, Fitted
+
+HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
+STRONG = 0.9  # correlation that is worth a word
+
+
+def show(found: Fit) -> None:
+    """Print a fit: the parameters, what they leave of the data, and what to be careful about."""
+    say(f"{found.scene.title}: fitted to {found.data.path}, {found.data.count} measured values")
+    table = rows(found)
+    entries = [
+        (f"{key}:", value, f"interval {interval};", f"scene {own}") for key, value, interval, own in table
+    ]
+    printed.show(HEADINGS, table, entries)
+    say(*remains(found), *cautions(found), "", f"{found.runs} runs")
+
+
+def rows(found: Fit) -> list[tuple[str, str, str, str]]:
+    """A row of the table for each parameter, below `HEADINGS`."""
+    return [
+        (each.span.key, each.span.show(each.value), _interval(each), each.span.show(each.span.value))
+        for each in found.parameters
+    ]
+
+
+def _interval(each: Fitted) -> str:
+    if each.at_bound:
+        return "none: at the end of its range"
+    return f"{each.span.number(each.low)} to {each.span.show(each.high)}"
+
+
+def remains(found: Fit) -> list[str]:
+    """What is left between measured and computed, a line for each signal."""
+    lines = []
+    for each in found.curves:
+        unit = "" if each.unit == "1" else f" {each.unit}"
+        spread = float(np.std(each.measured))
+        share = f", {100.0 * each.rms / spread:.2g} % of how much the data vary" if spread else ""
+        lines.append(
+            f"{each.signal}: {each.rms / each.factor:.3g}{unit} rms from {len(each.measured)} values{share}"
+        )
+    return lines
+
+
+def cautions(found: Fit) -> list[str]:
+    """What to be careful about: ends of ranges, correlations, coarse steps."""
+    lines = [
+        f"{each.span.key} ended at {each.span.show(each.value)}, the end of its range: widen it"
+        for each in found.parameters
+        if each.at_bound
+    ]
+    for one, two in combinations(range(len(found.parameters)), 2):
+        correlation = float(found.correlations[one, two])
+        if abs(correlation) >= STRONG:
+            names = " and ".join(found.parameters[each].span.key for each in (one, two))
+            lines.append(
+                f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
+            )
+    return [*lines, *found.notes]

@@ -1,0 +1,112 @@
+"""The text of a scene with other values in it: comments and order stay."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .. import units
+from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.overrides import components, overridden
+from ..cosim.scenes.scene import Scene
+from ..errors import LoomfmuError
+from ..files import Kind, check_target, write_file
+from ..machines import TAKERS
+
+
+def _is_scene(path: Path) -> bool:
+    try:
+        scenes.load(path)
+    except LoomfmuError:
+        return False
+    return True
+
+
+KIND = Kind("a scene", _is_scene)
+
+
+def quantity(value: float, unit: str, display: str) -> str | float:
+    """A value in SI as a scene states it: in the display unit where that gives the same bits, else in SI.
+
+    >>> quantity(0.0003, "m", "mm"), quantity(0.5, "1", "1")
+    ('0.3 mm', 0.5)
+    """
+    if unit == "1" and display == "1":
+        return float(value)
+    for text in (
+        f"{value / units.unit(display).factor:.12g} {display}",
+        f"{value / units.unit(display).factor!r} {display}",
+    ):
+        if units.parse(text, unit) == value:
+            return text
+    return f"{value!r} {unit}" if unit != "1" else float(value)
+
+
+def check(scene: Scene) -> None:
+    """Refuse what cannot be written as a scene. Raises LoomfmuError."""
+    _tomlkit()
+    if scene.file is None:
+        raise LoomfmuError(
+            f"{scene.name}: only scenes read from a TOML file can be written with other values"
+        )
+
+
+def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool = False) -> Path:
+    """Write a scene's text with these values, those that it was read with among them, and return its path.
+
+    What is written is read again first: it must be the same scene with the same values, wherever it is put.
+
+    Raises:
+        LoomfmuError: not from a TOML file, a file that may not be written, files that the scene names by
+            paths that do not lead there from its new place, or no `loomfmu[study]`
+    """
+    check(scene)
+    inputs = [scene.file] if scene.file else []
+    check_target(path, KIND, inputs, overwrite)
+    every = {**scene.overrides, **values}
+    expected = scenes.parse(scene.text, scene.name, every, scene.directory)
+    text = rewritten(scene, every)
+    try:
+        again = scenes.parse(text, path.stem, None, path.parent)
+    except LoomfmuError as error:
+        place = f"write it beside {scene.file}"
+        raise LoomfmuError(f"{path}: the scene cannot be read from this folder ({error}); {place}") from None
+    for name, each in expected.instances.items():
+        if again.instances[name].effective() != each.effective():
+            raise LoomfmuError(f"{path}: the values of {name} cannot be written to this scene")
+    return write_file(path, text.encode(), KIND, inputs, overwrite)
+
+
+def rewritten(scene: Scene, values: Mapping[str, Any]) -> str:
+    """The scene's text with values as `--set` takes them."""
+    document = _tomlkit().parse(scene.text)
+    for key, value in values.items():
+        for table, variable, written in _places(scene, key, value):
+            owner = document
+            if table:
+                owner = document.setdefault(table, _tomlkit().table())
+            owner[variable] = written
+    return str(document.as_string())
+
+
+def _places(scene: Scene, key: str, value: Any) -> list[tuple[str, str, Any]]:
+    """Where a key of `--set` stands in a scene: tables, variables and what is written there."""
+    owner, _, variable = key.rpartition(".")
+    if (variable in TAKERS and owner in ("", "loom")) or owner == "loom":
+        return [("loom", variable, value)]
+    found = overridden(scene.instances, key, components(scene.instances))
+    places = []
+    for name, each in found:
+        port = scene.instances[name].fmu.ports.get(scene.instances[name].fmu.name_of(each)) if name else None
+        known = port is not None and isinstance(value, units.Si)
+        places.append(
+            (name, each, quantity(float(value), port.unit, port.display) if known and port else value)
+        )
+    return places
+
+
+def _tomlkit() -> Any:
+    try:
+        import tomlkit
+    except ImportError:
+        raise LoomfmuError('writing a scene needs the extra "study": pip install "loomfmu[study]"') from None
+    return tomlkit

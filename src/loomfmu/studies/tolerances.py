@@ -1,0 +1,223 @@
+"""`tolerances`: the worst case of every claim while values lie anywhere within their tolerances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from .. import notebook
+from ..cosim.prepared import Prepared
+from ..cosim.run import prepare
+from ..cosim.scenes.scene import Scene
+from ..errors import LoomfmuError
+from ..progress import progress as progress_bar
+from ..traces import Verdict
+from .span import Span, span_of
+
+Shares = tuple[float, ...]  # of the ranges, 0 to 1
+CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
+SCATTERED = 16  # points within the box for each tolerance
+FIRST, LAST = 0.25, 2.0**-16  # steps of the search from the worst point found, as shares of a range
+SAME = 1e-9  # of the bound: distances that differ less are the same
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a tolerance costs a claim: how much distance it gives back at the scene's own value."""
+
+    key: str
+    distance: float
+
+
+@dataclass(frozen=True)
+class WorstCase:
+    """The worst that was found of a claim: its verdict there, and the values (SI) by their keys.
+
+    `own` is the verdict with the scene's values; `costs` are the tolerances that cost something, the most
+    expensive first.
+    """
+
+    claim: str
+    own: Verdict
+    worst: Verdict
+    place: dict[str, float]
+    costs: tuple[Cost, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Tolerances:
+    """The worst cases of a scene's claims; true if each claim holds in its own. A search, not a proof."""
+
+    title: str
+    spans: tuple[Span, ...]
+    claims: tuple[WorstCase, ...]
+    runs: int
+    warnings: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return all(each.worst for each in self.claims)
+
+    def __repr__(self) -> str:
+        failing = sum(not each.worst for each in self.claims)
+        return (
+            f"<Tolerances of {self.title}: {failing} of {len(self.claims)} claims fail in their worst case>"
+        )
+
+    def _repr_html_(self) -> str:
+        from .tolerances_report import HEADINGS, rows
+
+        return notebook.block(self.title, notebook.table(HEADINGS, rows(self)))
+
+
+def tolerances(
+    scene: str | Path | Scene,
+    *,
+    vary: Sequence[str] = (),
+    set: dict[str, Any] | None = None,  # the command's own word
+    progress: bool = False,
+) -> Tolerances:
+    """Search the worst case of every claim within the tolerances of a scene.
+
+    Tried are the scene's values, the corners of the box (of up to 6 tolerances all of them), and points
+    scattered in it; from the worst of these the search goes on along each value, in ever smaller steps.
+
+    Args:
+        scene: path of a scene file or a system package (.ssp), or a scene that was read before
+        vary: tolerances such as "belt.guide_clearance=0.2mm..0.5mm"; by default those of the scene's
+            table [tolerances]
+        set: values that differ from the scene's
+        progress: show a progress bar on a terminal or in a notebook
+
+    Raises:
+        LoomfmuError: no tolerances, no claims, bad input, or values within the box that cannot be run
+    """
+    with prepare(scene, set=set) as loom:
+        loaded = loom.scene
+        keys = [vary] if isinstance(vary, str) else list(vary)
+        given = [(key, None, None) for key in keys] or [
+            (key, *ends) for key, ends in loaded.tolerances.items()
+        ]
+        if not given:
+            raise LoomfmuError(
+                f'{loaded.name}: there are no tolerances; write [tolerances] "belt.guide_clearance" ='
+                ' ["0.2 mm", "0.5 mm"], or --vary belt.guide_clearance=0.2mm..0.5mm'
+            )
+        if not loaded.claims:
+            raise LoomfmuError(f"{loaded.name}: the scene has no claims, so there is no worst case")
+        spans = [span_of(loaded, *each) for each in given]
+        _check(spans)
+        points = _points(spans)
+        with progress_bar("worst cases", len(points) + len(loaded.claims), wanted=progress) as advance:
+            return _Box(loom, spans).searched(points, advance)
+
+
+def _check(spans: Sequence[Span]) -> None:
+    targets = [target for span in spans for target in span.varied.targets]
+    for span in spans:
+        if any(targets.count(target) > 1 for target in span.varied.targets):
+            raise LoomfmuError(f"{span.key} has two tolerances")
+        if not span.low <= span.value <= span.high:
+            raise LoomfmuError(
+                f"{span.key} = {span.show(span.value)} in the scene is outside its tolerance, {span.text}"
+            )
+
+
+def _points(spans: Sequence[Span]) -> list[Shares]:
+    """The scene's own values, corners, and points scattered in the box."""
+    from scipy.stats import qmc
+
+    size = len(spans)
+    own = tuple((span.value - span.low) / (span.high - span.low) for span in spans)
+    if size <= CORNERS:
+        corners = list(product((0.0, 1.0), repeat=size))
+    else:
+        corners = [
+            tuple(end if place == each else own[place] for place in range(size))
+            for each in range(size)
+            for end in (0.0, 1.0)
+        ]
+    scattered = [tuple(point) for point in qmc.Halton(size, seed=1).random(SCATTERED * size).tolist()]
+    return [own, *corners, *scattered]
+
+
+class _Box:
+    """A prepared scene as a function of the places in its tolerances, each run once."""
+
+    def __init__(self, loom: Prepared, spans: Sequence[Span]):
+        self._loom, self._spans = loom, tuple(spans)
+        self._verdicts: dict[Shares, tuple[Verdict, ...]] = {}
+
+    def searched(self, points: Sequence[Shares], advance: Callable[[int], None]) -> Tolerances:
+        """The worst case of each claim."""
+        for point in points:
+            self._at(point)
+            advance(1)
+        found = []
+        for number in range(len(self._loom.scene.claims)):
+            found.append(self._worst_case(number, points))
+            advance(1)
+        doubts = tuple(doubt for span in self._spans for doubt in span.doubts)
+        scene = self._loom.scene
+        return Tolerances(
+            scene.title, self._spans, tuple(found), len(self._verdicts), (*scene.notes, *doubts)
+        )
+
+    def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:
+        def distance(point: Shares) -> float:
+            found = self._at(point)[number].distance
+            return -math.inf if math.isnan(found) else found  # it fails without one
+
+        ranked = sorted(points, key=distance)
+        alike = distance(ranked[-1]) - distance(ranked[0]) <= SAME * abs(self._at(points[0])[number].bound)
+        worst = points[0] if alike else _descended(distance, ranked[0])
+        own, verdict = self._at(points[0])[number], self._at(worst)[number]
+        costs = []
+        for place, span in enumerate(self._spans):
+            restored = (*worst[:place], points[0][place], *worst[place + 1 :])
+            if (given_back := distance(restored) - distance(worst)) > SAME * abs(verdict.bound):
+                costs.append(Cost(span.key, given_back))
+        name = str(self._loom.scene.claims[number].get("name") or f"{own.signal} {own.claim}")
+        values = {span.key: span.at(share) for span, share in zip(self._spans, worst, strict=True)}
+        return WorstCase(name, own, verdict, values, tuple(sorted(costs, key=lambda each: -each.distance)))
+
+    def _at(self, point: Shares) -> tuple[Verdict, ...]:
+        """The verdicts at a place. Raises LoomfmuError that names it."""
+        if point not in self._verdicts:
+            settings: dict[str, Any] = {}
+            for span, share in zip(self._spans, point, strict=True):
+                settings |= span.setting(span.at(share))
+            try:
+                self._verdicts[point] = self._loom.evaluate(settings).claims
+            except LoomfmuError as error:
+                where = ", ".join(
+                    f"{s.key} = {s.show(s.at(x))}" for s, x in zip(self._spans, point, strict=True)
+                )
+                raise LoomfmuError(f"at {where}: {error}") from None
+        return self._verdicts[point]
+
+
+def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:
+    """A point near that one with a smaller distance, if there is one: a search along each value in turn."""
+    if math.isinf(distance(point)):
+        return point
+    step = FIRST
+    while step >= LAST:
+        better = min(_beside(point, step), key=distance, default=point)
+        if distance(better) < distance(point):
+            point = better
+        else:
+            step /= 2.0
+    return point
+
+
+def _beside(point: Shares, step: float) -> list[Shares]:
+    found = []
+    for place, share in enumerate(point):
+        for moved in (max(share - step, 0.0), min(share + step, 1.0)):
+            if moved != share:
+                found.append((*point[:place], moved, *point[place + 1 :]))
+    return found

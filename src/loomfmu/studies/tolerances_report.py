@@ -1,0 +1,75 @@
+"""Worst cases as people read them: a table, sentences, a picture."""
+
+from typing import Any
+
+from .. import printed
+from ..printed import say
+from ..traces.plotting import COLOURS, figure
+from .tolerances import Tolerances, WorstCase
+
+HEADINGS = ("verdict", "claim", "in the scene", "worst case", "where", "what it costs")
+WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]
+
+
+def show(found: Tolerances) -> None:
+    """Print the worst case of every claim."""
+    say(f"{found.title}: worst cases within")
+    say(*(f"  {span.key} {span.text} (in the scene {span.show(span.value)})" for span in found.spans))
+    table = rows(found)
+    entries = [
+        (f"{word}  {claim}:", f"{own} in the scene,", f"{worst} in the worst case", f"({where}; {costs})")
+        for word, claim, own, worst, where, costs in table
+    ]
+    printed.show(HEADINGS, table, entries)
+    say(f"{found.runs} runs: a search for the worst cases, not a proof that there are none worse")
+
+
+def rows(found: Tolerances) -> list[tuple[str, ...]]:
+    """A row of the table for each claim, below `HEADINGS`: distances from the bound."""
+    return [
+        (
+            each.worst.word, each.claim, each.own.shown_distance, each.worst.shown_distance,
+            _where(each, found), _costs(each),
+        )
+        for each in found.claims
+    ]  # fmt: skip
+
+
+def _where(each: WorstCase, found: Tolerances) -> str:
+    """The values that make it the worst case."""
+    matter = {cost.key for cost in each.costs}
+    places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
+    return ", ".join(places) or "the same everywhere"
+
+
+def _costs(each: WorstCase) -> str:
+    """What each tolerance costs, the most expensive first."""
+    if not each.costs:
+        return "costs nothing"
+    bound = abs(each.worst.bound)
+    parts = []
+    for cost in each.costs:
+        share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
+        parts.append(f"{share} by {cost.key}")
+    return "costs " + ", ".join(parts)
+
+
+def draw(found: Tolerances) -> Any:
+    """A picture: of each claim the distance in the scene and in the worst case, as a share of the bound.
+
+    Raises LoomfmuError if matplotlib is not installed.
+    """
+    drawn = figure((WIDTH, LINE * len(found.claims) + REST))
+    axes = drawn.subplots()
+    for line, each in enumerate(reversed(found.claims)):
+        own, worst = (100.0 * verdict.relative_distance for verdict in (each.own, each.worst))
+        axes.plot([own, worst], [line, line], color="#b0b0b0", linewidth=3.0, zorder=1)
+        axes.plot([own], [line], "o", color=COLOURS[0], label="in the scene" if not line else None)
+        axes.plot([worst], [line], "D", color=COLOURS[1], label="worst case" if not line else None)
+    axes.set_yticks(range(len(found.claims)), [each.claim for each in reversed(found.claims)])
+    axes.axvline(0.0, color="black", linewidth=1.0)
+    axes.set_xlabel("distance from the bound, as a share of it [%]; below 0 the claim fails")
+    axes.grid(axis="x", color="#d4d4d4", linewidth=0.6)
+    axes.set_title(found.title, fontsize=11)
+    drawn.legend(loc="outside lower center", ncols=2, frameon=False)
+    return drawn

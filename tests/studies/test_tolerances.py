@@ -1,0 +1,83 @@
+"""Worst cases: closed forms, extremes inside the box, what each tolerance costs, what is refused."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from loomfmu import LoomfmuError, prepare, tolerances
+from loomfmu.cli import main
+from loomfmu.design import loom as design
+from loomfmu.studies import tolerances as worst_cases
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+FAST = {"revolutions": 1, "steps_per_revolution": 90}
+MARGIN = "the belt keeps a margin of 10 %"
+
+
+def test_the_worst_case_is_that_of_the_closed_form() -> None:
+    vary = ["belt.guide_clearance=0.2mm..0.5mm", "shaft.speed=580rpm..620rpm"]
+    found = tolerances(DEMO, vary=vary, set=FAST)
+    (margin,) = (each for each in found.claims if each.claim == MARGIN)
+    assert margin.place == {"belt.guide_clearance": 0.5e-3, "shaft.speed": 620.0 * math.pi / 30.0}
+
+    def closed(clearance: float, speed: float) -> float:
+        return (
+            1.0 - (speed * math.pi / 30.0 / design.safe_speed("WL680-3600", clearance=clearance).speed) ** 2
+        )
+
+    worst = closed(0.5e-3, 620.0)
+    # the lowest margin between samples 4 deg apart is off by 3e-6
+    assert margin.worst.worst == pytest.approx(worst, abs=1e-5) and not margin.worst and not found
+    assert [each.key for each in margin.costs] == ["belt.guide_clearance", "shaft.speed"]
+    given_back = [closed(0.3e-3, 620.0) - worst, closed(0.5e-3, 600.0) - worst]
+    assert [each.distance for each in margin.costs] == pytest.approx(given_back, abs=1e-5)
+    (dwell,) = (each for each in found.claims if each.claim == "the frames dwell long enough")
+    assert dwell.costs == () and dwell.worst.worst == dwell.own.worst
+
+
+def test_a_worst_case_inside_the_box_is_found() -> None:
+    found = worst_cases._descended(lambda p: (p[0] - 0.37) ** 2 + abs(p[1] - 0.81), (0.0, 1.0))
+    # steps end at 2^-16 of a range
+    assert found == pytest.approx((0.37, 0.81), abs=2.0**-15)
+
+
+def test_the_table_of_a_scene_is_what_the_command_searches(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = tmp_path / "loom.toml"
+    short = "revolutions = 1\nsteps_per_revolution = 90"
+    text = DEMO.read_text().replace("revolutions = 3\nsteps_per_revolution = 1440", short)
+    scene.write_text(f'{text}\n[tolerances]\n"belt.guide_clearance" = ["0.2 mm", "0.35 mm"]\n')
+    assert prepare(scene).scene.tolerances == {"belt.guide_clearance": ("0.2 mm", "0.35 mm")}
+    picture = tmp_path / "worst.svg"
+    assert main(["tolerances", str(scene), "--picture", str(picture)]) == 0
+    said = capsys.readouterr().out
+    assert "belt.guide_clearance 0.2 to 0.35 mm (in the scene 0.3 mm)" in said
+    assert "belt.guide_clearance = 0.35 mm" in said and "not a proof" in said
+    assert picture.read_text().startswith("<?xml")
+    assert main(["tolerances", str(scene), "--vary", "belt.guide_clearance=0.2mm..0.9mm"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("vary", "said"),
+    [
+        ([], "there are no tolerances; write"),
+        (["belt.guide_clearance=0.4mm..0.5mm"], "0.3 mm in the scene is outside its tolerance, 0.4 to"),
+        (["belt.guide_clearance=0.2mm..0.5mm", "belt.guide_clearance=0.2mm..0.4mm"], "has two tolerances"),
+        (["belt.guide_clearance=0.5mm..0.2mm"], "is empty"),
+        (["heald.stroke=10mm..98mm"], r"at heald\.stroke = 10 mm: .*clear_shed"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_searched_is_refused(vary: list[str], said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        tolerances(DEMO, vary=vary, set=FAST)
+
+
+@pytest.mark.parametrize("table", ["tolerances = 3", '[tolerances]\n"belt.guide_clearance" = "0.2 mm"'])
+def test_a_table_that_is_none_is_refused(table: str, tmp_path: Path) -> None:
+    scene = tmp_path / "loom.toml"
+    text = DEMO.read_text()
+    scene.write_text(f"{text}\n{table}\n" if table.startswith("[") else f"{table}\n{text}")
+    with pytest.raises(LoomfmuError, match=r'such as .*\["0.2 mm", "0.5 mm"\]'):
+        prepare(scene)
