@@ -8,8 +8,11 @@ from loomfmu.fmi.builder import folder
 ROOT = Path(__file__).parents[2]
 HOME, TOUR = "README.md", "docs/tour.md"
 REFERENCE = ("docs/command_line.md",)  # beside what `reference` generates
-GUIDES = ("docs/scenes.md", "docs/claims.md", "docs/report.md", "docs/traces.md", "docs/sweeps.md",
-          "docs/limits.md", "docs/tolerances.md", "docs/fitting.md", "docs/python.md", "docs/importing.md", "docs/own_mechanism.md")  # fmt: skip
+GUIDES = (
+    "docs/scenes.md", "docs/claims.md", "docs/report.md", "docs/traces.md", "docs/sweeps.md",
+    "docs/limits.md", "docs/tolerances.md", "docs/fitting.md", "docs/python.md", "docs/importing.md",
+    "docs/own_mechanism.md",
+)  # fmt: skip
 PROJECT = ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY.md")
 
 

@@ -23,6 +23,7 @@ CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
 SCATTERED = 16  # points within the box for each tolerance
 FIRST, LAST = 0.25, 2.0**-16  # steps of the search from the worst point found, as shares of a range
 SAME = 1e-9  # of the bound: distances that differ less are the same
+HEADINGS = ("verdict", "claim", "in the scene", "worst case", "where", "what it costs")
 
 
 @dataclass(frozen=True)
@@ -68,9 +69,37 @@ class Tolerances:
         )
 
     def _repr_html_(self) -> str:
-        from .tolerances_report import HEADINGS, rows
-
         return notebook.block(self.title, notebook.table(HEADINGS, rows(self)))
+
+
+def rows(found: Tolerances) -> list[tuple[str, ...]]:
+    """A row of the table for each claim, below `HEADINGS`: distances from the bound."""
+    return [
+        (
+            each.worst.word, each.claim, each.own.shown_distance, each.worst.shown_distance,
+            _where(each, found), _costs(each),
+        )
+        for each in found.claims
+    ]  # fmt: skip
+
+
+def _where(each: WorstCase, found: Tolerances) -> str:
+    """The values that make it the worst case."""
+    matter = {cost.key for cost in each.costs}
+    places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
+    return ", ".join(places) or "the same everywhere"
+
+
+def _costs(each: WorstCase) -> str:
+    """What each tolerance costs, the most expensive first."""
+    if not each.costs:
+        return "costs nothing"
+    bound = abs(each.worst.bound)
+    parts = []
+    for cost in each.costs:
+        share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
+        parts.append(f"{share} by {cost.key}")
+    return "costs " + ", ".join(parts)
 
 
 def tolerances(

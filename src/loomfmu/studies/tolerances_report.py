@@ -5,9 +5,8 @@ from typing import Any
 from .. import printed
 from ..printed import say
 from ..traces.plotting import COLOURS, figure
-from .tolerances import Tolerances, WorstCase
+from .tolerances import HEADINGS, Tolerances, rows
 
-HEADINGS = ("verdict", "claim", "in the scene", "worst case", "where", "what it costs")
 WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]
 
 
@@ -22,36 +21,6 @@ def show(found: Tolerances) -> None:
     ]
     printed.show(HEADINGS, table, entries)
     say(f"{found.runs} runs: a search for the worst cases, not a proof that there are none worse")
-
-
-def rows(found: Tolerances) -> list[tuple[str, ...]]:
-    """A row of the table for each claim, below `HEADINGS`: distances from the bound."""
-    return [
-        (
-            each.worst.word, each.claim, each.own.shown_distance, each.worst.shown_distance,
-            _where(each, found), _costs(each),
-        )
-        for each in found.claims
-    ]  # fmt: skip
-
-
-def _where(each: WorstCase, found: Tolerances) -> str:
-    """The values that make it the worst case."""
-    matter = {cost.key for cost in each.costs}
-    places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
-    return ", ".join(places) or "the same everywhere"
-
-
-def _costs(each: WorstCase) -> str:
-    """What each tolerance costs, the most expensive first."""
-    if not each.costs:
-        return "costs nothing"
-    bound = abs(each.worst.bound)
-    parts = []
-    for cost in each.costs:
-        share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
-        parts.append(f"{share} by {cost.key}")
-    return "costs " + ", ".join(parts)
 
 
 def draw(found: Tolerances) -> Any:

@@ -32,6 +32,7 @@ ROUNDS = 20  # of weighing columns by what is left of them
 SETTLED = 1e-3  # relative change of weights that ends it
 SURE = 0.95  # probability of the intervals
 ALIKE = 1e-9  # share of the strongest direction below which parameters cannot be told apart
+HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
 
 
 @dataclass(frozen=True)
@@ -77,13 +78,25 @@ class Fit:
         return f"<Fit of {self.scene.name} to {self.data.path}: {found}>"
 
     def _repr_html_(self) -> str:
-        from .report import HEADINGS, rows
-
         return notebook.block(
             f"{self.scene.title}: {self.data.path}",
             notebook.table(HEADINGS, rows(self)),
             *map(notebook.line, self.notes),
         )
+
+
+def rows(found: Fit) -> list[tuple[str, str, str, str]]:
+    """A row of the table for each parameter, below `HEADINGS`."""
+    return [
+        (each.span.key, each.span.show(each.value), _interval(each), each.span.show(each.span.value))
+        for each in found.parameters
+    ]
+
+
+def _interval(each: Fitted) -> str:
+    if each.at_bound:
+        return "none: at the end of its range"
+    return f"{each.span.number(each.low)} to {each.span.show(each.high)}"
 
 
 def fit(

@@ -6,9 +6,8 @@ import numpy as np
 
 from ... import printed
 from ...printed import say
-from .fit import Fit, Fitted
+from .fit import HEADINGS, Fit, rows
 
-HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
 STRONG = 0.9  # correlation that is worth a word
 
 
@@ -21,20 +20,6 @@ def show(found: Fit) -> None:
     ]
     printed.show(HEADINGS, table, entries)
     say(*remains(found), *cautions(found), "", f"{found.runs} runs")
-
-
-def rows(found: Fit) -> list[tuple[str, str, str, str]]:
-    """A row of the table for each parameter, below `HEADINGS`."""
-    return [
-        (each.span.key, each.span.show(each.value), _interval(each), each.span.show(each.span.value))
-        for each in found.parameters
-    ]
-
-
-def _interval(each: Fitted) -> str:
-    if each.at_bound:
-        return "none: at the end of its range"
-    return f"{each.span.number(each.low)} to {each.span.show(each.high)}"
 
 
 def remains(found: Fit) -> list[str]:
