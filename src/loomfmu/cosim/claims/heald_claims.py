@@ -49,6 +49,7 @@ class _Span(_Lifted, kind=False):
     at_least: float = argument(Quantity("rad", "deg", usual=1.5, low=0.0))
 
     unit, grid = ANGLE, LANDINGS
+    instead: ClassVar[str] = 'lifted_by = "frame" judges the drive alone'
     both_ways: ClassVar[bool] = False  # whether a carrier that swings as far beyond the end is not near it
 
     def _distance(self, trace: Signals) -> float:
@@ -58,24 +59,39 @@ class _Span(_Lifted, kind=False):
     def _judge(self, trace: Signals, text: str, of: str) -> Verdict:
         """The verdict; `of` is what it names of a frame without a damper."""
         signals = lifts(self.heald, self.lifted_by, trace)
-        found = [self._shortest(trace, motion_of(trace, signal)) for signal in signals]
+        motions = [motion_of(trace, signal) for signal in signals]
+        found = [self._shortest(trace, lift) for lift in motions]
         worst, time, *notes = found[0]
-        if notes[0] == NEVER and found[1:] and math.isfinite(found[1][0]):
-            worst, time = 0.0, found[1][1]
-            notes[0] = self._held_off(trace, signals[0])
+        if found[1:] and math.isfinite(found[1][0]):
+            missed = self._missed(trace, *motions)
+            if missed is not None:
+                worst, time, notes[0] = missed
         notes += [f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:]]
         signal = signals[0] if found[1:] else f"{self.heald}.{of}"
         return self.verdict(trace, text, signal, self.at_least, worst, time, *notes)
 
-    def _held_off(self, trace: Signals, carrier: str) -> str:
-        """A note on a carrier that is never where its frame is for a while."""
-        lift, stroke = np.asarray(trace[carrier]), trace.parameter(f"{self.heald}.stroke")
-        nearest = float(np.min(np.minimum(np.abs(lift), np.abs(stroke - lift))))
-        return (
-            f"springs and warp keep the carrier {1e3 * nearest:.3g} mm or more from the ends of its frame's"
-            " stroke; clear_shed judges the shed that it leaves,"
-            ' lifted_by = "frame" the dwell of the drive'
+    def _missed(self, trace: Signals, carrier: Motion, frame: Motion) -> tuple[float, float, str] | None:
+        """The first span of a frame, between those around it, in which its carrier is never at that end.
+
+        Spans that an end of the run cuts off count only if the carrier is never at an end: it may come later.
+        """
+        stroke = trace.parameter(f"{self.heald}.stroke")
+        theirs, own = (
+            _ends(lift, self._distance(trace), stroke, self.both_ways) for lift in (frame, carrier)
         )
+        every = sorted(theirs[0] + theirs[1])
+        ordered = sorted((span, end) for end in (0, 1) for span in theirs[end])
+        for span, end in ordered:
+            before = max((each.end for each in every if each.end <= span.start), default=frame.time[0])
+            after = min((each.start for each in every if each.start >= span.end), default=frame.time[-1])
+            there = any(each.end > before and each.start < after for each in own[end])
+            if not there and (span.whole or not (own[0] or own[1])):
+                within = (carrier.time >= before) & (carrier.time <= after)
+                away = float(np.min(np.abs(np.asarray(carrier.values[0])[within] - end * stroke)))
+                place = ("lower", "upper")[end]
+                off = f"{1e3 * away:.3g} mm or more from the {place} end of its frame's stroke"
+                return 0.0, span.start, f"springs and warp keep the carrier {off}; {self.instead}"
+        return None
 
     def _shortest(self, trace: Signals, lift: Motion) -> tuple[float, float, str, str]:
         """The least turn of the shaft during which a motion stays there, its time, and notes."""
@@ -104,6 +120,7 @@ class Dwell(_Span):
 
     needs = ("heald.lift",)
     both_ways = True
+    instead = 'clear_shed judges the shed that it leaves, lifted_by = "frame" the dwell of the drive'
 
     def _distance(self, trace: Signals) -> float:
         return self.tolerance * trace.parameter(f"{self.heald}.stroke")
@@ -170,7 +187,15 @@ class DwellContains(_Lifted):
 
 
 def _spans(lift: Motion, distance: float, stroke: float, both_ways: bool) -> list[Stretch]:
-    """Times from entering to leaving a distance from the lower or the upper end.
+    """Times from entering to leaving a distance from the lower or the upper end."""
+    lower, upper = _ends(lift, distance, stroke, both_ways)
+    return sorted(lower + upper)
+
+
+def _ends(
+    lift: Motion, distance: float, stroke: float, both_ways: bool
+) -> tuple[list[Stretch], list[Stretch]]:
+    """Times from entering to leaving a distance from the lower end, and from the upper one.
 
     A frame that holds stays within: its span is as long as the picks it holds for.
     """
@@ -178,7 +203,7 @@ def _spans(lift: Motion, distance: float, stroke: float, both_ways: bool) -> lis
     if both_ways:
         lower = _common(lower, lift.beyond(-distance, 1.0), lift.time)
         upper = _common(upper, lift.beyond(stroke + distance, -1.0), lift.time)
-    return sorted(lower + upper)
+    return lower, upper
 
 
 def _common(some: list[Stretch], others: list[Stretch], time: Floats) -> list[Stretch]:

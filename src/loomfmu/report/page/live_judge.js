@@ -60,18 +60,33 @@
       .map(({ start, end }) => ({ start, end, whole: start > time[0] && end < last(time) }));
   }
 
+  /* Times within a distance from the lower end of a stroke, and from the upper one. */
+  function ends(run, lift, distance, stroke, bothWays) {
+    const lower = lift.beyond(distance, -1), upper = lift.beyond(stroke - distance, 1);
+    if (!bothWays) return [lower, upper];
+    return [common(run, lower, lift.beyond(-distance, 1)), common(run, upper, lift.beyond(stroke + distance, -1))];
+  }
+
+  /* When a frame is first at an end of its stroke without its carrier, between the spans around it. */
+  function missed(run, own, frames) {
+    const every = frames.flat(), nowhere = !own.flat().length;
+    return frames.flatMap((spans, end) => spans.filter(span => {
+      const before = Math.max(run.time[0], ...every.filter(each => each.end <= span.start).map(each => each.end));
+      const after = Math.min(last(run.time), ...every.filter(each => each.start >= span.end).map(each => each.start));
+      return (span.whole || nowhere) && !own[end].some(each => each.end > before && each.start < after);
+    })).map(span => span.start).sort((one, other) => one - other)[0];
+  }
+
   /* Spans of a frame within a distance from an end of its stroke: those that begin and end in the run are judged. */
   function span(run, claim, distance, bothWays = false) {
-    const lift = motion(run, claim.lifts[claim.heald]), turning = motion(run, "shaft.angle");
-    const stroke = run.parameter(`${claim.heald}.stroke`);
-    let lower = lift.beyond(distance, -1), upper = lift.beyond(stroke - distance, 1);
-    if (bothWays) {
-      lower = common(run, lower, lift.beyond(-distance, 1));
-      upper = common(run, upper, lift.beyond(stroke + distance, -1));
-    }
-    const spans = [...lower, ...upper].filter(each => each.whole)
+    const turning = motion(run, "shaft.angle"), stroke = run.parameter(`${claim.heald}.stroke`);
+    const [own, frames] = [claim.lifts[claim.heald], `${claim.heald}.lift`]
+      .map(signal => ends(run, motion(run, signal), distance, stroke, bothWays));
+    const spans = own.flat().filter(each => each.whole)
       .map(each => ({ turned: Math.abs(turning.at(each.end) - turning.at(each.start)), time: each.start }))
       .sort((one, other) => one.time - other.time);
+    const late = missed(run, own, frames);
+    if (late !== undefined) return { worst: 0, bound: claim.at_least, time: late };
     if (!spans.length) return unknown(`no such span begins and ends within the run; ${NOT_HERE}`);
     const worst = Math.min(...spans.map(each => each.turned));
     return { worst, bound: claim.at_least, time: spans.find(each => each.turned <= worst + 1e-11).time };
