@@ -24,9 +24,11 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
 MOST_EXCHANGES = 50  # of a loop in one step: Broyden's method needs two or three where the loop is linear
-TOLERANCE = 1e-11  # of the largest value on a wire so far: what rounding leaves of a loop with a gain of 1e4
-ROUNDING = 1e-9  # of the largest value: what may be left after FEW exchanges where rounding leaves more
-FEW = 8
+TOLERANCE = 1e-12  # of the value on a wire: what its two ends may differ by
+SMALL = 1e-14  # of the largest value so far, where that is more: rounding, for a value near zero
+ROUNDING = 1e-9  # of the largest value: what rounding may leave in a loop with a high gain, seen by
+FEW, STALLS = 8, 2  # what is left after FEW exchanges, which has not halved in the last ones
+ORDERS = 4  # a step begins with values that go on as a cubic: a value and its first three differences
 FLAT = 1e-8  # slope from which on it is taken for rounding: there is no way to a solution along it
 NOT_SETTLED, NOT_SAVED, NOT_RESTORED = -1, -2, -3  # how stepper.c says why a step could not be iterated
 HISTORY = 256  # samples over which an oscillation is followed
@@ -48,14 +50,14 @@ class Broyden:
     """Solves `outputs(inputs) = inputs` for the real values on the wires of a loop, by Broyden's method.
 
     What it has learnt of the loop's slopes is kept from one step to the next, and a step begins with values
-    that go on as over the last one. Values that are not real are handed on as they are. The compiled stepper
+    that go on as over the last ones. Values that are not real are handed on as they are. The compiled stepper
     does the same arithmetic, to the last bit.
     """
 
     def __init__(self, reals: Floats, integers: Integers, slots: Sequence[int]):
         self._reals, self._integers, self._slots = reals, integers, list(slots)
         self.largest = np.zeros(len(slots))
-        self.last = np.full(len(slots), np.nan)  # values at the end of the step before the last
+        self.differences = np.full((ORDERS, len(slots)), np.nan)  # of the values at the ends of steps
         self.inverse = -np.eye(len(slots))  # of the slopes of outputs(inputs) - inputs; at first: of -1
 
     def settle(self, exchange: Callable[[], None]) -> bool:
@@ -63,10 +65,9 @@ class Broyden:
 
         `exchange` takes the values on the wires from the master's memory and writes the new ones there.
         """
-        settled = self._reals[self._slots]
-        guess = np.where(np.isnan(self.last), settled, settled + (settled - self.last))
-        self.last[:] = settled
+        guess = self._extrapolated(self._reals[self._slots])
         change = residual = np.zeros(0)
+        least, stalls = np.inf, 0
         for number in range(MOST_EXCHANGES):
             self._reals[self._slots] = guess
             others = self._integers.copy()
@@ -76,15 +77,27 @@ class Broyden:
                 return False
             before, residual = residual, found - guess
             largest = np.maximum(self.largest, np.abs(found))
-            agrees = np.all(np.abs(residual) <= (TOLERANCE if number < FEW else ROUNDING) * largest)
-            if agrees and np.array_equal(others, self._integers):
+            left = np.max(np.abs(residual) / np.where(largest > 0.0, largest, 1.0), initial=0.0)
+            close = np.abs(residual) <= np.maximum(TOLERANCE * np.abs(found), SMALL * largest)
+            stalls = stalls + 1 if left >= 0.5 * least else 0
+            rounded = number >= FEW and stalls >= STALLS and left <= ROUNDING
+            if (rounded or np.all(close)) and np.array_equal(others, self._integers):
                 self.largest[:] = largest
                 return True
+            least = min(least, left)
             if len(change):
                 self._learn(change, residual - before)
             change = np.array([-_product(row, residual) for row in self.inverse])
             guess = guess + change
         return False
+
+    def _extrapolated(self, value: Floats) -> Floats:
+        """Values a step further, from those at its start and the differences that are known."""
+        guess = np.zeros(len(value))
+        for kept in self.differences:
+            guess += np.where(np.isnan(value), 0.0, value)
+            value, kept[:] = value - kept, value
+        return guess
 
     def _learn(self, change: Floats, effect: Floats) -> None:
         """Let the slopes be those seen along the last change."""
@@ -160,8 +173,8 @@ class CompiledIteration(CompiledStepper):
         self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
         self._struct = _Loop(
             loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
-            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, TOLERANCE,
-            ROUNDING, FLAT, self._solver.last.ctypes.data, self._solver.largest.ctypes.data,
+            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, STALLS, ORDERS,
+            TOLERANCE, SMALL, ROUNDING, FLAT, self._solver.differences.ctypes.data, self._solver.largest.ctypes.data,
             self._solver.inverse.ctypes.data, self._room.ctypes.data, self._integers.ctypes.data,
         )  # fmt: skip
         super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
@@ -189,10 +202,13 @@ class _Loop(ctypes.Structure):
         ("count", ctypes.c_size_t),
         ("most_exchanges", ctypes.c_int64),
         ("few", ctypes.c_int64),
+        ("stalls", ctypes.c_int64),
+        ("orders", ctypes.c_int64),
         ("tolerance", ctypes.c_double),
+        ("small", ctypes.c_double),
         ("rounding", ctypes.c_double),
         ("flat", ctypes.c_double),
-        ("last", ctypes.c_void_p),
+        ("differences", ctypes.c_void_p),
         ("largest", ctypes.c_void_p),
         ("inverse", ctypes.c_void_p),
         ("room", ctypes.c_void_p),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..importing.slave import Slave
 from ..scenes.graph import Wire, step_order
-from .loops import MOST_EXCHANGES, TOLERANCE, Broyden
+from .loops import MOST_EXCHANGES, ROUNDING, Broyden
 from .signals import Slot
 from .steppers import Action, perform
 
@@ -68,7 +68,7 @@ class Start:
             f"loop: {wire} changed after {wire.sink[0]} had left initialization:"
             f" its sample at 0 s is based on the old value"
             for wire, value in handed.items()
-            if not math.isclose(value, self._value(wire), rel_tol=TOLERANCE)
+            if not math.isclose(value, self._value(wire), rel_tol=ROUNDING)
         ]
 
     def _value(self, wire: Wire) -> float:

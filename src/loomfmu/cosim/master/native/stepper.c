@@ -56,12 +56,12 @@ struct loop { /* calls that are repeated until they agree with themselves */
     size_t rollback_count;
     const int64_t *slots; /* where the values on its wires stand among the reals */
     size_t count;
-    int64_t most_exchanges, few; /* after that many rounding may leave more than the tolerance */
-    double tolerance, rounding, flat;
-    double *last;    /* values at the end of the step before the last; NaN where there was none */
-    double *largest; /* magnitude of each value so far */
-    double *inverse; /* count by count: of the slopes of what comes out less what went in */
-    double *room;    /* six vectors */
+    int64_t most_exchanges, few, stalls, orders;
+    double tolerance, small, rounding, flat; /* as loops.py describes them */
+    double *differences; /* orders by count: of the values at the ends of steps; NaN where there were none */
+    double *largest;     /* magnitude of each value so far */
+    double *inverse;     /* count by count: of the slopes of what comes out less what went in */
+    double *room;        /* six vectors */
     int32_t *integers;
 };
 
@@ -220,6 +220,48 @@ static bool roll(const struct loop *loop, bool back, struct outcome *outcome)
     return true;
 }
 
+/* A value a step further, from that at its start and the differences that are known. */
+static double extrapolated(const struct loop *loop, size_t place, double value)
+{
+    double guess = 0.0;
+    for (int64_t order = 0; order < loop->orders && !isnan(value); order++) {
+        double *kept = &loop->differences[(size_t)order * loop->count + place];
+        double difference = value - *kept;
+        guess += value;
+        *kept = value;
+        value = difference;
+    }
+    return guess;
+}
+
+/* Compare what came out with the guess that went in. Sets the residual and what it differs by from the one
+ * before, and as a share of the largest values how much is left; whether it is within the tolerance. */
+static bool close_enough(const struct plan *plan, const double *guess, double *residual, double *effect,
+                         double *left)
+{
+    const struct loop *loop = plan->loop;
+    bool close = true;
+    *left = 0.0;
+    for (size_t place = 0; place < loop->count; place++) {
+        double found = plan->reals[loop->slots[place]], before = residual[place];
+        double largest = fmax(loop->largest[place], fabs(found));
+        residual[place] = found - guess[place];
+        effect[place] = residual[place] - before;
+        *left = fmax(*left, fabs(residual[place]) / (largest > 0.0 ? largest : 1.0));
+        if (!(fabs(residual[place]) <= fmax(loop->tolerance * fabs(found), loop->small * largest)))
+            close = false;
+    }
+    return close;
+}
+
+static bool all_finite(const struct plan *plan)
+{
+    for (size_t place = 0; place < plan->loop->count; place++)
+        if (!isfinite(plan->reals[plan->loop->slots[place]]))
+            return false;
+    return true;
+}
+
 /* Repeat the calls of the loop until what comes out of them is what went in. */
 static bool settle(const struct plan *plan, double start, double size, struct outcome *outcome)
 {
@@ -227,14 +269,13 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
     size_t count = loop->count;
     double *guess = loop->room, *change = guess + count, *residual = change + count;
     double *effect = residual + count, *answer = effect + count, *row = answer + count;
+    double least = INFINITY, left;
+    int64_t stalls = 0;
 
     if (!roll(loop, false, outcome))
         return false;
-    for (size_t place = 0; place < count; place++) {
-        double value = plan->reals[loop->slots[place]];
-        guess[place] = isnan(loop->last[place]) ? value : value + (value - loop->last[place]);
-        loop->last[place] = value;
-    }
+    for (size_t place = 0; place < count; place++)
+        guess[place] = extrapolated(loop, place, plan->reals[loop->slots[place]]);
     for (int64_t exchange = 0; exchange < loop->most_exchanges; exchange++) {
         for (size_t place = 0; place < count; place++)
             plan->reals[loop->slots[place]] = guess[place];
@@ -243,25 +284,18 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
             return false;
         if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
             return false;
-        double tolerance = exchange < loop->few ? loop->tolerance : loop->rounding;
-        bool agrees = !memcmp(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
-        for (size_t place = 0; place < count; place++) {
-            double found = plan->reals[loop->slots[place]];
-            if (!isfinite(found)) {
-                outcome->status = NOT_SETTLED;
-                return false;
-            }
-            double before = residual[place];
-            residual[place] = found - guess[place];
-            effect[place] = residual[place] - before;
-            if (!(fabs(residual[place]) <= tolerance * fmax(loop->largest[place], fabs(found))))
-                agrees = false;
-        }
-        if (agrees) {
+        if (!all_finite(plan))
+            break;
+        bool close = close_enough(plan, guess, residual, effect, &left);
+        stalls = left >= 0.5 * least ? stalls + 1 : 0;
+        bool rounded = exchange >= loop->few && stalls >= loop->stalls && left <= loop->rounding;
+        if ((close || rounded) &&
+            !memcmp(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t))) {
             for (size_t place = 0; place < count; place++)
                 loop->largest[place] = fmax(loop->largest[place], fabs(plan->reals[loop->slots[place]]));
             return true;
         }
+        least = fmin(least, left);
         if (exchange)
             learn(loop, change, effect, answer, row);
         for (size_t place = 0; place < count; place++)
