@@ -16,6 +16,7 @@ from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.calls import Call
+from loomfmu.cosim.importing.logged import Logged
 from loomfmu.cosim.importing.slave import Ended
 from loomfmu.cosim.master.grid import Span
 from loomfmu.cosim.master.loops import Broyden, CompiledIteration, Growth, Iteration, Loop
@@ -396,9 +397,11 @@ class Ending:
     """An FMU in a loop that halves its input, counts its steps, and ends the simulation after two of them."""
 
     name = "halving"
+    noted = Logged.noted
 
     def __init__(self, value: np.ndarray):
         self.value, self.steps, self.kept = value, 0, 0
+        self.logged = ctypes.c_int64()
 
     def save(self) -> None:
         self.kept = self.steps

@@ -16,6 +16,18 @@ CONVERTED = (
 )  # fmt: skip
 
 
+class Silent(ctypes.Structure):
+    """Warnings of a function that came without a message: how many, and the time of the first [s]."""
+
+    _fields_ = (("count", ctypes.c_int64), ("first", ctypes.c_double))
+
+    def note(self, time: float) -> None:
+        """Count one more."""
+        if not self.count:
+            self.first = time
+        self.count += 1
+
+
 class Compiled(ctypes.Structure):
     """A call as the compiled stepper makes it: `struct call` of stepper.c.
 
@@ -33,6 +45,8 @@ class Compiled(ctypes.Structure):
         ("type", ctypes.c_int64),
         ("low", ctypes.c_double),
         ("high", ctypes.c_double),
+        ("logged", ctypes.c_void_p),
+        ("silent", ctypes.c_void_p),
     )
 
 

@@ -85,17 +85,18 @@ class Fmi3Slave(Slave):
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the values and enter the initialization."""
-        self.messages.clear()
+        self.forget_messages()
         self.started = True
         for name, value in values.items():
             port = self.fmu.ports[name]
             function = FUNCTIONS.get(port.base_type, port.base_type)
             self._do(getattr(self._slave, f"set{function}"), [port.reference], [value])
-        self._do(self._slave.enterInitializationMode, None, 0.0, stop_time)
+        no, zero, stop = ctypes.c_bool(False), ctypes.c_double(), ctypes.c_double(stop_time)
+        self._do(self._call, "EnterInitializationMode", no, zero, zero, ctypes.c_bool(True), stop)
 
     def finish_initialization(self) -> None:
         """Leave the initialization."""
-        self._do(self._slave.exitInitializationMode)
+        self._do(self._call, "ExitInitializationMode")
 
     def _ended(self) -> float | None:
         return float(self._flags.reached) if self._flags.terminate else None

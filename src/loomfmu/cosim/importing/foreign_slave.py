@@ -89,7 +89,7 @@ class ForeignSlave(Slave):
 
     def finish_initialization(self) -> None:
         """Leave the initialization."""
-        self._do(self._slave.exitInitializationMode)
+        self._do(self._call, "ExitInitializationMode")
 
     def _ended(self) -> float | None:
         kept = list(self.messages)  # it may complain of being asked

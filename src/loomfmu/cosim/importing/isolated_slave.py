@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...errors import LoomfmuError
-from .calls import ERROR, OK, WARNING, Call, Rollback
+from .calls import ERROR, OK, WARNING, Call, Rollback, Silent
 from .messages import CALLS, DONE, PLACE, SIZE, TIME, VALUES, Answer
 from .ports import Value
 from .process import START, Died, Limits, Process
@@ -84,6 +84,7 @@ class IsolatedSlave(Slave):
             self._process.end(grace=0.0)
             raise Died("it disturbs the connection to the master") from None
         self.messages[:] = answer.messages
+        self._silent = {function: Silent(*each) for function, each in answer.silent.items()}
         self.fatal = answer.fatal
         return answer
 
@@ -125,7 +126,7 @@ class IsolatedSlave(Slave):
             name: getattr(fmu, name)
             for name in ("ports", "fmi", "ours", "needs_tool", "path", "directory", "guid", "identifier")
         }
-        self.messages.clear()
+        self.forget_messages()
         self._forget_calls()
         starting = replace(self.limits, step=max(START, self.limits.step))
         self._ask("instantiate", facts | {"directory": fmu.directory.absolute()}, self.name, limits=starting)

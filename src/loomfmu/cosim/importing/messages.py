@@ -16,11 +16,13 @@ PART = 65536  # bytes that are read at a time
 
 
 class Answer(NamedTuple):
-    """The value of a method or what it raised, what the FMU has logged, and whether it failed fatally."""
+    """The value of a method or what it raised, the FMU's messages and warnings without one, whether it failed
+    fatally."""
 
     value: Any
     error: Exception | None
     messages: list[tuple[int, str]]
+    silent: dict[str, tuple[int, float]]
     fatal: bool
 
 

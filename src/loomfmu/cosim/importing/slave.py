@@ -29,6 +29,7 @@ from fmpy.fmi2 import (
 from ...errors import LoomfmuError
 from . import calls
 from .calls import DISCARD, ERROR, FATAL, OK, PENDING, REFUSED, WARNING, Call, Compiled, Rollback
+from .logged import Logged
 from .ports import Value
 from .settings import Setting, settings
 
@@ -39,8 +40,6 @@ SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the maste
 _ZERO = ctypes.c_double(0.0)
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal", PENDING: "Pending"}
-MOST_MESSAGES = 50  # of a third-party FMU that are kept
-PYTHONFMU = "Fatal py exception encountered: "  # a line of its wrapper's own, before what the exception says
 
 
 class Ended(LoomfmuError):
@@ -69,8 +68,8 @@ class FMU2Ours(FMU2Slave):  # type: ignore[misc]
             function.argnames, function.argtypes, function.restype = names, types, result
 
 
-class Slave:
-    """One instance of an FMU. `messages` holds what it logged as (status, text)."""
+class Slave(Logged):
+    """One instance of an FMU."""
 
     standard = "fmi2"  # what its functions begin with
     pooled = True  # whether it can be reset for another run
@@ -78,10 +77,8 @@ class Slave:
     _state_word = "state"
 
     def __init__(self, fmu: "Fmu", name: str):
+        super().__init__(name)
         self.fmu = fmu
-        self.name = name
-        self.messages: list[tuple[int, str]] = []
-        self._left_out = 0  # earlier messages
         self._functions: dict[str, Callable[..., int]] = {}
         self._settings: dict[tuple[str, ...], list[Setting]] = {}
         self.fatal = False
@@ -132,30 +129,6 @@ class Slave:
         if slave.component is None:
             raise LoomfmuError("no reason given")
 
-    def _log(
-        self, _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
-    ) -> None:
-        text = (message or b"").decode(errors="replace")
-        self.messages.append((status, text.partition("\n")[2] if text.startswith(PYTHONFMU) else text))
-
-    def _keep(self, status: int, text: bytes) -> None:
-        """Keep a message of a third-party FMU; of many the last ones, since some log at every step."""
-        if status < WARNING:
-            return
-        if not self.messages:
-            self._left_out = 0
-        noted = self._left_out > 0  # in a message before the others
-        self.messages.append((status, " ".join((text or b"").decode(errors="replace").split())))
-        if len(self.messages) - noted > MOST_MESSAGES:
-            del self.messages[noted]
-            self._left_out += 1
-            self.messages[:noted] = [(WARNING, f"{self._left_out} earlier messages left out")]
-
-    def _reason(self, error: Exception | None = None) -> str:
-        """The last complaint that the FMU logged, in one line."""
-        texts = [text for status, text in self.messages if status >= DISCARD]
-        return " ".join((texts[-1] if texts else str(error or "no reason given")).split())
-
     def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Call fmpy; a refusal, by status or by log, becomes one line that names the instance."""
         seen = len(self.messages)
@@ -172,7 +145,7 @@ class Slave:
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the experiment up and the values, and enter the initialization."""
-        self.messages.clear()
+        self.forget_messages()
         stop = ctypes.c_double(stop_time)
         self._do(self._call, "SetupExperiment", fmi2False, _ZERO, _ZERO, fmi2True, stop)
         self.started = True
@@ -192,7 +165,7 @@ class Slave:
         function = self._functions.get(name)
         if function is None:
             function = self._functions[name] = self._library[f"{self.standard}{name}"]
-        status = function(self._component, *arguments)
+        status = self.noted(f"{self.standard}{name}", 0.0, function, self._component, *arguments)
         if not OK <= status <= WARNING:
             raise FMICallException(f"{self.standard}{name}", status)
 

@@ -9,7 +9,6 @@ import shutil
 import sys
 import threading
 from array import array
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,7 +19,7 @@ from .messages import CALLS, DONE, PART, PLACE, SIZE, TIME, Answer, complete, fr
 from .pool import opened
 from .slave import Slave
 
-Prepared = list[tuple[int, Callable[..., int], tuple[Any, ...]]]
+Prepared = list[tuple[int, Call]]
 
 
 class Worker:
@@ -37,7 +36,7 @@ class Worker:
         self._size = ctypes.c_double.from_buffer(self._memory, SIZE)
         self._place = ctypes.c_int64.from_buffer(self._memory, PLACE)
         self._start = ctypes.addressof(self._time)
-        self._logged: list[tuple[int, str]] = []  # as the master knows it
+        self._known: tuple[Any, Any] = [], {}  # messages, and warnings without one, as the master has them
         self._slave: Slave
         self._calls: list[tuple[Call, ...]] = []
         self._batches: dict[bytes, Prepared] = {}
@@ -48,14 +47,14 @@ class Worker:
         while request := self._read():
             if request[:1] == CALLS:
                 failed, error = self._make(request[1:]), None
-                if failed is None and self._slave.messages == self._logged:
+                if failed is None and (self._slave.messages, self._slave.silent) == self._known:
                     write(self._replies, done)
                     continue
                 value: Any = failed
             else:
                 value, error = self._perform(*pickle.loads(request))
-            self._logged = list(self._slave.messages)
-            answer = Answer(value, error, self._logged, self._slave.fatal)
+            self._known = list(self._slave.messages), self._slave.silent
+            answer = Answer(value, error, *self._known, self._slave.fatal)
             write(self._replies, framed(pickle.dumps(tuple(answer))))
 
     def _read(self) -> bytes:
@@ -71,13 +70,15 @@ class Worker:
         """Make prepared calls up to the first that fails; its place among them and its status."""
         if numbers not in self._batches:
             self._batches[numbers] = [
-                (place, call.function, call.arguments)
+                (place, call)
                 for place, number in enumerate(array("I", numbers))
                 for call in self._calls[number]
             ]
-        for place, function, arguments in self._batches[numbers]:
+        time = self._time.value
+        for place, call in self._batches[numbers]:
             self._place.value = place
-            if not OK <= (status := function(*arguments)) <= WARNING:
+            status = self._slave.noted(call.name, time, call.function, *call.arguments)
+            if not OK <= status <= WARNING:
                 return place, status
         return None
 
@@ -98,7 +99,7 @@ class Worker:
         os.chdir(self._folder)  # the one before may have left it
         self._calls.clear()
         self._batches.clear()
-        self._slave = SimpleNamespace(messages=[], fatal=False)  # type: ignore[assignment]
+        self._slave = SimpleNamespace(messages=[], silent={}, fatal=False)  # type: ignore[assignment]
         self._slave = opened(SimpleNamespace(**facts, check_platform=lambda _name: None), name)  # type: ignore[arg-type]
 
     def prepare(self, action: str, kind: str, references: list[int], offset: int) -> str:

@@ -174,7 +174,8 @@ class CompiledIteration(CompiledStepper):
         self._struct = _Loop(
             loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
             self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, STALLS, ORDERS,
-            TOLERANCE, SMALL, ROUNDING, FLAT, self._solver.differences.ctypes.data, self._solver.largest.ctypes.data,
+            TOLERANCE, SMALL, ROUNDING, FLAT,
+            self._solver.differences.ctypes.data, self._solver.largest.ctypes.data,
             self._solver.inverse.ctypes.data, self._room.ctypes.data, self._integers.ctypes.data,
         )  # fmt: skip
         super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))

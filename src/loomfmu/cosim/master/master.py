@@ -268,12 +268,7 @@ class Master:
         """What the FMUs warned of."""
         lagged = [] if self.scene.coupling == ITERATED else self.lagged
         return (
-            [
-                f"{slave.name}: {text}"
-                for slave in self.slaves.values()
-                for status, text in slave.messages
-                if status == 1
-            ]
+            [line for slave in self.slaves.values() for line in slave.warnings()]
             + [f"{slave.name}: {NEEDS_TOOL}" for slave in self.slaves.values() if slave.fmu.needs_tool]
             + [f"loop: {wire} carries the value of the step before" for wire in lagged]
             + self._start_warnings

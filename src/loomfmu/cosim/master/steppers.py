@@ -33,6 +33,10 @@ class Action:
     slave: Slave
     call: Call
 
+    def make(self, time: float) -> int:
+        """Make the call in the step from `time` on; its status."""
+        return self.slave.noted(self.call.name, time, self.call.function, *self.call.arguments)
+
 
 class Driven(NamedTuple):
     """Values of the driven inputs: a row for each step, a column for each input."""
@@ -59,7 +63,7 @@ class Stepper(Protocol):
 def perform(actions: Iterable[Action], time: float) -> None:
     """Make some calls. Raises LoomfmuError for the first that an FMU refuses."""
     for action in actions:
-        if not OK <= (status := action.call.function(*action.call.arguments)) <= WARNING:
+        if not OK <= (status := action.make(time)) <= WARNING:
             raise action.slave.failed(status, action.call.name, time)
 
 
@@ -71,7 +75,7 @@ def take(actions: Iterable[Action], time: float, end: float, status: int | None 
     """
     ended: Ended | None = None
     for action in actions:
-        found = action.call.function(*action.call.arguments) if status is None else status
+        found = action.make(time) if status is None else status
         status = None
         if not OK <= found <= WARNING:
             failure = action.slave.failed(found, action.call.name, time)
@@ -129,7 +133,6 @@ class PythonStepper:
         self, actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double
     ):
         self._actions = actions
-        self._calls = [(action.call.function, action.call.arguments) for action in actions]
         self._memory = memory
         self._time, self._size = time, size
 
@@ -141,8 +144,9 @@ class PythonStepper:
                 return step, None
             time.value, size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
-            for place, (function, arguments) in enumerate(self._calls):
-                if not OK <= (status := function(*arguments)) <= WARNING:
+            start = time.value
+            for place, action in enumerate(self._actions):
+                if not OK <= (status := action.make(start)) <= WARNING:
                     return stopped(self._actions[place:], status, span, step, memory, reals, integers)
             reals[step] = memory.reals
             integers[step] = memory.integers
@@ -190,6 +194,9 @@ class CompiledStepper:
         self._calls = (Compiled * len(actions))(
             *[action.call.compiled for action in actions if action.call.compiled]
         )
+        for action, call in zip(actions, self._calls, strict=True):
+            call.logged = ctypes.addressof(action.slave.logged)
+            call.silent = ctypes.addressof(action.slave.silent_of(action.call.name))
         self._plan = _Plan(
             ctypes.addressof(self._calls), len(actions),
             memory.reals.ctypes.data, len(memory.reals),

@@ -31,6 +31,11 @@ struct flags {
     double reached;
 };
 
+struct silent { /* warnings that came without a message */
+    int64_t count;
+    double first; /* s */
+};
+
 struct call {
     int64_t kind;
     void (*function)(void);
@@ -41,6 +46,8 @@ struct call {
     void *masters;    /* the master's memory, where its types are others */
     int64_t type;     /* the FMU's, where it is another one */
     double low, high; /* what fits the other side */
+    const volatile int64_t *logged; /* warnings of the instance so far */
+    struct silent *silent;
 };
 
 struct rollback {
@@ -167,7 +174,11 @@ static bool perform_all(const struct plan *plan, size_t first, size_t end, doubl
                         struct outcome *outcome)
 {
     for (size_t place = first; place < end; place++) {
-        int status = perform(&plan->calls[place], start, size);
+        const struct call *call = &plan->calls[place];
+        int64_t logged = *call->logged;
+        int status = perform(call, start, size);
+        if (status == WARNING && *call->logged == logged && !call->silent->count++)
+            call->silent->first = start;
         if (status < OK || status > WARNING) {
             outcome->call = (int64_t)place;
             outcome->status = status;
