@@ -17,7 +17,7 @@
 #undef fmi2EnterInitializationMode
 #undef fmi2DoStep
 
-enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE };
+enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE, FORK };
 enum { STEP, INITIALIZATION, TERMINATE, FREE };
 
 #ifndef RETURNED
@@ -66,6 +66,9 @@ static void misbehave(Instance *i)
         if (fork() == 0)
             for (;;) pause();
         *(volatile int *)8 = 1;
+        break;
+    case FORK: /* both go on */
+        fork();
         break;
     case LOG:
         for (int line = 0; line < 10000; line++)

@@ -346,6 +346,22 @@ def test_a_changed_working_directory_is_changed_back(
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
 
 
+@pytest.mark.parametrize("where", ["STEP", "INITIALIZATION"])
+@pytest.mark.parametrize("text", [MOTOR, IN_THIS_PROCESS])
+def test_of_a_process_that_an_fmu_has_forked_one_goes_on(tmp_path: Path, text: str, where: str) -> None:
+    misbehaving(tmp_path, "FORK", where)
+    (tmp_path / "scene.toml").write_text(text.replace('"0.2 s"', '"0.055 s"'))
+    done = subprocess.run(
+        [sys.executable, "-m", "loomfmu.cli", "run", "scene.toml"], cwd=tmp_path, capture_output=True,
+        text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("trace: ") == 1
+    assert os.listdir(tmp_path / "results") == ["scene.h5"]
+    with Trace(tmp_path / "results" / "scene.h5") as trace:
+        assert trace.status == "complete" and trace.rows == 56
+
+
 @pytest.mark.parametrize("isolated", [True, False])
 def test_a_step_in_the_background_is_named(tmp_path: Path, isolated: bool) -> None:
     misbehaving(tmp_path, "STATUS", returned=5)

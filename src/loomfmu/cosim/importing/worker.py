@@ -43,17 +43,20 @@ class Worker:
 
     def serve(self) -> None:
         """Answer requests until the master closes its end."""
-        done = framed(DONE)
+        done, process = framed(DONE), os.getpid()
         while request := self._read():
-            if request[:1] == CALLS:
-                failed, error = self._make(request[1:]), None
-                if failed is None and (self._slave.messages, self._slave.silent) == self._known:
-                    write(self._replies, done)
-                    continue
-                value: Any = failed
+            value: Any
+            calls = request[:1] == CALLS
+            if calls:
+                value, error = self._make(request[1:]), None
             else:
                 value, error = self._perform(*pickle.loads(request))
-            self._known = list(self._slave.messages), self._slave.silent
+            if os.getpid() != process:  # the FMU has called `fork`: its copy must not answer, too
+                os._exit(0)
+            known, self._known = self._known, (list(self._slave.messages), self._slave.silent)
+            if calls and value is None and known == self._known:
+                write(self._replies, done)
+                continue
             answer = Answer(value, error, *self._known, self._slave.fatal)
             write(self._replies, framed(pickle.dumps(tuple(answer))))
 

@@ -20,15 +20,19 @@ FAILED = 2  # the exit status of a failed FMU
 
 @contextmanager
 def directory_kept() -> Iterator[None]:
-    """Go back to the working directory that an FMU has left: relative paths mean what they meant."""
-    try:
+    """Go back to the working directory that an FMU has left: relative paths mean what they meant.
+
+    A copy of this process that an FMU has made by `fork`, and that returns from its call, too, ends here:
+    there is one trace.
+    """
+    process, before = os.getpid(), Path()
+    with contextlib.suppress(OSError):  # it was deleted
         before = Path.cwd()
-    except OSError:  # it was deleted
-        yield
-        return
     try:
         yield
     finally:
+        if os.getpid() != process:
+            os._exit(FAILED)
         with contextlib.suppress(OSError):
             os.chdir(before)
 
