@@ -341,6 +341,15 @@ def test_a_shaft_that_stands_still_has_no_step(demo: Whole) -> None:
         demo.instance(shaft__speed=0.0)
 
 
+def test_a_step_that_would_take_hours_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "loom.toml"
+    path.write_text("duration = 1\nstep = 0.01\n[belt]\n")
+    instance = Whole(exported(loaded(path), tmp_path), tmp_path / "unpacked").instance(step=1e-12)
+    with pytest.raises(Exception, match="fmi2DoStep failed"):
+        instance.along(1, 1e-3)
+    assert any("takes more than 1e7 steps of the components" in text for text in instance.log)
+
+
 def test_derivatives_of_inputs_are_refused(tmp_path: Path) -> None:
     text = "duration = 1\nstep = 0.01\n[belt]\n"
     one = Whole(exported(scenes.parse(text, "open"), tmp_path), tmp_path / "unpacked")

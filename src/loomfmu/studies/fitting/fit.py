@@ -31,6 +31,8 @@ PRECISE = 1e-13  # relative changes at which the search ends
 ROUNDS = 20  # of weighing columns by what is left of them
 SETTLED = 1e-3  # relative change of weights that ends it
 SURE = 0.95  # probability of the intervals
+MORE = 10  # values than parameters, of each of several signals: else its noise is not known
+ROUNDING = 1e-12  # of a signal's spread: data without noise
 ALIKE = 1e-9  # share of the strongest direction below which parameters cannot be told apart
 HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
 
@@ -141,6 +143,12 @@ def _check(spans: Sequence[Span], data: Measured) -> None:
     targets = [target for span in spans for target in span.varied.targets]
     if twice := [target for target in targets if targets.count(target) > 1]:
         raise LoomfmuError(f"{twice[0]} is varied twice")
+    for signal, values in data.columns.items() if len(data.columns) > 1 else ():
+        if (count := int(np.isfinite(values).sum())) < len(spans) + MORE:
+            raise LoomfmuError(
+                f"{data.path}: {signal} has {count} values; several signals are weighed by what remains of"
+                f" each, which takes at least {len(spans) + MORE} for {len(spans)} parameters: leave it out"
+            )
     if data.count <= len(spans):
         raise LoomfmuError(
             f"{data.path}: {data.count} values are too few for {len(spans)} parameters and their intervals"
@@ -159,9 +167,7 @@ class _Search:
         """Search, and say how sure the result is."""
         found = self._refined(self._starts())
         for _round in range(ROUNDS if len(self._data.columns) > 1 else 0):
-            weights = 1.0 / np.array(
-                [max(each.rms, 1e-12 * (_spread(each.measured) or 1.0)) for each in self._at(found.x)]
-            )
+            weights = 1.0 / self._noise(found)
             settled = np.allclose(weights, self._weights, rtol=SETTLED, atol=0.0)
             self._weights = weights
             found = self._refined([found.x])
@@ -171,6 +177,24 @@ class _Search:
         parameters, correlations = self._sure(found)
         notes = tuple(note for each in curves if (note := each.note))
         return Fit(self._loom.scene, self._data, parameters, correlations, tuple(curves), self._runs, notes)
+
+    def _noise(self, found: Any) -> Floats:
+        """The standard error of each signal, from what remains of it.
+
+        A fit takes up as much of a signal's noise as its values weigh in the fit, their leverages; the rest
+        are its degrees of freedom.
+        """
+        free = np.flatnonzero(found.active_mask == 0)
+        directions = np.linalg.qr(found.jac[:, free])[0]
+        leverages = np.sum(directions**2, axis=1)
+        noise, first = [], 0
+        for each in self._at(found.x):
+            after = first + len(each.measured)
+            freedom = len(each.measured) - float(np.sum(leverages[first:after]))
+            exact = ROUNDING * (_spread(each.measured) or 1.0)
+            noise.append(max(each.rms * math.sqrt(len(each.measured) / freedom), exact))
+            first = after
+        return np.array(noise)
 
     def _setting(self, shares: Floats) -> dict[str, Any]:
         return {

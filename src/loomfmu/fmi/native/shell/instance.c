@@ -207,6 +207,8 @@ static Status fmu_step_parts(Instance *instance, double time, double size)
     return status == OK ? fmu_check_finite(instance, false, time, DISCARD) : status;
 }
 
+#define MOST_INNER_STEPS 1e7 /* in one step of the host: half a minute at some microseconds each */
+
 /* Steps to each point of the grid on the way, and from there to the end of the host's step. */
 static Status fmu_step_on_grid(Instance *instance, double time, double size, double inner)
 {
@@ -214,6 +216,10 @@ static Status fmu_step_on_grid(Instance *instance, double time, double size, dou
     Status status = OK;
     if (at >= end) { /* too short to tell both ends apart */
         return fmu_step_parts(instance, time, size);
+    }
+    if (end - at > MOST_INNER_STEPS) {
+        return fmu_complain_of_step(instance, DISCARD, time, size,
+                                    " s takes more than 1e7 steps of the components; step less or make theirs longer");
     }
     while (at < end && status == OK) {
         double next = floor(at) + 1.0 < end ? floor(at) + 1.0 : end;
