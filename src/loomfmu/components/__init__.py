@@ -11,6 +11,7 @@ MODULES = {
     "DrivenShaft": "driven_shaft",
     "WeftInsertion": "weft_insertion",
     "BeltMonitor": "belt_monitor",
+    "BeltDynamics": "belt_dynamics",
     "DobbyDrive": "dobby.drive",
     "HealdFrame": "heald_frame",
     "HealdDamper": "heald_damper",
