@@ -19,6 +19,7 @@ GROWTH = 0.05  # of the free length in a step of the integration
 MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
+SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
 
 @dataclass(slots=True)
@@ -51,7 +52,7 @@ class BeltDynamics(BeltRest):
 
     def step(self, time: float, step_size: float) -> int:
         """Move the belt over the step: out of the guide, on, and back into it."""
-        if step_size <= 0.0:
+        if step_size < SHORTEST_STEP:
             return 0
         jumped = self.jumps(step_size if self.inputs_at_step_end else self.path_step)
         self.lay_path(step_size)
