@@ -8,7 +8,7 @@ import pytest
 from loomfmu import cli
 from loomfmu.machines import MACHINES, table
 from loomfmu.validation import accuracy, plots, report, sections
-from loomfmu.validation.sections import Pair, Row, Section, number
+from loomfmu.validation.sections import USED, Pair, Row, Section, number
 
 RESULTS = Path(__file__).parents[2] / "results"
 LARGEST = 60_000  # bytes of a figure
@@ -151,7 +151,7 @@ def test_every_published_row_appears(text, wanted):
     rows = next(rows for title, rows in tables(text).items() if title.startswith(start))
     for published in table(source) if isinstance(source, str) else source:
         found = next(row for row in rows if row[: len(names)] == [published[name] for name in names])
-        cells = [cell.split(" / ")[0] for cell in found[len(names) :]]
+        cells = [cell.split(" / ")[0].rstrip(USED) for cell in found[len(names) :]]
         place = 0
         for column in columns:  # as printed, and in this order
             place = cells.index(published[column] or "not printed", place) + 1
@@ -171,7 +171,7 @@ def test_what_is_not_reproduced_is_marked_and_listed(text, chapters):
                     remark = section._cells(row)[-1]
                     assert remark.startswith("not reproduced: ")
                     assert pair.verdict in remark and pair.verdict in listed
-                    assert f"published {pair.published}, computed" in pair.verdict.replace(
+                    assert f"published {pair.shown[0]}, computed" in pair.verdict.replace(
                         "measured", "published"
                     )
     assert missed > 50
@@ -181,7 +181,7 @@ def test_what_is_not_reproduced_is_marked_and_listed(text, chapters):
 @pytest.mark.parametrize(
     "said",
     [
-        "mu = 0.8: published 475, computed 418.7",
+        f"mu = 0.8: published 475{USED}, computed 418.7",
         "published 54.81, computed 59.10 (misprint, see Errata)",
         "sloped sine: measured 140, computed 100.1",
         "published 59.6, computed 5.960 (misprint, see Errata)",
@@ -190,6 +190,66 @@ def test_what_is_not_reproduced_is_marked_and_listed(text, chapters):
 )
 def test_known_misses_are_told(text, said):
     assert said in text
+
+
+def test_a_number_that_chose_a_value_is_marked_and_not_counted():
+    met, missed, free = (
+        Pair("100", 100.0, 1, used=True),
+        Pair("100", 90.0, 1, used=True),
+        Pair("100", 100.0, 1),
+    )
+    assert report._counts([met, missed, free]) == ["3", "1", "1", "0", "0", "1"]
+    section = Section("Table", ("machine", ""), (Row(("WL", met)), Row(("WM", missed)), Row(("WN", free))))
+    assert f"| WL | 100{USED} | 100.0 | 0.0 |" in section.markdown()
+    assert (
+        f"| WM | 100{USED} | 90.0 | -10.0 | not reproduced: published 100{USED}, computed 90.0 |"
+        in section.markdown()
+    )
+    assert "| WN | 100 | 100.0 | 0.0 |" in section.markdown()
+
+
+@pytest.mark.parametrize(
+    ("start", "labels", "used", "count"),
+    [  # how many cells of the rows with these labels are marked, of how many numbers
+        ("Table 1: end of", "WL", 20, 30),  # both ends of the window, not the free length
+        ("Table 2: measured buckling", "", 15, 15),  # the length factors are fitted to them
+        ("Table 3: length factor", "", 0, 5),  # the source's own fit
+        ("Figure 10", "", 1, 2),
+        ("Table 5: safe speed", "WL", 10, 30),
+        ("Table 5: critical", "WL", 0, 29),
+        ("Table 6: safe speed", "WL", 10, 40),  # case I, as in Table 5
+        ("Table 7", "", 0, 40),
+        ("Sections 3.1 and 3.6", "harmonic ends: largest S''", 0, 1),
+        ("Sections 3.1 and 3.6", "sloped", 2, 2),
+        ("Section 3.4 and Figure 3.18", "sloped", 2, 2),
+        ("Sections 3.5 and 5.1", "mean", 2, 2),
+        ("Sections 3.5 and 5.1", "highest", 0, 2),
+        ("Sections 3.2 and 3.4, Figures 5 and 6", "", 5, 5),
+        ("Table 1 and Figures 8 and 9", "M13", 2, 2),
+        ("Table 1 and Figures 8 and 9", "M12", 0, 2),
+        ("Appendix 2", "", 2, 3),
+    ],
+)  # fmt: skip
+def test_what_chose_a_value(chapters, start, labels, used, count):
+    section = next(s for chapter in chapters for s in chapter.sections if s.title.startswith(start))
+    rows = [row for row in section.rows if str(row.cells[0]).startswith(labels)]
+    pairs = [cell for row in rows for cell in row.cells if isinstance(cell, Pair)]
+    assert (sum(pair.used for pair in pairs), len(pairs)) == (used, count)
+
+
+def test_a_ratio_that_set_the_ramp_is_marked_among_the_inferences(text):
+    rows = next(
+        rows for title, rows in tables(text).items() if "possible explanations of the measured" in title
+    )
+    ratio = next(row for row in rows if row[0].startswith("largest rotor speed"))
+    assert [cell for cell in ratio if cell.endswith(USED)] == [f"1.400{USED}"]
+
+
+def test_readme_quotes_the_totals(text):
+    numbers, reproduced, used = tables(text)["Summary"][-1][1:4]
+    readme = " ".join((RESULTS.parent / "README.md").read_text(encoding="utf-8").split())
+    assert f"puts {numbers} published numbers" in readme
+    assert f"{reproduced} are reproduced" in readme and f"{used} more are met" in readme
 
 
 def test_a_miss_cannot_hide():

@@ -115,8 +115,10 @@ def profile() -> Section:
         (
             Row(("scale from travel to radius, 23 mm over 0.108 m", Pair("212.963", 23.0 / 0.108, 3)),
                 "the travel is not 108 mm: see Errata"),
-            Row(("lowest radius of the working profile, mm", Pair("84", float(radii.min()), 2))),
-            Row(("highest radius of the working profile, mm", Pair("107", float(radii.max()), 2))),
+            Row(("lowest radius of the working profile, mm",
+                 Pair("84", float(radii.min()), 2, used=True)), "put in"),
+            Row(("highest radius of the working profile, mm",
+                 Pair("107", float(radii.max()), 2, used=True)), "put in"),
             Row(("highest radius with the printed scale, mm", number(84.0 + 212.963 * frame_span(), 2)),
                 "less than 107: see Errata"),
             Row(("path of the cutter: lowest radius, mm", number(float(path.min()), 2))),

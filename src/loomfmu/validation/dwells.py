@@ -10,7 +10,7 @@ from ..machines import table
 from ..physics.heald import lift_fraction
 from ..physics.rotor_laws.rotor import SLOPED_LINE, dwell_angle, rotor_law
 from . import rotor
-from .sections import Row, Section, number
+from .sections import USED, Row, Section, number
 
 Floats = NDArray[np.float64]
 POINTS = 2048  # in two picks, in which a frame in plain weave rises and falls
@@ -149,14 +149,14 @@ def section() -> Section:
         )),
         Row((
             "largest rotor speed relative to the shaft's, zeta = 0.7", "1.4", "",
-            number(rotor.drive("plateau", 0.7).highest_speed, 3),
+            number(rotor.drive("plateau", 0.7).highest_speed, 3) + USED,
             number(rotor.new_drive("plateau", 0.7, **shape).highest_speed, 3), line, line,
         )),
     ]  # fmt: skip
     return Section(
         "Table 3.1, possible explanations of the measured dwell, deg (inferences, not counted)",
         (
-            "zeta", "measured", "constant 1 - zeta", "plateau, not fitted", "plateau, fitted",
+            "zeta", "measured", "constant 1 - zeta", "plateau, default", "plateau, fitted",
             "sloped line and play, fitted", "sloped line and elasticity, fitted",
         ),
         tuple(rows),
@@ -166,10 +166,10 @@ def section() -> Section:
             " only.",
             "Constant 1 - zeta: the rotor keeps its lowest speed all through the dwell. With nothing fitted"
             " that is the measured dwell at zeta = 0.3 and 0.4.",
-            "Plateau, not fitted: the law `plateau` of `DobbyDrive` with its defaults. Its plateau of 90 deg"
-            " is the prototype's dwell of 135 to 225 deg (section 2.5); its ramp of 40.9 deg gives the"
-            f" published ratio of 1.4. Fitted: a plateau of {number(plateau, 1)} deg and a ramp of"
-            f" {number(ramp, 1)} deg.",
+            "Plateau, default: the law `plateau` of `DobbyDrive` with its defaults. Its plateau of 90 deg"
+            " is the prototype's dwell of 135 to 225 deg (section 2.5); its ramp of 40.9 deg was chosen to"
+            " give the published ratio of 1.4, which therefore proves nothing. Fitted: a plateau of"
+            f" {number(plateau, 1)} deg and a ramp of {number(ramp, 1)} deg.",
             f"Play would widen the tolerance: {number(100.0 * fitted_play(), 1)} % of the stroke come"
             " closest. Play does not explain the dwells.",
             "Elasticity: a frame in plain weave on a spring behind the drive, in its steady state, dwelling"

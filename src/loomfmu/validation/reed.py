@@ -35,7 +35,8 @@ def chapter() -> Chapter:
         "Reed beat-up (Yuan and others, Journal of Textile Research (2017), 10.13475/j.fzxb.20170102406)",
         "The source's tables and most of its equations are lost. The frame angle of 15 deg, the speed of 30"
         " rev/min, the side of the reed's line and the position of the crank were identified from the"
-        " published acceleration; nothing else was adjusted.",
+        " published acceleration. Arm, rod and height follow from the reed's limits and"
+        " its transmission angle at the front by the source's synthesis.",
         (synthesis(), motion(), over_frame_angle()),
     )
 
@@ -85,12 +86,14 @@ def motion() -> Section:
         ("quantity", ""),
         (
             Row(("transmission angle of rod and reed at the front dead centre, deg",
-                 Pair("88.765", 90.0 - abs(math.degrees(reed.pressure_angle)), 3))),
-            Row(("front limit, mm", Pair("490.3", 1e3 * reed.front_limit, 2))),
-            Row(("back limit, mm", Pair("330.2", 1e3 * reed.back_limit, 2))),
-            Row(("stroke, mm", Pair("160.1", 1e3 * reed.stroke, 2))),
+                 Pair("88.765", 90.0 - abs(math.degrees(reed.pressure_angle)), 3, used=True)),
+                "put in as 90 deg - 1.235 deg"),
+            Row(("front limit, mm", Pair("490.3", 1e3 * reed.front_limit, 2, used=True)), "490 put in"),
+            Row(("back limit, mm", Pair("330.2", 1e3 * reed.back_limit, 2, used=True)), "330 put in"),
+            Row(("stroke, mm", Pair("160.1", 1e3 * reed.stroke, 2, used=True)), "follows from the limits"),
             Row(("acceleration at the front dead centre, mm/s2",
-                 Pair("-1159.7", 1e3 * reed.acceleration, 1)), "of the identified geometry"),
+                 Pair("-1159.7", 1e3 * reed.acceleration, 1, used=True)),
+                "the geometry was identified from it"),
             Row(("the same with the reed's line above the arm, mm/s2", number(1e3 * above.acceleration, 1))),
             Row(("arm, rod, height, mm", _lengths(reed))),
             Row(("the same with the reed's line above the arm, mm", _lengths(above))),

@@ -27,7 +27,7 @@ from . import (
     warp,
     wrap,
 )
-from .sections import CALCULATION, MEASUREMENT, Chapter, Pair, Section, number
+from .sections import CALCULATION, MEASUREMENT, USED, Chapter, Pair, Section, number
 
 NAME = "validation.md"
 REPORT = starts_with("a report of loomfmu validate", b"# Validation\n")
@@ -40,12 +40,16 @@ def _share(value: float) -> str:
 INTRO = f"""# Validation
 
 The published numbers that can be computed, table by table, beside what the components compute.
-Written by `loomfmu validate`. Nothing was tuned to bring the two closer.
+Written by `loomfmu validate`. Where a published number was used to choose a value, it is marked and not
+counted.
 
 - A published calculation counts as reproduced if the computed number is within {_share(CALCULATION)} of
   it, a measurement if within {_share(MEASUREMENT)}; either also counts if it differs by at most one unit of
   the last printed digit. For angles that mark a position, where a percentage means nothing, only that unit
   counts.
+- {USED} marks a published number that was used to choose a value, a dimension or a law. Meeting it proves
+  nothing, so it is not counted as reproduced but in a column of its own. One that is not met in spite of that
+  counts as not reproduced.
 - Whatever is not reproduced is marked in the last column, with both values, and listed below.
 - Published numbers are shown as printed, computed ones with more digits. The difference is computed minus
   published, in percent of the published number.
@@ -113,12 +117,13 @@ def write(directory: Path, overwrite: bool = False) -> list[Path]:
 
 
 def _counts(pairs: list[Pair]) -> list[str]:
-    """Counts of numbers, of those reproduced, and of misprints, measurements and others that are not."""
+    """Counts of numbers, of those reproduced, of those met but used, and of the three kinds of misses."""
     missed = [pair for pair in pairs if not pair.reproduced]
+    used = sum(pair.used for pair in pairs if pair.reproduced)
     slips = [pair for pair in missed if pair.misprint]
     measured = [pair for pair in missed if pair.measured]
     others = len(missed) - len(slips) - len(measured)
-    counts = (len(pairs), len(pairs) - len(missed), len(slips), len(measured), others)
+    counts = (len(pairs), len(pairs) - len(missed) - used, used, len(slips), len(measured), others)
     return [str(count) for count in counts]
 
 
@@ -127,6 +132,7 @@ def _summary(of_sources: tuple[Chapter, ...]) -> str:
         "source",
         "numbers",
         "reproduced",
+        f"met, but used{USED}",
         "misprints",
         "measurements not reproduced",
         "other numbers not reproduced",

@@ -12,6 +12,7 @@ ROLLER, TOP = 12.5e-3, 12.25e-3
 ROLLER_INERTIA, TOP_INERTIA = 135.64e-6, 33.98e-6
 NIPS = math.pi / 30.0
 POINTS = 4000  # in a nip
+LOAD = "whether 300 N load a side or a whole top roller was chosen by it"
 
 TORQUES = {
     "M11": "drafting_torque",
@@ -79,7 +80,9 @@ def from_table() -> Section:
     m11 = ROLLER * drafting_force(1.0, 0.33, 300.0, m12["valley"] / ROLLER)
     rows.append(Row(("M12, peak, (11)", Pair("0.31", m12["peak"], 4))))
     rows.append(Row(("M12, valley", Pair("-0.14", m12["valley"], 4)), "printed without its sign: see Errata"))
-    rows.append(Row(("M11, largest number of fibres, M12 = -0.138 N m, (19)", Pair("0.68", m11, 4))))
+    rows.append(
+        Row(("M11, largest number of fibres, M12 = -0.138 N m, (19)", Pair("0.68", m11, 4, used=True)), LOAD)
+    )
     rows.append(Row(("M2, peak, (13)", Pair("1.36", 1.18 + m12["peak"], 4, misprint=True))))
     rows.append(Row(("M2, valley", Pair("-0.61", -0.53 + m12["valley"], 4, misprint=True))))
     return Section(
@@ -93,15 +96,17 @@ def built_in() -> Section:
     rows = []
     for name, (peak, valley) in TABLE_1.items():
         slip = name in ("M1", "M2")
-        low = Pair(valley, found[name].valley, 3, misprint=name == "M2") if valley else "0"
-        rows.append(Row((name, Pair(peak, found[name].peak, 3, misprint=slip), low)))
+        used = name in ("M11", "M13")
+        low = Pair(valley, found[name].valley, 3, misprint=name == "M2", used=used) if valley else "0"
+        rows.append(Row((name, Pair(peak, found[name].peak, 3, misprint=slip, used=used), low)))
     return Section(
         "Table 1 and Figures 8 and 9: torques at 300 nips/min with the built-in motion, N m",
         ("torque", "peak", "valley"),
         tuple(rows),
         split=False,
         remarks=(
-            "M13 proves nothing: the motion was made to match it. M12 follows from the inertias.",
+            "M13 proves nothing: the motion was made to match it. M12 follows from the inertias. The load of"
+            " 300 N was taken as that of a whole top roller because that gives the published M11.",
             "Published valleys are shown with the minus signs that they have lost.",
         ),
         figures=(
@@ -116,7 +121,7 @@ def table_2() -> Section:
     for nips, name, peak, valley in TABLE_2:
         found = extremes(float(nips))[name]
         high, low = (
-            Pair(peak, found.peak, 2, misprint=True), Pair(valley, found.valley, 2)
+            Pair(peak, found.peak, 2, misprint=True), Pair(valley, found.valley, 2, used=name == "M")
         )  # fmt: skip
         rows.append(Row((nips, name, high, low)))
     growth = [extremes(n)["M0"] for n in (300.0, 500.0)]
@@ -134,6 +139,7 @@ def table_2() -> Section:
         remarks=(
             "All sums repeat the slip of Table 1: they use the printed M2, which is 9 % too low. The valleys"
             " also depend on the assumed motion.",
+            "The three valleys of M were used to choose how the number of fibres falls off.",
         ),
     )  # fmt: skip
 

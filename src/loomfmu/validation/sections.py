@@ -14,6 +14,7 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 # which a share means nothing, within that unit alone.
 CALCULATION = 0.02
 MEASUREMENT = 0.05
+USED = "\N{DAGGER}"  # marks a published number that was used to choose a value
 
 _EIGHT_DIGITS = Context(prec=8, rounding=ROUND_HALF_UP)
 
@@ -51,8 +52,8 @@ class Pair:
     """A published number, as it is printed, beside the computed one.
 
     `digits` are the decimals of the computed one; `place` says that it is a place on the shaft's circle,
-    `misprint` that the printed number is known to be wrong; `sense` is "=" or, where the source gives a
-    bound, ">=" or "<=".
+    `misprint` that the printed number is known to be wrong, `used` that it was used to choose a value, so
+    that meeting it proves nothing; `sense` is "=" or, where the source gives a bound, ">=" or "<=".
     """
 
     published: str
@@ -61,6 +62,7 @@ class Pair:
     measured: bool = False
     place: bool = False
     misprint: bool = False
+    used: bool = False
     sense: str = "="
 
     @property
@@ -88,9 +90,10 @@ class Pair:
 
     @property
     def shown(self) -> tuple[str, str, str]:
-        """Published, computed, difference in percent."""
+        """Published, with its mark if it was used, computed, difference in percent."""
         bound = {">=": "at least ", "<=": "at most ", "=": ""}[self.sense]
-        return bound + self.published, number(self.computed, self.digits), number(self.difference, 1, True)
+        published = bound + self.published + (USED if self.used else "")
+        return published, number(self.computed, self.digits), number(self.difference, 1, True)
 
     @property
     def verdict(self) -> str:

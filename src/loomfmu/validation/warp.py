@@ -91,9 +91,9 @@ def tensions() -> Section:
         ("quantity", ""),
         (
             Row(("mean, upper part of the shed, 280 picks/min, N",
-                 Pair("0.3", float(tension[height > 0.0].mean()), 3, measured=True)), chosen),
+                 Pair("0.3", float(tension[height > 0.0].mean()), 3, measured=True, used=True)), chosen),
             Row(("mean, lower part of the shed, N",
-                 Pair("0.27", float(tension[height < 0.0].mean()), 3, measured=True)), chosen),
+                 Pair("0.27", float(tension[height < 0.0].mean()), 3, measured=True, used=True)), chosen),
             Row(("highest, upper part, 300 rev/min, pretension 15 cN, cN",
                  Pair("76.6", upper, 1, measured=True))),
             Row(("highest, lower part, cN", Pair("26.2", lower, 1, measured=True))),
@@ -183,7 +183,8 @@ def springs() -> Section:
             Row(("inertia force of the frame, N, (5.5)", Pair("600", 15.0 * 40.0, 1))),
             Row(("stiffness of a spring, N/m, (5.6)", Pair("5960", stiffness, 2))),
             Row(("stiffness of a spring, N/mm", Pair("59.6", 1e-3 * stiffness, 3, misprint=True))),
-            Row(("displacement of a carrier of 15 kg under both forces, mm", Pair("15", 1e3 * way, 3))),
+            Row(("displacement of a carrier of 15 kg under both forces, mm",
+                 Pair("15", 1e3 * way, 3, used=True)), "the springs are designed for it"),
             Row(("its natural frequency, Hz", number(frequency, 3))),
         ),
     )  # fmt: skip
