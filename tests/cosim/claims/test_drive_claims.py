@@ -164,3 +164,38 @@ def test_a_trace_that_does_not_have_its_wires_is_judged_as_one_with_all():
     assert trace.wires["shaft.work_1"] == "weft.shaft_work"
     trace._wires = {}
     assert judge(trace, kind="energy_balance") == whole
+
+
+def test_a_work_that_the_shaft_counts_but_that_is_not_wired_fails():
+    trace = energy().trace
+    trace._wires = {sink: source for sink, source in trace.wires.items() if sink != "shaft.work_1"}
+    verdict = judge(trace, kind="energy_balance")
+    assert not verdict
+    assert verdict.note == "shaft.use_work_1 = true, but shaft.work_1 is not wired"
+
+
+def test_a_start_from_rest_that_fails_names_its_steps():
+    scene = ENERGY.format(steps=90, fittings="", shaft='start_at_speed = false\nspeed = "300 rev/min"')
+    (claim,) = loomfmu.evaluate(scenes.parse(scene), flavour="live").claims
+    assert not claim
+    assert claim.note == "the steps may be too coarse for the start from rest: take more"
+    (claim,) = loomfmu.evaluate(scenes.parse(scene, overrides={"steps_per_revolution": 720})).claims
+    assert claim
+    assert claim.note == ""
+
+
+@pytest.mark.parametrize(
+    ("law", "note"),
+    [
+        ("uniform", "take more steps: the gap shrinks if the torque is right"),
+        (
+            "spline_cam",
+            "the velocity of a spline_cam jumps: its impulse is in the work, but in no torque",
+        ),
+    ],
+)
+def test_a_gap_between_torque_and_work_names_what_may_cause_it(law, note):
+    trace = energy(fittings='[dobby]\nlaw = "' + law + '"').trace
+    verdict = judge(Altered(trace, "heald_2.shaft_torque", 0.5), kind="energy_balance")
+    assert not verdict
+    assert verdict.note.endswith(f"; {note}")

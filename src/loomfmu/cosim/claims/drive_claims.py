@@ -7,6 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...errors import LoomfmuError
+from ...physics.rotor_laws.shed_cam import SPLINE_CAM
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Name, Quantity, argument
@@ -111,9 +113,14 @@ class EnergyBalance(Claim):
                 if gap - allowed > most:
                     most, signal, time = gap - allowed, load.torque, at
                     notes = [f"its work is {gap:.3g} J off {load.work}; the steps explain {allowed:.2g} J"]
+        if most > self.at_most * through:
+            notes.append(_cause(trace, signal))
+        unwired = _unwired(trace)
+        if unwired:
+            notes = [f"shaft.use_{work} = true, but shaft.{work} is not wired" for work in unwired]
         if not through > 0.0:
             notes = ["the shaft does no work in this run"]
-        share = most / through if through > 0.0 else math.nan
+        share = most / through if through > 0.0 and not unwired else math.nan
         return self.verdict(trace, "energy missing", signal, self.at_most, share, time, *notes)
 
 
@@ -141,6 +148,34 @@ def _without_work(trace: Signals, loads: Iterable[Load]) -> list[str]:
     return [f"work by the torque alone, of second order in the step: {', '.join(torques)}"] if torques else []
 
 
+def _unwired(trace: Signals) -> list[str]:
+    """The works that the shaft counts for a torque although they do not come from its mechanism."""
+    numbers = [sink.removeprefix("shaft.torque_") for sink in trace.wires if sink.startswith("shaft.torque_")]
+    missing = [f"work_{number}" for number in numbers if f"shaft.work_{number}" not in trace.wires]
+    return [work for work in missing if _parameter(trace, f"shaft.use_{work}") == 1.0]
+
+
+def _cause(trace: Signals, signal: str) -> str:
+    """A note on why the balance of a sound scene may fail; none where nothing is known."""
+    owner = signal.partition(".")[0]
+    if owner != "shaft":
+        drive = trace.wires.get(f"{owner}.lift_slope", "").partition(".")[0]
+        if _parameter(trace, f"{drive}.law") == SPLINE_CAM:
+            return "the velocity of a spline_cam jumps: its impulse is in the work, but in no torque"
+        return "take more steps: the gap shrinks if the torque is right"
+    if trace["shaft.velocity"][0] == 0.0:
+        return "the steps may be too coarse for the start from rest: take more"
+    return ""
+
+
+def _parameter(trace: Signals, name: str) -> float:
+    """A parameter of the run; NaN where the trace does not have it."""
+    try:
+        return trace.parameter(name)
+    except LoomfmuError:
+        return math.nan
+
+
 def _slip(trace: Signals) -> float:
     """What the shaft's velocity differs by from the integral of its acceleration, as a share of it.
 
@@ -155,10 +190,10 @@ def _gap(trace: Signals, load: Load, slip: float) -> tuple[float, float, float]:
     """Largest difference of the work that a load states from that of its torque, what of it may be due to
     the steps, and its time.
 
-    That is twice what half of the samples change the integral by: 15 times its error for a smooth torque,
-    and twice the largest error for one that jumps between two samples. And a torque belongs to the shaft's
-    acceleration, a work to its velocity: where these differ by a share, the work `I w^2 / 2` of a mass
-    differs by up to four times this share, `2 I w` times the largest difference.
+    That is twice what half of the samples change the integral by: about 15 times its error for a torque that
+    its samples resolve, but what a blow between two samples does may lie beyond. And a torque belongs to the
+    shaft's acceleration, a work to its velocity: where these differ by a share, the work `I w^2 / 2` of a
+    mass differs by up to four times this share, `2 I w` times the largest difference.
     """
     torque, time, work = np.asarray(trace[load.torque]), trace.time, np.asarray(trace[load.work])
     if load.passed in trace:

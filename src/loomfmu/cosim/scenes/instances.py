@@ -158,12 +158,23 @@ class Instance:
 
     def effect(self, name: str, fed: Collection[str] = ()) -> Value | None:
         """A parameter or an input at the start; None if it is fed, or has no effect."""
+        switch, _wanted = self.switched_off(name, fed)
+        return None if switch else self._start(name, fed)
+
+    def switched_off(self, name: str, fed: Collection[str] = ()) -> tuple[str, bool]:
+        """The parameter because of whose value another one has no effect, and the value that it needs; no
+        name where there is none."""
         declared = self._declared().get(name)
         if declared and declared.when and not self._start(declared.when, fed, True):
-            return None
+            return declared.when, True
         if declared and declared.unless and self._start(declared.unless, fed, False):
-            return None
-        return self._start(name, fed)
+            return declared.unless, False
+        return "", False
+
+    def switched(self) -> list[tuple[str, str]]:
+        """The inputs that usually come from another instance and that a parameter switches on, after it."""
+        declared = self._declared().values()
+        return [(v.when, v.name) for v in declared if v.causality == "input" and v.when and v.source]
 
     def _start(self, name: str, fed: Collection[str], otherwise: bool | None = None) -> Value | None:
         port = self.fmu.ports.get(name)

@@ -2,7 +2,7 @@
 
 import fnmatch
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,10 +12,10 @@ from ...errors import LoomfmuError, check_text, shown, suggestion
 from ...own.declared import ISOLATED
 from ..importing.ports import Port
 from ..importing.process import AVAILABLE
-from . import standard_loom
+from . import notes, standard_loom
 from .drives import Drive
 from .graph import Wire
-from .instances import COARSE, KEYS, Instance, instance, instance_tables, mixed, own_texts, truth
+from .instances import COARSE, KEYS, Instance, instance, instance_tables, own_texts, truth
 from .overrides import override, override_weave
 from .tables import choice, number, toml
 from .tables import text as text_of
@@ -138,8 +138,9 @@ def parse(
     scene = replace(scene, overrides=dict(overrides or {}), texts=texts)
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
-    check_free(scene, [(owner, key) for owner, table in given.items() for key in table])
-    return scene
+    keys = [(owner, key) for owner, table in given.items() for key in table]
+    check_free(scene, keys)
+    return replace(scene, notes=(*scene.notes, *notes.without_effect(instances, keys)))
 
 
 def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
@@ -167,6 +168,7 @@ def assemble(
     """A scene of wired instances, with what else the tables of its text say."""
     times = times_of(tables)
     drives = drives_of(instances, wires, tables.get("inputs", {}))
+    _check_switches(instances, {each.sink for each in wires} | {(d.instance, d.variable) for d in drives})
     scene = Scene(
         title=check_text(text_of(tables, "title", name), "title"),
         description=text_of(tables, "description").strip(),
@@ -190,7 +192,7 @@ def assemble(
         isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
         step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
         run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
-        notes=tuple(_notes(instances, wires, drives, times.periods)),
+        notes=tuple(notes.of_scene(instances, wires, drives, times.periods)),
     )
     _check_single(scene)
     check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
@@ -201,24 +203,16 @@ def _shaft_ports(instances: dict[str, Instance]) -> dict[str, Port]:
     return instances["shaft"].fmu.ports if "shaft" in instances else {}
 
 
-def _notes(
-    instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
-) -> Iterable[str]:
-    """What a user is to be warned of; `end` is where the run ends, as the tables of drives count it."""
-    for drive in drives:
-        if drive.periods[0] >= end:
-            name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
-            yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
-    yield from mixed(instances)
-    fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
-    for name, each in instances.items() if "shaft" in instances else ():
-        inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
-        if inputs and not any((name, variable) in fed for variable in inputs):
-            yield f"{name} runs at its own constant speed: its shaft inputs are not wired to the shaft"
-        if not inputs and each.fmu.component and standard_loom.turns_alone(each.fmu.component):
-            yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
-    doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
-    yield from filter(None, (*doubts, *(each.doubt for each in drives)))
+def _check_switches(instances: dict[str, Instance], fed: Collection[tuple[str, str]]) -> None:
+    """Refuse to use an input, such as the work of a mechanism, that comes from another instance but has no
+    source: its torque would do no work."""
+    for name, each in instances.items():
+        for switch, sink in each.switched():
+            if each.values.get(switch) and (name, sink) not in fed:
+                raise LoomfmuError(
+                    f"{name}.{switch} = true, but {name}.{sink} is not wired:"
+                    f" wire it, or set {name}.{switch} = false"
+                )
 
 
 def _check_single(scene: Scene) -> None:

@@ -219,6 +219,12 @@ def _usual_sources(name: str, variable: Variable) -> list[str]:
     return (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
 
 
+def gathers(component: type[Component]) -> str:
+    """The output that a component takes of every instance that has it; the first one, or none."""
+    sources = (v.source or "" for v in variables_of(component))
+    return next((each.removeprefix(ALL) for each in sources if each.startswith(ALL)), "")
+
+
 def gathered(
     name: str, components: Mapping[str, type[Component]], given: Mapping[str, Any]
 ) -> dict[str, str]:

@@ -18,6 +18,7 @@ from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
 from ..scenes.instances import TIMES, Instance, as_shaft, check_name, with_units
+from ..scenes.notes import without_effect
 from ..scenes.overrides import components, overridden, override, unit_of
 from ..scenes.scene import Scene, assemble, check_free
 from ..scenes.tables import DEEPEST, toml
@@ -95,7 +96,7 @@ class _Reader:
             overrides=dict(overrides),
         )  # fmt: skip
         check_free(made, changed)
-        return made
+        return replace(made, notes=(*made.notes, *without_effect(instances, changed)))
 
     def _scene_of_ours(self) -> Element | None:
         """The text of the scene, if the package is ours; those of version 0.1.0 have it at the root's end."""

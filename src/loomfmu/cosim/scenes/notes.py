@@ -1,0 +1,54 @@
+"""What the user of a scene is to be warned of."""
+
+from collections.abc import Iterable
+
+from . import standard_loom
+from .drives import Drive
+from .graph import Wire
+from .instances import Instance, mixed
+
+
+def of_scene(
+    instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
+) -> Iterable[str]:
+    """Warnings about a scene; `end` is where the run ends, as the tables of drives count it."""
+    for drive in drives:
+        if drive.periods[0] >= end:
+            name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
+            yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
+    yield from mixed(instances)
+    fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
+    for name, each in instances.items() if "shaft" in instances else ():
+        inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
+        if inputs and not any((name, variable) in fed for variable in inputs):
+            yield f"{name} runs at its own constant speed: its shaft inputs are not wired to the shaft"
+        if not inputs and each.fmu.component and standard_loom.turns_alone(each.fmu.component):
+            yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
+    yield from _loads(instances, wires)
+    doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
+    yield from filter(None, (*doubts, *(each.doubt for each in drives)))
+
+
+def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
+    """Warnings about mechanisms that load the shaft more than once, or not at all."""
+    wired = {wire.source for wire in wires}
+    for name, each in instances.items():
+        torque = standard_loom.gathers(each.fmu.component) if each.fmu.component else ""
+        if not torque:
+            continue
+        for other, mechanism in instances.items():
+            source = (other, torque)
+            sinks = [".".join(wire.sink) for wire in wires if wire.source == source and wire.sink[0] == name]
+            if len(sinks) > 1:
+                yield f"{other}.{torque} loads {name} {len(sinks)} times: {', '.join(sinks)}; keep one wire"
+            port = mechanism.fmu.ports.get(torque)
+            if port and port.causality == "output" and source not in wired:
+                yield f"{other} does not load {name}: {other}.{torque} is not wired"
+
+
+def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:
+    """Warnings about values that a scene gives, but that another value switches off."""
+    for owner, key in keys:
+        switch, wanted = instances[owner].switched_off(instances[owner].fmu.name_of(key))
+        if switch:
+            yield f"{owner}.{key} has no effect: set {owner}.{switch} = {str(wanted).lower()}"

@@ -1,0 +1,76 @@
+"""What the user of a scene is warned of, and works that a shaft counts without a source."""
+
+from pathlib import Path
+
+import pytest
+
+from loomfmu import LoomfmuError
+from loomfmu.cosim.scenes import scene as scenes
+
+LOOM = """
+[loom]
+machine = "WL680-3600"
+weave = "10/01"
+[shaft]
+component = "DrivenShaft"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "switch", "sink"),
+    [
+        (LOOM + 'use_work_2 = true\n[wires]\n"shaft.work_2" = false\n', "shaft.use_work_2", "shaft.work_2"),
+        (LOOM + "use_work_32 = true\n", "shaft.use_work_32", "shaft.work_32"),
+        (LOOM + "[heald_1]\nuse_load_work = true\n", "heald_1.use_load_work", "heald_1.load_work"),
+    ],
+)
+def test_a_work_that_counts_needs_a_source(text, switch, sink):
+    expected = f"{switch} = true, but {sink} is not wired: wire it, or set {switch} = false"
+    with pytest.raises(LoomfmuError, match=expected):
+        scenes.parse(text)
+
+
+def test_a_work_may_come_from_a_table():
+    text = LOOM + 'use_work_32 = true\n[inputs]\n"shaft.work_32" = [[0, 0.0], [1, 5.0]]\n'
+    assert scenes.parse(text).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("wires", "note"),
+    [
+        (
+            '"shaft.torque_2" = "heald_1.shaft_torque"\n"shaft.torque_7" = "heald_1.shaft_torque"',
+            "heald_1.shaft_torque loads shaft 2 times: shaft.torque_2, shaft.torque_7; keep one wire",
+        ),
+        ('"shaft.torque_1" = false', "weft does not load shaft: weft.shaft_torque is not wired"),
+    ],
+)
+def test_mechanisms_that_load_the_shaft_twice_or_not_at_all_are_named(wires, note):
+    assert scenes.parse(LOOM).notes == ()
+    assert scenes.parse(f"{LOOM}[wires]\n{wires}\n").notes == (note,)
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        (
+            "[belt]\nprescribed_length_factor = 0.8\n",
+            "belt.prescribed_length_factor has no effect: set belt.prescribe_length_factor = true",
+        ),
+        ("[belt]\nprescribe_length_factor = true\nprescribed_length_factor = 0.8\n", ""),
+        (
+            '[belt]\nprescribe_length_factor = true\nguide_clearance = "0.3 mm"\n',
+            "belt.guide_clearance has no effect: set belt.prescribe_length_factor = false",
+        ),
+    ],
+)
+def test_a_value_without_effect_is_named(text, note):
+    loom = '[loom]\nmachine = "WL680-3600"\n' + text
+    assert scenes.parse(loom).notes == (() if not note else (note,))
+
+
+@pytest.mark.parametrize(
+    "path", sorted((Path(__file__).parents[3] / "sims").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_the_scenes_of_the_project_have_no_warnings(path):
+    assert scenes.load(path).notes == ()
