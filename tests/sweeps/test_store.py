@@ -39,17 +39,19 @@ def plan(tmp_path: Path) -> SweepPlan:
 def batch(rows: range) -> Batch:
     """Made-up results; every fifth row could not be run."""
     results = [
-        [None] * 12 + [f"row {row}"]
+        [None] * 14 + [f"row {row}"]
         if row % 5 == 4
         else [
             70.0 + row,
             True,
             0.1 * row,
             0.0,
+            0.1 * row,
             None,
             row < 20,
             70.0 + row,
             60.0,
+            10.0 + row,
             None,
             row < 20,
             None if row < 20 else "second",
