@@ -126,7 +126,7 @@ def power_of_frame(
         power [W], its rates [W/s, W/s2]
 
     >>> power_of_frame(2.0, 3.0, 0.0, 0.0, 0.5, 0.0, 1.5, 0.0, 4.0, 1.0, 0.0)  # at rest in the moving frame
-    (-12.0, -3.0, 0.0)
+    (-12.0, -3.0, -0.0)
     """
     second = drive - stiffness * position - damping * rate
     third = drive_1 - stiffness * rate - damping * second

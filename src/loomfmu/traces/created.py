@@ -22,15 +22,21 @@ REALS, INTEGERS = h5t.IEEE_F64LE, h5t.STD_I32LE
 
 
 def annotate(place: Any, values: Mapping[str, Any]) -> None:
-    """Give something new in a file attributes that it does not have yet: numbers, texts or arrays."""
+    """Give something new in a file attributes that it does not have yet: numbers, texts or arrays.
+
+    Each is closed here, not when Python gets to it: with one open, HDF5 lets no reader join.
+    """
     for name, value in values.items():
         if isinstance(value, str):
             attribute = h5a.create(place.id, name.encode(), STORED_TEXT, SCALAR)
             attribute.write(np.array(value, dtype=TEXT), TEXT_IN_MEMORY)
+            attribute.close()
         else:
             array = np.asarray(value)
             kind, space = h5t.py_create(array.dtype, logical=True), h5s.create_simple(array.shape)
-            h5a.create(place.id, name.encode(), kind, space).write(array)
+            attribute = h5a.create(place.id, name.encode(), kind, space)
+            attribute.write(array)
+            attribute.close()
 
 
 def dataset(group: Any, name: str, kind: Any) -> Any:

@@ -122,7 +122,9 @@ def test_steps_of_any_size_lead_to_the_same_end(live: Open, name: str) -> None:
         # one step of a damper is summed from pieces of its own: rounding of some hundred of them;
         # the others are closed forms of t + h, which differs in its last bit
         scale = max(abs(float(value)) for value in values) + (output.nominal or 1.0)
-        assert max(values) - min(values) <= 1e-10 * scale, output.name
+        # the work that the damper passes on is a quadrature of sixth order, not a closed form
+        share = 1e-7 if output.name == "frame_work" else 1e-10
+        assert max(values) - min(values) <= share * scale, output.name
 
 
 def test_a_step_of_no_length_is_allowed_and_changes_nothing(live: Open) -> None:

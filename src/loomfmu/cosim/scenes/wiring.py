@@ -1,5 +1,6 @@
 """What gives the inputs of a scene their values: wires from outputs, and tables that drive them."""
 
+from collections import ChainMap
 from typing import Any
 
 from ...errors import LoomfmuError, shown, suggestion
@@ -25,7 +26,7 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
     for name in components:
-        sources |= standard_loom.gathered(name, components, sources | tables)
+        sources |= standard_loom.gathered(name, components, ChainMap(tables, sources))
     taken = {str(each) for each in (*sources.values(), *dotted(spelt_out).values())}
     sources |= standard_loom.fed_back(components, taken)
     spelt = dotted(spelt_out)
