@@ -14,11 +14,7 @@ SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
 
 
 def test_there_is_a_test_for_each() -> None:
-    assert sorted(path.name for path in SWEEPS.iterdir()) == [
-        "belt_motion.toml",
-        "damper.toml",
-        "safe_speed.toml",
-    ]
+    assert sorted(path.name for path in SWEEPS.iterdir()) == ["damper.toml", "safe_speed.toml"]
 
 
 def test_safe_speed_falls_with_wear_and_is_that_of_the_design(
@@ -49,16 +45,4 @@ def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
     stiff = table.filter(pc.field("damper.spring_stiffness") > 15e3)["damper_1.stop_contacts"].to_pylist()
     assert len(soft) > 5 and min(soft) > 0
     assert len(stiff) > 5 and max(stiff) == 0
-    assert (output / "map.png").stat().st_size > 10_000
-
-
-def test_a_bow_over_the_whole_span_deflects_farther_than_the_belts_own(tmp_path: Path) -> None:
-    output = tmp_path / "out"
-    assert main(["sweep", str(SWEEPS / "belt_motion.toml"), "--output", str(output), "--processes", "1"]) == 1
-    table = pq.read_table(output / "table.parquet")
-    assert table.num_rows == 162 and table["error"].null_count == 162
-    deflection = table["belt_motion.largest_at_risk"].to_numpy().reshape(9, 3, 3, 2)
-    assert np.all(deflection[..., 1] > deflection[..., 0])
-    assert np.all(np.diff(deflection, axis=0) > 0.0)  # faster
-    assert np.all(np.diff(deflection, axis=2) > 0.0)  # more bow
     assert (output / "map.png").stat().st_size > 10_000

@@ -11,7 +11,6 @@ MODULES = {
     "DrivenShaft": "driven_shaft",
     "WeftInsertion": "weft_insertion",
     "BeltMonitor": "belt_monitor",
-    "BeltDynamics": "belt_dynamics",
     "DobbyDrive": "dobby.drive",
     "HealdFrame": "heald_frame",
     "HealdDamper": "heald_damper",
