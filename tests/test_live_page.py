@@ -160,6 +160,24 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(written: Path, opened
     until(page, lambda: page.inner_text(".outcome").endswith("All 6 claims hold"))
 
 
+def test_on_paper_the_drawings_stand_where_a_claim_of_this_run_fails(written: Path, opened: Open) -> None:
+    """Those out of sight, too: at 690 rev/min the belt buckles at 100 deg, which it does not at the start."""
+    page = running(opened(written))
+    turned(page, 690.0)
+    page.emulate_media(media="print")
+    until(page, lambda: "100." in page.inner_text("#motion-place"))
+    place = page.evaluate("loomfmu.live.worst()")
+    page.emulate_media(media="screen")
+    page.evaluate(f"loomfmu.seek({place})")
+    values = "Array.from(document.querySelectorAll('#motion [data-value]'), each => each.textContent)"
+    page.locator("#motion").scroll_into_view_if_needed()
+    seen = page.evaluate(values)
+    page.evaluate("loomfmu.seek(loomfmu.first); scrollTo(0, 0)")
+    page.wait_for_timeout(200)  # an observer says when they are out of sight
+    page.emulate_media(media="print")
+    until(page, lambda: page.evaluate(values) == seen)
+
+
 def test_drawings_and_plots_follow_the_run(written: Path, opened: Open, tmp_path: Path) -> None:
     """The belt buckles at 700 rev/min, not in the run that the page was written with."""
     page = running(opened(written))

@@ -137,11 +137,23 @@ def tolerances(
             )
         if not loaded.claims:
             raise LoomfmuError(f"{loaded.name}: the scene has no claims, so there is no worst case")
-        spans = [span_of(loaded, *each) for each in given]
+        spans = [_span(loaded, *each) for each in given]
         _check(spans)
         points = _points(spans)
         with progress_bar("worst cases", len(points) + len(loaded.claims), wanted=progress) as advance:
             return _Box(loom, spans).searched(points, advance)
+
+
+def _span(scene: Scene, key: str, low: Any, high: Any) -> Span:
+    """A tolerance. Raises LoomfmuError for one without both ends: they cannot be guessed."""
+    if low is None and "=" not in key:
+        raise LoomfmuError(f"{key}: a tolerance needs both ends, such as {key}=LOW..HIGH with units")
+    try:
+        return span_of(scene, key, low, high)
+    except LoomfmuError as error:
+        raise LoomfmuError(
+            f"{scene.name}: [tolerances]: {error}" if low is not None else str(error)
+        ) from None
 
 
 def _check(spans: Sequence[Span]) -> None:

@@ -156,7 +156,7 @@ def test_what_cannot_be_fitted_is_refused(tmp_path: Path, vary: list[str], said:
 
 def test_too_few_values_and_places_outside_of_the_run_are_refused(tmp_path: Path) -> None:
     vary = "belt.prescribed_length_factor=0.5..2"
-    with pytest.raises(LoomfmuError, match="1 values are too few for 1 parameters"):
+    with pytest.raises(LoomfmuError, match="1 values are too few to find 1 parameters"):
         fit(*written(tmp_path, [(0.4, 20.0)]), vary=vary)
     with pytest.raises(LoomfmuError, match=r"measured from 0\.4 to 1\.4 s, but the run goes from 0 to 1 s"):
         fit(*written(tmp_path, [(0.4, 20.0), (1.4, 5.0)]), vary=vary)
@@ -183,7 +183,7 @@ def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFix
     outputs = ["--output", str(tmp_path / "fitted.toml"), "--picture", str(tmp_path / "fit.svg")]
     assert main([*words, *outputs]) == 0
     said = capsys.readouterr().out
-    assert "belt.prescribed_length_factor" in said and "rms from 25 values" in said
+    assert "belt.prescribed_length_factor" in said and "rms over 25 values" in said
     assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
     assert main([*words, "--output", str(scene)]) == 2
     assert "is an input of this command" in capsys.readouterr().err

@@ -263,6 +263,11 @@ def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
             'tolerances are a table, such as [tolerances] "belt.guide_clearance" = ["0.2 mm", "0.5 mm"]'
         )
     for key, ends in table.items():
+        if isinstance(ends, dict):
+            name = f"{key}.{next(iter(ends), 'VARIABLE')}"
+            raise LoomfmuError(
+                f'tolerances: write the whole key in quotes, such as "{name}" = ["LOW", "HIGH"]'
+            )
         if not (isinstance(ends, list) and len(ends) == 2):
             raise LoomfmuError(
                 f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'

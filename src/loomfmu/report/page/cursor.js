@@ -104,7 +104,7 @@ const loomfmu = (() => {
   }
 
   /* Makes a function that draws an element: at once while it is in sight, else as soon as it is, or on paper. */
-  const drawn = new Map();
+  const drawn = new Map(), paper = matchMedia("print");
   const sight = new IntersectionObserver(found => {
     for (const { target, isIntersecting } of found) {
       const each = drawn.get(target);
@@ -116,9 +116,11 @@ const loomfmu = (() => {
     const each = { seen: true, late: false, draw: () => { each.late = false; draw(); } };
     drawn.set(element, each);
     sight.observe(element);
-    return () => { if (each.seen) each.draw(); else each.late = true; };
+    return () => { if (each.seen || paper.matches) each.draw(); else each.late = true; };
   }
-  addEventListener("beforeprint", () => { for (const each of drawn.values()) if (each.late) each.draw(); });
+  const catchUp = () => { for (const each of drawn.values()) if (each.late) each.draw(); };
+  addEventListener("beforeprint", catchUp);
+  paper.addEventListener("change", catchUp);
 
   slider.min = first;
   slider.max = last;

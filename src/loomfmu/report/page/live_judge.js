@@ -258,6 +258,17 @@
     return [{ value: bound * factor, text: `bound ${short(bound * factor)}${unit && ` ${unit}`}`, holds }];
   });
 
+  /* Where the claim is that is nearest to its bound, or farthest beyond it; null where none is judged. */
+  loomfmu.live.worst = () => {
+    const away = (verdict, number) =>
+      claims[number].sense * (verdict.worst - verdict.bound) / (Math.abs(verdict.bound) || 1);
+    const [nearest] = (loomfmu.live.verdicts || [])
+      .map((verdict, number) => ({ verdict, away: away(verdict, number) }))
+      .filter(({ verdict }) => verdict.holds !== null && verdict.place)
+      .sort((one, other) => one.verdict.holds - other.verdict.holds || one.away - other.away);
+    return nearest ? nearest.verdict.place.position : null;
+  };
+
   outcome.setAttribute("aria-live", "polite");
   loomfmu.live.follow("claims", run => {
     kept = new Map();

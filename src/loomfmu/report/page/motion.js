@@ -70,7 +70,8 @@
       for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
     });
   loomfmu.follow(draw);
-  // on paper: where the cursor was moved to, else where the worst claim is
+  // on paper: where the cursor was moved to, else where the worst claim of this run is
+  const worst = () => live && live.worst && live.worst() !== null ? live.worst() : still;
   matchMedia("print").addEventListener("change", event =>
-    draw(event.matches && loomfmu.position === loomfmu.first ? still : loomfmu.position));
+    draw(event.matches && loomfmu.position === loomfmu.first ? worst() : loomfmu.position));
 })();

@@ -13,6 +13,7 @@ from .measured import Measured
 Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
 ROUNDING = 1e-9  # of a turn, or of the time
+EXACT = 1e-4  # of the largest value: an interpolation as good needs no word
 COARSE = 0.1  # of the difference from the measurement: an error of the interpolation as large is noted
 REFINED = 15.0  # a cubic's error at every second sample, less that at all of them, in errors at all
 
@@ -35,9 +36,15 @@ class Compared:
         return float(np.sqrt(np.mean((self.computed - self.measured) ** 2)))
 
     @property
+    def share(self) -> float:
+        """That difference as a share of how much the measured values vary; 0 if they do not."""
+        spread = float(np.std(self.measured))
+        return self.rms / spread if spread else 0.0
+
+    @property
     def note(self) -> str:
         """What is to be said of the interpolation between samples."""
-        if self.interpolation <= COARSE * self.rms:
+        if self.interpolation <= max(COARSE * self.rms, EXACT * float(np.max(np.abs(self.measured)))):
             return ""
         off, rest = (f"{value / self.factor:.2g} {self.unit}" for value in (self.interpolation, self.rms))
         return f"{self.signal}: interpolation is off by {off} where {rest} remain; take more steps"

@@ -151,7 +151,7 @@ def _check(spans: Sequence[Span], data: Measured) -> None:
             )
     if data.count <= len(spans):
         raise LoomfmuError(
-            f"{data.path}: {data.count} values are too few for {len(spans)} parameters and their intervals"
+            f"{data.path}: {data.count} values are too few to find {len(spans)} parameters with intervals"
         )
 
 

@@ -73,7 +73,7 @@ def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
     lines = [line for line in text_of(path).splitlines() if line.strip() and not line.startswith("#")]
     if not lines:
         raise LoomfmuError(f"{path}: the file is empty; {FORM}")
-    if ";" in lines[0] and "," not in lines[0]:
+    if ";" in lines[0]:
         raise LoomfmuError(f"{path}: separate the columns with commas, and write decimals with points")
     heading, *rows = csv.reader(lines)
     over, factor, named = _headings(path, heading, scene)

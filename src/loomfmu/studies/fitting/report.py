@@ -2,12 +2,11 @@
 
 from itertools import combinations
 
-import numpy as np
-
 from ... import printed
 from ...printed import say
 from .fit import HEADINGS, Fit, rows
 
+UNEXPLAINED = 0.3  # share of the variation that remains
 STRONG = 0.9  # correlation that is worth a word
 
 
@@ -27,10 +26,10 @@ def remains(found: Fit) -> list[str]:
     lines = []
     for each in found.curves:
         unit = "" if each.unit == "1" else f" {each.unit}"
-        spread = float(np.std(each.measured))
-        share = f", {100.0 * each.rms / spread:.2g} % of how much the data vary" if spread else ""
+        share = f", {100.0 * each.share:.2g} % of the variation in the data" if each.share < 1.0 else ""
+        count = len(each.measured)
         lines.append(
-            f"{each.signal}: {each.rms / each.factor:.3g}{unit} rms from {len(each.measured)} values{share}"
+            f"{each.signal}: residual {each.rms / each.factor:.3g}{unit} rms over {count} values{share}"
         )
     return lines
 
@@ -38,6 +37,17 @@ def remains(found: Fit) -> list[str]:
 def cautions(found: Fit) -> list[str]:
     """What to be careful about: ends of ranges, correlations, coarse steps."""
     lines = [
+        f"{each.signal}: the fit does not explain the data, {100.0 * each.share:.3g} % of which remain;"
+        " check the units and the rest of the scene"
+        for each in found.curves
+        if each.share > UNEXPLAINED
+    ]
+    lines += [
+        f"the data do not determine {each.span.key}: its interval is wider than the range that was searched"
+        for each in found.parameters
+        if each.high - each.low > each.span.high - each.span.low
+    ]
+    lines += [
         f"{each.span.key} ended at {each.span.show(each.value)}, the end of its range: widen it"
         for each in found.parameters
         if each.at_bound
