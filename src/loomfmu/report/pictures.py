@@ -1,6 +1,6 @@
 """Single pictures: what files they may be, and plots of signals as such files."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,20 @@ def kind(path: Path) -> Kind:
         found = f"{path.suffix!r} is not a suffix of a picture" if path.suffix else "the file has no suffix"
         raise LoomfmuError(f"{path}: {found}; use .svg, .png or .pdf")
     return PICTURES[path.suffix]
+
+
+def check(path: Path, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:
+    """Refuse a picture that could not be drawn or written, before its content is computed.
+
+    Raises LoomfmuError.
+    """
+    check_target(path, kind(path), inputs, overwrite)
+    plotting.check()
+
+
+def save(figure: Any, path: Path, title: str, inputs: Iterable[Path] = (), overwrite: bool = False) -> Path:
+    """Write a figure of matplotlib as a picture, and return its path. Raises LoomfmuError."""
+    return write_file(path, content(figure, path.suffix, title), kind(path), inputs, overwrite)
 
 
 def content(figure: Any, suffix: str, title: str) -> bytes:
@@ -64,13 +78,12 @@ def plot(
     first = traces[0].path
     path = output or first.with_name(f"{first.stem}_plot.png")
     inputs = [trace.path for trace in traces]
-    check_target(path, kind(path), inputs, overwrite)
+    check(path, inputs, overwrite)
     over = plotting.checked(traces[0], over, fold)
     for trace in traces[1:]:
         plotting.checked(trace, over, fold)
     title = str(traces[0].attributes["title"])
-    drawn = content(_figure(traces, signals, over, fold, title), path.suffix, title)
-    return write_file(path, drawn, kind(path), inputs, overwrite)
+    return save(_figure(traces, signals, over, fold, title), path, title, inputs, overwrite)
 
 
 def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bool, title: str) -> Any:

@@ -1,12 +1,13 @@
 """The command `loomfmu limit`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ..errors import LoomfmuError
 from ..files import Kind, check_target, write_file
 from ..printed import complain, say
-from ..report import pictures as pages
+from ..report import pictures
 from .boundary import limit
 from .report import CSV_LIMITS, boundary_table, show, show_boundary, table
 from .results import Boundary, Limits
@@ -16,20 +17,15 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     """Find limits, print and write them, and return the exit status."""
     inputs = [Path(options.scene)]
     output = Path(options.output) if options.output else None
-    kind = _kind(output) if output is not None else None
-    if output is not None and kind is not None:  # before the runs, not after them
-        check_target(output, kind, inputs, options.force)
-        if output.suffix != ".csv":
-            from ..traces.plotting import figure
-
-            figure((1.0, 1.0))
+    if output is not None:
+        _check(output, inputs, options.force)  # before the runs, not after them
     counts = {name: getattr(options, name) for name in ("points", "rows")}
     found = limit(
         options.scene, vary=options.vary, from_=options.from_, to=options.to, set=overrides, progress=True,
         **{name: count for name, count in counts.items() if count is not None},
     )  # fmt: skip
-    if output is not None and kind is not None:  # before anything is printed
-        write_file(output, _content(found, output), kind, inputs, options.force)
+    if output is not None:  # before anything is printed
+        _write(found, output, inputs, options.force)
     for warning in found.warnings:
         complain(f"warning: {warning}")
     if isinstance(found, Boundary):
@@ -41,13 +37,24 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     return 0 if found else 1
 
 
-def _kind(path: Path) -> Kind:
-    """What kind of file the output is to be. Raises LoomfmuError for another suffix."""
+def _check(path: Path, inputs: Sequence[Path], overwrite: bool) -> None:
+    """Refuse an output that cannot be written. Raises LoomfmuError."""
     if path.suffix == ".csv":
-        return Kind("a table of limits", _is_table)
-    if path.suffix not in pages.PICTURES:
+        check_target(path, TABLE, inputs, overwrite)
+    elif path.suffix in pictures.PICTURES:
+        pictures.check(path, inputs, overwrite)
+    else:
         raise LoomfmuError(f"{path}: use .csv for a table, or .svg, .png or .pdf for a picture")
-    return pages.kind(path)
+
+
+def _write(found: Limits | Boundary, path: Path, inputs: Sequence[Path], overwrite: bool) -> None:
+    if path.suffix == ".csv":
+        text = boundary_table(found) if isinstance(found, Boundary) else table(found)
+        write_file(path, text.encode(), TABLE, inputs, overwrite)
+    else:
+        from .pictures import draw
+
+        pictures.save(draw(found), path, found.title, inputs, overwrite)
 
 
 def _is_table(path: Path) -> bool:
@@ -56,9 +63,4 @@ def _is_table(path: Path) -> bool:
     return line == ",".join(CSV_LIMITS) or line.endswith(",binding below,binding above")
 
 
-def _content(found: Limits | Boundary, path: Path) -> bytes:
-    if path.suffix == ".csv":
-        return (boundary_table(found) if isinstance(found, Boundary) else table(found)).encode()
-    from .pictures import draw
-
-    return pages.content(draw(found), path.suffix, found.title)
+TABLE = Kind("a table of limits", _is_table)

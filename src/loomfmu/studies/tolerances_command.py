@@ -3,10 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from ..files import check_target, write_file
 from ..printed import complain, say
 from ..report import pictures
-from ..traces.plotting import figure
 from .tolerances import tolerances
 from .tolerances_report import draw, show
 
@@ -16,12 +14,10 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     inputs = [Path(options.scene)]
     picture = Path(options.picture) if options.picture else None
     if picture is not None:  # before the runs, not after them
-        check_target(picture, pictures.kind(picture), inputs, options.force)
-        figure((1.0, 1.0))
+        pictures.check(picture, inputs, options.force)
     found = tolerances(options.scene, vary=options.vary, set=overrides, progress=True)
     if picture is not None:
-        content = pictures.content(draw(found), picture.suffix, found.title)
-        write_file(picture, content, pictures.kind(picture), inputs, options.force)
+        pictures.save(draw(found), picture, found.title, inputs, options.force)
     for warning in found.warnings:
         complain(f"warning: {warning}")
     show(found)

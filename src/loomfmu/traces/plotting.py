@@ -32,15 +32,22 @@ def plot(trace: Signals, signals: Sequence[str], over: str | None, fold: bool, a
     return axes
 
 
+def check() -> None:
+    """Raises LoomfmuError if matplotlib is not installed."""
+    try:
+        import matplotlib.figure  # noqa: F401
+    except ImportError:
+        raise LoomfmuError('a picture needs the extra "plot": pip install "loomfmu[plot]"') from None
+
+
 def figure(size: tuple[float, float], shown: bool = False, layout: Any = "constrained") -> Any:
     """A new figure [in]; `shown` where a notebook or a window is to show it.
 
     Raises LoomfmuError if matplotlib is not installed.
     """
-    try:
-        from matplotlib import figure, pyplot
-    except ImportError:
-        raise LoomfmuError('a picture needs the extra "plot": pip install "loomfmu[plot]"') from None
+    check()
+    from matplotlib import figure, pyplot
+
     return (pyplot.figure if shown else figure.Figure)(figsize=size, layout=layout)
 
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+from ...cosim.reading import checked
 from ...errors import LoomfmuError
-from ...files import check_target, write_file
+from ...files import check_target
 from ...printed import say
 from ...report import pictures
 from .. import rewritten
@@ -16,22 +17,22 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     """Fit, print, and write the scene and the picture that were asked for; return the exit status."""
     inputs = [Path(options.scene), Path(options.data)]
     output, picture = (Path(each) if each else None for each in (options.output, options.picture))
+    scene = checked(options.scene, overrides, "native")
     # before the runs, not after them
     if output is not None:
         if output.suffix != ".toml":
             raise LoomfmuError(f"{output}: a scene is written as .toml; --picture draws the curves")
         check_target(output, rewritten.KIND, inputs, options.force)
+        rewritten.check(scene)
     if picture is not None:
-        check_target(picture, pictures.kind(picture), inputs, options.force)
-    found = fit(options.scene, options.data, vary=options.vary, signals=options.signal, set=overrides)
-    written = []
+        pictures.check(picture, inputs, options.force)
+    found = fit(scene, options.data, vary=options.vary, signals=options.signal)
     if output is not None:
-        written.append(found.write(output, options.force))
+        found.write(output, options.force)
     if picture is not None:
         from .picture import draw
 
-        content = pictures.content(draw(found), picture.suffix, found.scene.title)
-        written.append(write_file(picture, content, pictures.kind(picture), inputs, options.force))
+        pictures.save(draw(found), picture, found.scene.title, inputs, options.force)
     show(found)
-    say(*(f"written: {path}" for path in written))
+    say(*(f"written: {path}" for path in (output, picture) if path is not None))
     return 0
