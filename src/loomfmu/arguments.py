@@ -67,7 +67,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _run(commands: Any) -> None:
     run = commands.add_parser("run", help="simulate a scene, record a trace and check the claims")
-    run.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_scene(run)
     _add_set(run)
     run.add_argument("--output", metavar="FILE.h5", help="trace file; results/SCENE.h5 by default")
     flavour = run.add_mutually_exclusive_group()
@@ -179,7 +179,7 @@ def _limit(commands: Any) -> None:
         "limit", help="find the values at which claims begin to fail",
         epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
     )  # fmt: skip
-    limit.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_scene(limit)
     limit.add_argument(
         "--vary", action="append", required=True, metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
         help="what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the"
@@ -210,7 +210,7 @@ def _tolerances(commands: Any) -> None:
         "tolerances", help="find the worst case of every claim within tolerances",
         epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails; 2 bad input or a failed FMU.",
     )  # fmt: skip
-    tolerances.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_scene(tolerances)
     tolerances.add_argument(
         "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
         help="a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
@@ -223,7 +223,7 @@ def _tolerances(commands: Any) -> None:
 
 def _fit(commands: Any) -> None:
     fit = commands.add_parser("fit", help="find parameters of a scene from measured curves")
-    fit.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    _add_scene(fit)
     fit.add_argument(
         "data", metavar="DATA.csv|h5",
         help="columns with units, such as shaft_angle [deg],heald_1.displacement [mm]; or a trace",
@@ -330,6 +330,10 @@ def _add_platform(command: argparse.ArgumentParser) -> None:
         "--platform", metavar="NAME[,NAME]",
         help="platforms of native FMUs: linux64,win64,darwin64; all by default",
     )  # fmt: skip
+
+
+def _add_scene(command: argparse.ArgumentParser) -> None:
+    command.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
 
 
 def _add_set(command: argparse.ArgumentParser) -> None:

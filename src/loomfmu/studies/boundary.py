@@ -13,7 +13,7 @@ from ..errors import LoomfmuError, shown
 from ..progress import progress as progress_bar
 from .limits import POINTS, limits_of, whole_points
 from .results import Boundary, Limits
-from .span import Span, span_of
+from .span import Span, set_twice, span_of
 
 ROWS = 11  # values of the second variable
 
@@ -77,8 +77,8 @@ def limit(
             with progress_bar(f"limits of {first.key}", points, wanted=progress) as advance:
                 return limits_of(loom, first, points, advance=advance)
         second = span_of(loom.scene, keys[1])
-        if set_twice := {*first.varied.targets} & {*second.varied.targets}:
-            raise LoomfmuError(f"{first.key} and {second.key} both set {min(set_twice)}")
+        if twice := set_twice([first, second]):
+            raise LoomfmuError(f"{first.key} and {second.key} both set {twice[2]}")
         with progress_bar(f"limits of {first.key}", points * rows, wanted=progress) as advance:
             return _boundary(loom, first, second, points, rows, advance)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
+from ..cosim.claims.claims import called
 from ..cosim.prepared import Prepared
 from ..errors import LoomfmuError, shown
 from ..traces import Verdict
@@ -141,8 +142,7 @@ def _claim_limits(
             ranges.append(Stretch(low, high))
         holding = not holding
     points = tuple((value, distance(value)) for value in tried)
-    name = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
-    return ClaimLimits(name, tuple(limits), tuple(ranges), depends, verdict, points)
+    return ClaimLimits(called(claim, verdict), tuple(limits), tuple(ranges), depends, verdict, points)
 
 
 def _common(claims: Sequence[ClaimLimits], span: Span) -> tuple[Stretch, ...]:

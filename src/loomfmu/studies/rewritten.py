@@ -32,22 +32,21 @@ def quantity(value: float, unit: str, display: str) -> str | float:
     """
     if unit == "1" and display == "1":
         return float(value)
-    for text in (
-        f"{value / units.unit(display).factor:.12g} {display}",
-        f"{value / units.unit(display).factor!r} {display}",
-    ):
+    shown = value / units.unit(display).factor
+    for text in (f"{shown:.12g} {display}", f"{shown!r} {display}"):
         if units.parse(text, unit) == value:
             return text
     return f"{value!r} {unit}" if unit != "1" else float(value)
 
 
-def check(scene: Scene) -> None:
-    """Refuse what cannot be written as a scene. Raises LoomfmuError."""
+def check(scene: Scene) -> Path:
+    """The file that a scene was read from. Raises LoomfmuError for one that cannot be written again."""
     _tomlkit()
     if scene.file is None:
         raise LoomfmuError(
             f"{scene.name}: only scenes read from a TOML file can be written with other values"
         )
+    return scene.file
 
 
 def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool = False) -> Path:
@@ -59,8 +58,7 @@ def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool =
         LoomfmuError: not from a TOML file, a file that may not be written, files that the scene names by
             paths that do not lead there from its new place, or no `loomfmu[study]`
     """
-    check(scene)
-    inputs = [scene.file] if scene.file else []
+    inputs = [check(scene)]
     check_target(path, KIND, inputs, overwrite)
     every = {**scene.overrides, **values}
     expected = scenes.parse(scene.text, scene.name, every, scene.directory)
@@ -78,12 +76,11 @@ def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool =
 
 def rewritten(scene: Scene, values: Mapping[str, Any]) -> str:
     """The scene's text with values as `--set` takes them."""
-    document = _tomlkit().parse(scene.text)
+    tomlkit = _tomlkit()
+    document = tomlkit.parse(scene.text)
     for key, value in values.items():
         for table, variable, written in _places(scene, key, value):
-            owner = document
-            if table:
-                owner = document.setdefault(table, _tomlkit().table())
+            owner = document.setdefault(table, tomlkit.table()) if table else document
             owner[variable] = written
     return str(document.as_string())
 
@@ -94,14 +91,13 @@ def _places(scene: Scene, key: str, value: Any) -> list[tuple[str, str, Any]]:
     if (variable in TAKERS and owner in ("", "loom")) or owner == "loom":
         return [("loom", variable, value)]
     found = overridden(scene.instances, key, components(scene.instances))
-    places = []
-    for name, each in found:
-        port = scene.instances[name].fmu.ports.get(scene.instances[name].fmu.name_of(each)) if name else None
-        known = port is not None and isinstance(value, units.Si)
-        places.append(
-            (name, each, quantity(float(value), port.unit, port.display) if known and port else value)
-        )
-    return places
+    if not isinstance(value, units.Si):  # as somebody wrote it
+        return [(name, each, value) for name, each in found]
+    ports = [scene.instances[name].fmu.port(each, name) for name, each in found]
+    return [
+        (name, each, quantity(float(value), port.unit, port.display))
+        for (name, each), port in zip(found, ports, strict=True)
+    ]
 
 
 def _tomlkit() -> Any:

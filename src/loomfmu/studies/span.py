@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,14 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
     if not low < high:
         raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty")
     return span
+
+
+def set_twice(spans: Sequence[Span]) -> tuple[Span, Span, str] | None:
+    """The first two that set the same variable of an instance, and that variable; None where none do."""
+    for one, other in combinations(spans, 2):
+        if both := {*one.varied.targets} & {*other.varied.targets}:
+            return one, other, min(both)
+    return None
 
 
 def _port(scene: Scene, variable: Varied) -> tuple[Port, float]:

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from .. import notebook
+from ..cosim.claims.claims import called
 from ..cosim.prepared import Prepared
 from ..cosim.run import prepare
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
 from ..progress import progress as progress_bar
 from ..traces import Verdict
-from .span import Span, span_of
+from .span import Span, set_twice, span_of
 
 Shares = tuple[float, ...]  # of the ranges, 0 to 1
 CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
@@ -157,10 +158,9 @@ def _span(scene: Scene, key: str, low: Any, high: Any) -> Span:
 
 
 def _check(spans: Sequence[Span]) -> None:
-    targets = [target for span in spans for target in span.varied.targets]
+    if twice := set_twice(spans):
+        raise LoomfmuError(f"{twice[0].key} has two tolerances")
     for span in spans:
-        if any(targets.count(target) > 1 for target in span.varied.targets):
-            raise LoomfmuError(f"{span.key} has two tolerances")
         if not span.low <= span.value <= span.high:
             raise LoomfmuError(
                 f"{span.key} = {span.show(span.value)} in the scene is outside its tolerance, {span.text}"
@@ -221,7 +221,7 @@ class _Box:
             restored = (*worst[:place], points[0][place], *worst[place + 1 :])
             if (given_back := distance(restored) - distance(worst)) > SAME * abs(verdict.bound):
                 costs.append(Cost(span.key, given_back))
-        name = str(self._loom.scene.claims[number].get("name") or f"{own.signal} {own.claim}")
+        name = called(self._loom.scene.claims[number], own)
         values = {span.key: span.at(share) for span, share in zip(self._spans, worst, strict=True)}
         return WorstCase(name, own, verdict, values, tuple(sorted(costs, key=lambda each: -each.distance)))
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import machines
+from ..cosim.claims.claims import called
 from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
 from ..cosim.prepared import Prepared
@@ -134,7 +135,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         numbers = verdict.worst, verdict.bound, verdict.distance
         values += [verdict.holds, *map(_finite, numbers), verdict.note or None]
         if not verdict.holds and first is None:
-            first = str(claim.get("name") or f"{verdict.signal} {verdict.claim}")
+            first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
 
 

@@ -77,6 +77,11 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
     return KINDS[kind](**values)
 
 
+def called(table: Mapping[str, Any], verdict: Verdict) -> str:
+    """What tables call the claim of a scene that a verdict is on: its name, or what it judges."""
+    return str(table.get("name") or f"{verdict.signal} {verdict.claim}")
+
+
 def angles_in(table: Mapping[str, Any]) -> list[str]:
     """The arguments in a claim's table that are shaft angles."""
     arguments = KINDS[table["kind"]].declared()

@@ -19,7 +19,7 @@ from ...cosim.run import prepare
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError
 from .. import rewritten
-from ..span import Span, span_of
+from ..span import Span, set_twice, span_of
 from . import measured
 from .curves import Compared, compared
 from .measured import Measured
@@ -140,9 +140,8 @@ def fit(
 
 
 def _check(spans: Sequence[Span], data: Measured) -> None:
-    targets = [target for span in spans for target in span.varied.targets]
-    if twice := [target for target in targets if targets.count(target) > 1]:
-        raise LoomfmuError(f"{twice[0]} is varied twice")
+    if twice := set_twice(spans):
+        raise LoomfmuError(f"{twice[2]} is varied twice")
     for signal, values in data.columns.items() if len(data.columns) > 1 else ():
         if (count := int(np.isfinite(values).sum())) < len(spans) + MORE:
             raise LoomfmuError(
@@ -187,13 +186,15 @@ class _Search:
         free = np.flatnonzero(found.active_mask == 0)
         directions = np.linalg.qr(found.jac[:, free])[0]
         leverages = np.sum(directions**2, axis=1)
-        noise, first = [], 0
-        for each in self._at(found.x):
-            after = first + len(each.measured)
-            freedom = len(each.measured) - float(np.sum(leverages[first:after]))
-            exact = ROUNDING * (_spread(each.measured) or 1.0)
-            noise.append(max(each.rms * math.sqrt(len(each.measured) / freedom), exact))
-            first = after
+        columns = self._data.columns.values()
+        ends = np.cumsum([np.isfinite(values).sum() for values in columns])[:-1]
+        noise = []
+        for values, weight, rest, taken in zip(
+            columns, self._weights, np.split(found.fun, ends), np.split(leverages, ends), strict=True
+        ):
+            freedom = len(rest) - float(np.sum(taken))
+            exact = ROUNDING * (_spread(values) or 1.0)
+            noise.append(max(float(np.linalg.norm(rest)) / weight / math.sqrt(freedom), exact))
         return np.array(noise)
 
     def _setting(self, shares: Floats) -> dict[str, Any]:
