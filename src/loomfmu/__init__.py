@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from .cosim.run import prepare as prepare
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
-    from .studies.boundary import limit as limit
     from .studies.fitting.fit import Fit as Fit
     from .studies.fitting.fit import fit as fit
-    from .studies.results import Boundary as Boundary
-    from .studies.results import Limits as Limits
-    from .studies.tolerances import Tolerances as Tolerances
-    from .studies.tolerances import tolerances as tolerances
+    from .studies.limits.boundary import limit as limit
+    from .studies.limits.results import Boundary as Boundary
+    from .studies.limits.results import Limits as Limits
+    from .studies.tolerances.tolerances import Tolerances as Tolerances
+    from .studies.tolerances.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
     from .sweeps.run import sweep as sweep
     from .traces import Comparison as Comparison
@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 
 # public name -> its module
 _HOMES = {
-    "Boundary": "studies.results",
+    "Boundary": "studies.limits.results",
     "Comparison": "traces",
     "Evaluation": "cosim.results",
     "Fit": "studies.fitting.fit",
-    "Limits": "studies.results",
+    "Limits": "studies.limits.results",
     "LoomfmuError": "errors",
     "Prepared": "cosim.prepared",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
-    "Tolerances": "studies.tolerances",
+    "Tolerances": "studies.tolerances.tolerances",
     "Trace": "traces",
     "Verdict": "traces",
     "compare": "traces",
@@ -54,10 +54,10 @@ _HOMES = {
     "prepare": "cosim.run",
     "judge": "cosim.claims.claims",
     "fit": "studies.fitting.fit",
-    "limit": "studies.boundary",
+    "limit": "studies.limits.boundary",
     "run": "cosim.run",
     "sweep": "sweeps.run",
-    "tolerances": "studies.tolerances",
+    "tolerances": "studies.tolerances.tolerances",
 }
 
 

@@ -188,15 +188,15 @@ def _print_pace(result: "Result") -> None:
 
 
 def _limit(options: argparse.Namespace) -> int:
-    from .studies import command
+    from .studies.limits import command
 
     return command.run(options, _pairs(options.overrides))
 
 
 def _tolerances(options: argparse.Namespace) -> int:
-    from .studies import tolerances_command
+    from .studies.tolerances import command
 
-    return tolerances_command.run(options, _pairs(options.overrides))
+    return command.run(options, _pairs(options.overrides))
 
 
 def _fit(options: argparse.Namespace) -> int:

@@ -1,5 +1,6 @@
-"""Questions about a scene that take many runs of it: how far a value may go before a claim fails (`limits`).
+"""Questions about a scene that take many runs of it.
 
-`span` says what is varied and over which range, `search` finds roots and extremes of a claim's distance to
-its bound, `boundary` repeats that for values of a second variable; `report` and `pictures` show the results.
+`limits`: how far a value may go before a claim fails; `tolerances`: the worst case of every claim within
+ranges; `fitting`: values that measured curves imply. `span` says what is varied and over which range,
+`rewritten` writes the scene with other values.
 """

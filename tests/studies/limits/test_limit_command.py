@@ -8,11 +8,11 @@ import pytest
 
 from loomfmu.cli import main
 from loomfmu.design import loom as design
-from loomfmu.studies.boundary import ROWS
-from loomfmu.studies.limits import POINTS
+from loomfmu.studies.limits.boundary import ROWS
+from loomfmu.studies.limits.limits import POINTS
 
-DEMO = str(Path(__file__).parents[2] / "sims" / "wl680_3600.toml")
-DAMPER = str(Path(__file__).parents[2] / "sims" / "damper.toml")
+DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
+DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
 QUICK = ["--points", "5", "--set", "revolutions=1"]
 SPEED = ["limit", DEMO, "--vary", "shaft.speed", "--from", "300rpm", "--to", "900rpm", *QUICK]
 BOTH = ["limit", DEMO, "--vary", "shaft.speed=300rpm..900rpm", "--vary", "belt.guide_clearance=0.2mm..0.8mm",

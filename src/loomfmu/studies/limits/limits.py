@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
-from ..cosim.claims.claims import called
-from ..cosim.prepared import Prepared
-from ..errors import LoomfmuError, shown
-from ..traces import Verdict
+from ...cosim.claims.claims import called
+from ...cosim.prepared import Prepared
+from ...errors import LoomfmuError, shown
+from ...traces import Verdict
+from ..evaluations import Evaluations
+from ..span import Span
 from .results import ClaimLimits, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
-from .span import Span
 
 POINTS = 41  # of the scan
 MOST_POINTS = 100_001
@@ -29,7 +30,7 @@ def limits_of(
     if not loom.scene.claims:
         raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
     own = loom.evaluate(fixed)  # a key may set several values that differ in the scene
-    runs = _Runs(loom, span, fixed or {})
+    runs = _Runs(loom, [span], fixed)
     grid = span.points(points)
     runs.scan(grid, advance)
     values = set(grid)
@@ -45,32 +46,11 @@ def limits_of(
     resolution = (span.high - span.low) / (points - 1)
     warnings = tuple(dict.fromkeys((*span.doubts, *own.warnings)))
     ranges = _common(found, span)
-    return Limits(loom.scene.title, span, resolution, tuple(found), ranges, runs.count + 1, warnings)
+    return Limits(loom.scene.title, span, resolution, tuple(found), ranges, len(runs) + 1, warnings)
 
 
-class _Runs:
-    """A prepared scene as functions of the variable, each value run once."""
-
-    def __init__(self, loom: Prepared, span: Span, fixed: dict[str, Any]):
-        self._loom, self._span, self._fixed = loom, span, fixed
-        self._verdicts: dict[float, tuple[Verdict, ...]] = {}
-
-    @property
-    def count(self) -> int:
-        """How many runs it took."""
-        return len(self._verdicts)
-
-    def at(self, value: float) -> tuple[Verdict, ...]:
-        """The verdicts at a value. Raises LoomfmuError that names the value."""
-        if value not in self._verdicts:
-            try:
-                self._verdicts[value] = self._loom.evaluate(self._fixed | self._span.setting(value)).claims
-            except LoomfmuError as error:
-                where = f"{self._span.key} = {self._span.show(value)}"
-                raise LoomfmuError(
-                    str(error) if str(error).startswith(where) else f"{where}: {error}"
-                ) from None
-        return self._verdicts[value]
+class _Runs(Evaluations):
+    """A prepared scene as functions of one variable."""
 
     def scan(self, grid: Sequence[float], advance: Callable[[int], None]) -> None:
         """Run all points. Raises LoomfmuError where one cannot be run, with the ones that can."""
@@ -86,7 +66,7 @@ class _Runs:
             first = next(iter(failed.values()))
             if not good:
                 raise first
-            span = self._span
+            (span,) = self._spans
             hint = f"of the values tried, {span.number(good[0])} to {span.show(good[-1])} can be run"
             raise LoomfmuError(f"{first}; {hint}")
 

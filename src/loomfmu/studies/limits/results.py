@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from .. import notebook
-from ..traces import Verdict
-from .span import Span
+from ... import notebook
+from ...traces import Verdict
+from ..span import Span
 
 HEADINGS = ("claim", "holds", "limits", "distance at the scene's value")
 SAME_EVERYWHERE = "does not depend on it"

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ..traces.plotting import COLOURS, DASHES, figure
+from ...traces.plotting import COLOURS, DASHES, figure
+from ..span import Span
 from .results import Boundary, ClaimLimits, Limits
-from .span import Span
 
 SIZE = (8.0, 4.6)  # [in]
 FARTHEST = 1.5  # times the bound: distances beyond that are cut off, so that all claims can be seen near 0

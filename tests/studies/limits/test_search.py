@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loomfmu.studies.search import WIDTH, holds, near_zero, root, touching
+from loomfmu.studies.limits.search import WIDTH, holds, near_zero, root, touching
 
 
 class Counted:

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError
-from ..files import Kind, check_target, write_file
-from ..printed import complain, say
-from ..report import pictures
+from ...errors import LoomfmuError
+from ...files import Kind, check_target, write_file
+from ...printed import complain, say
+from ...report import pictures
 from .boundary import limit
 from .report import CSV_LIMITS, boundary_table, show, show_boundary, table
 from .results import Boundary, Limits
@@ -52,7 +52,7 @@ def _write(found: Limits | Boundary, path: Path, inputs: Sequence[Path], overwri
         text = boundary_table(found) if isinstance(found, Boundary) else table(found)
         write_file(path, text.encode(), TABLE, inputs, overwrite)
     else:
-        from .pictures import draw
+        from .picture import draw
 
         pictures.save(draw(found), path, found.title, inputs, overwrite)
 

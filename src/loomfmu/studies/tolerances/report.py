@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from .. import printed
-from ..printed import say
-from ..traces.plotting import COLOURS, figure
+from ... import printed
+from ...printed import say
+from ...traces.plotting import COLOURS, figure
 from .tolerances import HEADINGS, Tolerances, rows
 
 WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]

@@ -4,8 +4,9 @@ import csv
 import io
 from collections.abc import Sequence
 
-from .. import printed
-from ..printed import say
+from ... import printed
+from ...printed import say
+from ..span import Span
 from .results import (
     HEADINGS,
     SAME_EVERYWHERE,
@@ -16,7 +17,6 @@ from .results import (
     conclusion,
     rows,
 )  # fmt: skip
-from .span import Span
 
 CSV_LIMITS = ("claim", "begins", "value", "low", "high", "unit", "jumps")
 

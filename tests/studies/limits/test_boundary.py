@@ -8,7 +8,7 @@ import pytest
 from loomfmu import Boundary, LoomfmuError, limit
 from loomfmu.design import loom as design
 
-DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 ONE = {"revolutions": 1}
 
 

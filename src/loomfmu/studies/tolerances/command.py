@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from ..printed import complain, say
-from ..report import pictures
+from ...printed import complain, say
+from ...report import pictures
+from .report import draw, show
 from .tolerances import tolerances
-from .tolerances_report import draw, show
 
 
 def run(options: Any, overrides: dict[str, Any]) -> int:

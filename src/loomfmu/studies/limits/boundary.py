@@ -6,14 +6,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, overload
 
-from ..cosim.prepared import Prepared
-from ..cosim.run import prepare
-from ..cosim.scenes.scene import Scene
-from ..errors import LoomfmuError, shown
-from ..progress import progress as progress_bar
+from ...cosim.prepared import Prepared
+from ...cosim.run import prepare
+from ...cosim.scenes.scene import Scene
+from ...errors import LoomfmuError, shown
+from ...progress import progress as progress_bar
+from ..span import Span, set_twice, span_of
 from .limits import POINTS, limits_of, whole_points
 from .results import Boundary, Limits
-from .span import Span, set_twice, span_of
 
 ROWS = 11  # values of the second variable
 

@@ -13,9 +13,9 @@ from loomfmu import LoomfmuError, limit, prepare
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.design import loom as design
 from loomfmu.machines import MACHINES
-from loomfmu.studies.results import ClaimLimits, Limits
+from loomfmu.studies.limits.results import ClaimLimits, Limits
 
-DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 RPM = 2.0 * math.pi / 60.0
 FOUND = 1e-9  # of the value: what limits are promised to
 

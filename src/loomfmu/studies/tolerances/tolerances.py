@@ -9,15 +9,16 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from .. import notebook
-from ..cosim.claims.claims import called
-from ..cosim.prepared import Prepared
-from ..cosim.run import prepare
-from ..cosim.scenes.scene import Scene
-from ..errors import LoomfmuError
-from ..progress import progress as progress_bar
-from ..traces import Verdict
-from .span import Span, set_twice, span_of
+from ... import notebook
+from ...cosim.claims.claims import called
+from ...cosim.prepared import Prepared
+from ...cosim.run import prepare
+from ...cosim.scenes.scene import Scene
+from ...errors import LoomfmuError
+from ...progress import progress as progress_bar
+from ...traces import Verdict
+from ..evaluations import Evaluations
+from ..span import Span, set_twice, span_of
 
 Shares = tuple[float, ...]  # of the ranges, 0 to 1
 CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
@@ -186,11 +187,11 @@ def _points(spans: Sequence[Span]) -> list[Shares]:
 
 
 class _Box:
-    """A prepared scene as a function of the places in its tolerances, each run once."""
+    """A prepared scene as a function of the places in its tolerances."""
 
     def __init__(self, loom: Prepared, spans: Sequence[Span]):
         self._loom, self._spans = loom, tuple(spans)
-        self._verdicts: dict[Shares, tuple[Verdict, ...]] = {}
+        self._runs = Evaluations(loom, spans)
 
     def searched(self, points: Sequence[Shares], advance: Callable[[int], None]) -> Tolerances:
         """The worst case of each claim."""
@@ -203,9 +204,7 @@ class _Box:
             advance(1)
         doubts = tuple(doubt for span in self._spans for doubt in span.doubts)
         scene = self._loom.scene
-        return Tolerances(
-            scene.title, self._spans, tuple(found), len(self._verdicts), (*scene.notes, *doubts)
-        )
+        return Tolerances(scene.title, self._spans, tuple(found), len(self._runs), (*scene.notes, *doubts))
 
     def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:
         def distance(point: Shares) -> float:
@@ -227,18 +226,7 @@ class _Box:
 
     def _at(self, point: Shares) -> tuple[Verdict, ...]:
         """The verdicts at a place. Raises LoomfmuError that names it."""
-        if point not in self._verdicts:
-            settings: dict[str, Any] = {}
-            for span, share in zip(self._spans, point, strict=True):
-                settings |= span.setting(span.at(share))
-            try:
-                self._verdicts[point] = self._loom.evaluate(settings).claims
-            except LoomfmuError as error:
-                where = ", ".join(
-                    f"{s.key} = {s.show(s.at(x))}" for s, x in zip(self._spans, point, strict=True)
-                )
-                raise LoomfmuError(f"at {where}: {error}") from None
-        return self._verdicts[point]
+        return self._runs.at(*(span.at(share) for span, share in zip(self._spans, point, strict=True)))
 
 
 def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:

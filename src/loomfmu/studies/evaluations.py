@@ -1,0 +1,43 @@
+"""A prepared scene as a function of what is varied."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..cosim.prepared import Prepared
+from ..errors import LoomfmuError
+from ..traces import Verdict
+from .span import Span
+
+
+class Evaluations:
+    """The verdicts of a prepared scene at values of its `spans`, each place run once.
+
+    `fixed` are values that stay, as `Prepared.evaluate` takes them.
+    """
+
+    def __init__(self, loom: Prepared, spans: Sequence[Span], fixed: Mapping[str, Any] | None = None):
+        self._loom, self._spans, self._fixed = loom, tuple(spans), dict(fixed or {})
+        self._verdicts: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
+
+    def __len__(self) -> int:
+        """How many runs it took."""
+        return len(self._verdicts)
+
+    def at(self, *values: float) -> tuple[Verdict, ...]:
+        """The verdicts at values in SI, one for each span. Raises LoomfmuError that names them."""
+        if values not in self._verdicts:
+            settings = dict(self._fixed)
+            for span, value in zip(self._spans, values, strict=True):
+                settings |= span.setting(value)
+            try:
+                self._verdicts[values] = self._loom.evaluate(settings).claims
+            except LoomfmuError as error:
+                raise self._named(values, str(error)) from None
+        return self._verdicts[values]
+
+    def _named(self, values: Sequence[float], error: str) -> LoomfmuError:
+        shown = zip(self._spans, values, strict=True)
+        where = ", ".join(f"{span.key} = {span.show(value)}" for span, value in shown)
+        return LoomfmuError(error if error.startswith(where) else f"{where}: {error}")
