@@ -5,8 +5,6 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from .fmi3_slave import Fmi3Slave
-from .foreign_slave import ForeignSlave
 from .isolated_slave import IsolatedSlave
 from .process import Limits
 from .slave import Slave
@@ -37,9 +35,16 @@ def borrow(fmu: "Fmu", name: str, limits: Limits | None = None) -> Slave:
 
 def opened(fmu: "Fmu", name: str) -> Slave:
     """A new instance in this process, of the class that fits its version and its vendor."""
+    # most scenes have our own FMUs of FMI 2.0 alone
     if fmu.fmi == 3:
+        from .fmi3_slave import Fmi3Slave
+
         return Fmi3Slave(fmu, name)
-    return Slave(fmu, name) if fmu.ours else ForeignSlave(fmu, name)
+    if not fmu.ours:
+        from .foreign_slave import ForeignSlave
+
+        return ForeignSlave(fmu, name)
+    return Slave(fmu, name)
 
 
 def give_back(slave: Slave) -> None:
