@@ -19,8 +19,9 @@ from .curves import Floats, Motion, Stretch, first_lowest, motion_of
 from .lifted import lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
-NEVER = "the frame never gets there in this run"
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
+
+Ends = tuple[list[Stretch], list[Stretch]]  # when a motion is at the lower end, and at the upper one
 
 
 class _Lifted(Claim, kind=False):
@@ -60,43 +61,47 @@ class _Span(_Lifted, kind=False):
         """The verdict; `of` is what it names of a frame without a damper."""
         signals = lifts(self.heald, self.lifted_by, trace)
         motions = [motion_of(trace, signal) for signal in signals]
-        found = [self._shortest(trace, lift) for lift in motions]
+        turning, stroke = shaft.needed_angle(trace), trace.parameter(f"{self.heald}.stroke")
+        ends = [_ends(lift, self._distance(trace), stroke, self.both_ways) for lift in motions]
+        found = [
+            self._shortest(lift, sorted(lower + upper), stroke, turning)
+            for lift, (lower, upper) in zip(motions, ends, strict=True)
+        ]
         worst, time, *notes = found[0]
         if found[1:] and math.isfinite(found[1][0]):
-            missed = self._missed(trace, *motions)
+            missed = self._missed(motions[0], stroke, *ends)
             if missed is not None:
                 worst, time, notes[0] = missed
         notes += [f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:]]
         signal = signals[0] if found[1:] else f"{self.heald}.{of}"
         return self.verdict(trace, text, signal, self.at_least, worst, time, *notes)
 
-    def _missed(self, trace: Signals, carrier: Motion, frame: Motion) -> tuple[float, float, str] | None:
+    def _missed(
+        self, carrier: Motion, stroke: float, own: Ends, frames: Ends
+    ) -> tuple[float, float, str] | None:
         """The first span of a frame, between those around it, in which its carrier is never at that end.
 
         Spans that an end of the run cuts off count only if the carrier is never at an end: it may come later.
         """
-        stroke = trace.parameter(f"{self.heald}.stroke")
-        theirs, own = (
-            _ends(lift, self._distance(trace), stroke, self.both_ways) for lift in (frame, carrier)
-        )
-        every = sorted(theirs[0] + theirs[1])
-        ordered = sorted((span, end) for end in (0, 1) for span in theirs[end])
+        time = carrier.time
+        every = sorted(frames[0] + frames[1])
+        ordered = sorted((span, end) for end in (0, 1) for span in frames[end])
         for span, end in ordered:
-            before = max((each.end for each in every if each.end <= span.start), default=frame.time[0])
-            after = min((each.start for each in every if each.start >= span.end), default=frame.time[-1])
+            before = max((each.end for each in every if each.end <= span.start), default=time[0])
+            after = min((each.start for each in every if each.start >= span.end), default=time[-1])
             there = any(each.end > before and each.start < after for each in own[end])
             if not there and (span.whole or not (own[0] or own[1])):
-                within = (carrier.time >= before) & (carrier.time <= after)
+                within = (time >= before) & (time <= after)
                 away = float(np.min(np.abs(np.asarray(carrier.values[0])[within] - end * stroke)))
                 place = ("lower", "upper")[end]
                 off = f"{1e3 * away:.3g} mm or more from the {place} end of its frame's stroke"
                 return 0.0, span.start, f"springs and warp keep the carrier {off}; {self.instead}"
         return None
 
-    def _shortest(self, trace: Signals, lift: Motion) -> tuple[float, float, str, str]:
-        """The least turn of the shaft during which a motion stays there, its time, and notes."""
-        turning, stroke = shaft.needed_angle(trace), trace.parameter(f"{self.heald}.stroke")
-        spans = _spans(lift, self._distance(trace), stroke, self.both_ways)
+    def _shortest(
+        self, lift: Motion, spans: list[Stretch], stroke: float, turning: Motion
+    ) -> tuple[float, float, str, str]:
+        """The least turn of the shaft during one of these spans of a motion, its time, and notes."""
         turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
         judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
         note = ""
@@ -186,15 +191,7 @@ class DwellContains(_Lifted):
         return Landings([time for angle in self.angles for time in shaft.times_at(trace, angle)], [])
 
 
-def _spans(lift: Motion, distance: float, stroke: float, both_ways: bool) -> list[Stretch]:
-    """Times from entering to leaving a distance from the lower or the upper end."""
-    lower, upper = _ends(lift, distance, stroke, both_ways)
-    return sorted(lower + upper)
-
-
-def _ends(
-    lift: Motion, distance: float, stroke: float, both_ways: bool
-) -> tuple[list[Stretch], list[Stretch]]:
+def _ends(lift: Motion, distance: float, stroke: float, both_ways: bool) -> Ends:
     """Times from entering to leaving a distance from the lower end, and from the upper one.
 
     A frame that holds stays within: its span is as long as the picks it holds for.
@@ -221,7 +218,7 @@ def _cut_off(
     run goes on as the one at its start does, so both make up one span, less whole revolutions of holding.
     """
     if not spans:
-        return [], NEVER
+        return [], "the frame never gets there in this run"
     if len(spans) == 1 and (spans[0].start, spans[0].end) == (time[0], time[-1]):
         if turned[0] < limit:
             return [], "the frame stays there all the time, but the run is too short to tell"

@@ -46,13 +46,19 @@ def checked_claims(scene: Scene) -> Scene:
     Refuses, before the run, a claim that could not be judged after it.
     """
     notes = [*scene.notes, *_unrecorded(scene)]
+    components = {name: each.fmu.component for name, each in scene.instances.items() if each.fmu.component}
+    wired = {".".join(wire.sink) for wire in scene.wires}
     for table, claim in zip(scene.claims, claims_of(scene), strict=True):
         where = f"claim {table['kind']!r}"
         for angle in angles_in(table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in signals_of(scene, claim):
             output_port(scene, signal, where)
-            notes += _left_out(scene, signal, where)
+            notes += [
+                f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
+                f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
+                for sink, source in left_out(components, wired, signal).items()
+            ]
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
@@ -67,17 +73,6 @@ def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
         claim.check(partial(_parameter, scene))
         if isinstance(claim, Bounded) and isinstance(claim.bound, str):
             _check_parameter(scene, claim.bound, claim.signal)
-
-
-def _left_out(scene: Scene, signal: str, where: str) -> Iterator[str]:
-    """A note on what a judged signal leaves out, because a wire that would close a loop is not made."""
-    components = {name: each.fmu.component for name, each in scene.instances.items() if each.fmu.component}
-    wired = {".".join(wire.sink) for wire in scene.wires}
-    for sink, source in left_out(components, wired, signal).items():
-        yield (
-            f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
-            f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
-        )
 
 
 def _parameter(scene: Scene, name: str) -> float:

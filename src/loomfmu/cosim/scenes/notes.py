@@ -31,18 +31,20 @@ def of_scene(
 
 def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
     """Warnings about mechanisms that load the shaft more than once, or not at all."""
-    wired = {wire.source for wire in wires}
+    sinks: dict[tuple[str, str], dict[str, list[str]]] = {}  # of each output, by their instances
+    for wire in wires:
+        sinks.setdefault(wire.source, {}).setdefault(wire.sink[0], []).append(".".join(wire.sink))
     for name, each in instances.items():
         torque = standard_loom.gathers(each.fmu.component) if each.fmu.component else ""
         if not torque:
             continue
         for other, mechanism in instances.items():
-            source = (other, torque)
-            sinks = [".".join(wire.sink) for wire in wires if wire.source == source and wire.sink[0] == name]
-            if len(sinks) > 1:
-                yield f"{other}.{torque} loads {name} {len(sinks)} times: {', '.join(sinks)}; keep one wire"
+            wired = sinks.get((other, torque), {})
+            loads = wired.get(name, [])
+            if len(loads) > 1:
+                yield f"{other}.{torque} loads {name} {len(loads)} times: {', '.join(loads)}; keep one wire"
             port = mechanism.fmu.ports.get(torque)
-            if port and port.causality == "output" and source not in wired:
+            if port and port.causality == "output" and not wired:
                 yield f"{other} does not load {name}: {other}.{torque} is not wired"
 
 

@@ -171,6 +171,7 @@ def fed_along(components: Mapping[str, type[Component]], sources: Mapping[str, A
     Such as the work done on what loads a frame. `sources` are the sources of all wired inputs. Each is made
     only where it reaches an output that is taken.
     """
+    taken = set(map(str, sources.values()))
     found: dict[str, str] = {}
     for name, v in _caused(components):
         owner = str(sources.get(f"{name}.{v.source_for}", "")).partition(".")[0]
@@ -179,7 +180,7 @@ def fed_along(components: Mapping[str, type[Component]], sources: Mapping[str, A
             for each in variables_of(components[name])
             if each.causality == "output" and (each.depends is None or v.name in each.depends)
         ]
-        if owner in components and not set(reached).isdisjoint(map(str, sources.values())):
+        if owner in components and not taken.isdisjoint(reached):
             there = [each for each in _usual_sources(name, v) if each.partition(".")[0] == owner]
             found |= {f"{name}.{v.name}": each for each in there[:1]}
     return found
@@ -191,12 +192,14 @@ def left_out(
     """Inputs that an output depends on, but that are not wired in a scene without `fed_back`, and from where
     they could be."""
     owner, _, output = signal.partition(".")
-    known = {v.name: v for v in variables_of(components[owner])} if owner in components else {}
+    if owner not in components:
+        return {}
+    known = {v.name: v for v in variables_of(components[owner])}
     depends = known[output].depends if output in known else ()
     found: dict[str, str] = {}
-    for name, v in _caused(components):
+    for name, v in _caused({owner: components[owner]}):
         sink, of_output = f"{name}.{v.name}", known.get(v.source_for or "")
-        if name == owner and sink not in wired and of_output and of_output.causality == "output":
+        if sink not in wired and of_output and of_output.causality == "output":
             there = [each for each in _usual_sources(name, v) if each.partition(".")[0] in components]
             if there and (depends is None or v.name in depends):
                 found[sink] = there[0]

@@ -18,18 +18,18 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     """
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
+    spelt = dotted(spelt_out)
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
     usual = standard_loom.wires(components)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     values = {
         f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
     }
-    tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | dotted(spelt_out)
+    tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | spelt
     for name in components:
         sources |= standard_loom.gathered(name, components, ChainMap(tables, sources))
-    taken = {str(each) for each in (*sources.values(), *dotted(spelt_out).values())}
+    taken = {str(each) for each in (*sources.values(), *spelt.values())}
     sources |= standard_loom.fed_back(components, taken)
-    spelt = dotted(spelt_out)
     sources |= standard_loom.fed_along(components, sources | spelt)
     for sink, source in spelt.items():
         if source is False:
