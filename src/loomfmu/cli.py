@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     options = argparse.Namespace(debug=False)
+    # numpy starts a thread for each core, which takes 40 ms; nothing here has matrices for so many
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
     def command() -> int:
         parser().parse_args(arguments, options)
