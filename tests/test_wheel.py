@@ -72,12 +72,14 @@ def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A new environment with the wheel, the packages that it needs, and no compiler."""
     home = tmp_path_factory.mktemp("elsewhere")
     called(sys.executable, "-m", "venv", "--without-pip", home, cwd=home)
+    python = home / Path(sys.executable).relative_to(sys.prefix)
+    called(
+        sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-deps", wheel, cwd=home
+    )
     own = home / Path(sysconfig.get_path("purelib")).relative_to(sys.prefix)
-    with zipfile.ZipFile(wheel) as archive:
-        archive.extractall(own)
     (own / "others.pth").write_text(sysconfig.get_path("purelib"))
     (own / "sitecustomize.py").write_text("import sys\nsys.modules['ziglang'] = None\n")
-    return home / Path(sys.executable).relative_to(sys.prefix)
+    return python
 
 
 def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> None:
@@ -92,6 +94,28 @@ def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> Non
     with Trace(tmp_path / "results/my_loom.h5") as trace:
         assert trace.attributes["flavour"] == "native"
         assert "notes" not in trace.attributes
+
+
+def test_the_example_runs_with_the_installed_command(python: Path, tmp_path: Path) -> None:
+    command, environment = python.with_name("loomfmu"), {"LOOMFMU_CACHE": str(tmp_path / "cache")}
+    called(command, "init", cwd=tmp_path, **environment)
+    said = called(command, "run", "wl680_3600.toml", cwd=tmp_path, **environment)
+    assert "4320 steps with native FMUs, " in said
+
+
+@pytest.mark.parametrize("words", [("page",), ("export", "--fmu", "loom.fmu")], ids=" ".join)
+def test_what_needs_a_compiler_says_so_in_one_line(
+    python: Path, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    (tmp_path / "my_loom.toml").write_text(SCENE)
+    call = [str(python), "-c", COMMAND, *words, "my_loom.toml"]
+    environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
+    done = subprocess.run(call, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "loomfmu: this needs a compiler, which is not installed: pip install 'loomfmu[native]'\n"
+    )
+    assert not list(tmp_path.glob("**/loom.fmu*")) and not list(tmp_path.glob("**/*.html*"))
 
 
 @pytest.mark.parametrize("fmi", ["2", "3"])

@@ -26,6 +26,8 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
+from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]
 
@@ -176,6 +178,19 @@ def test_iterated_in_c_it_gives_the_same_bits(inertia: float | None, flavour: st
     )
     for ours, theirs in zip(compiled, plain, strict=True):
         np.testing.assert_array_equal(ours, theirs)
+
+
+@needs_compiler
+def test_fmus_of_fmi_3_are_iterated_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
+    text = LOOP.format(coupling="iterated", inertia=LIGHT, steps=360, revolutions=1)
+    files = {
+        name: build_native(name, tmp_path, (host(),), fmi=3) for name in ("DrivenShaft", "WeftInsertion")
+    }
+    given = text.replace('component = "DrivenShaft"', f'fmu = "{files["DrivenShaft"]}"')
+    given += f'[weft]\nfmu = "{files["WeftInsertion"]}"\n'
+    fmi2, fmi3 = (rows_of(each, True, "native", CompiledIteration) for each in (text, given))
+    for one, other in zip(fmi2, fmi3, strict=True):
+        np.testing.assert_array_equal(one, other)
 
 
 @needs_compiler

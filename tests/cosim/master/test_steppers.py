@@ -23,7 +23,9 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.cache_entries import CHECKSUM
+from loomfmu.fmi.native.builder import build_native
 from loomfmu.fmi.native.libraries import library_of
+from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]
 
@@ -66,6 +68,18 @@ def equal(one: Rows, other: Rows) -> None:
 def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: str) -> None:
     scene = in_flavour(small(180, **changed), flavour)
     equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
+
+
+def test_fmus_of_fmi_3_are_stepped_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
+    files = {
+        instance: build_native(name, tmp_path, (host(),), fmi=3)
+        for instance, name in (("shaft", "MainShaft"), ("weft", "WeftInsertion"), ("belt", "BeltMonitor"))
+    }
+    text = 'revolutions = 1\nsteps_per_revolution = 180\n[loom]\nmachine = "WL680-3600"\n'
+    given = text + "".join(f'[{instance}]\nfmu = "{path}"\n' for instance, path in files.items())
+    fmi2, fmi3 = (in_flavour(scenes.parse(each, "loom"), "native") for each in (text, given))
+    assert all(each.fmu.fmi == 3 for each in fmi3.instances.values())
+    equal(rows_of(fmi2, compiled=True), rows_of(fmi3, compiled=True))
 
 
 MOTOR3 = """

@@ -158,5 +158,5 @@ def _required() -> Path:
     """Where the compiler is installed. Raises LoomfmuError if it is not."""
     found = compiler()
     if found is None:
-        raise LoomfmuError("native FMUs are compiled by ziglang: pip install 'loomfmu[native]'")
+        raise LoomfmuError("this needs a compiler, which is not installed: pip install 'loomfmu[native]'")
     return found
