@@ -116,12 +116,13 @@ def signals_of(scene: Scene, claim: Claim) -> Iterator[str]:
     """The signals that a claim needs."""
     for signal in claim.signals(scene.instances):
         instance, _, variable = signal.partition(".")
-        for name, each in scene.instances.items():
-            port = each.fmu.ports.get(variable)
-            if instance == "*" and port is not None and port.causality == "output":
-                yield f"{name}.{variable}"
         if instance != "*":
             yield signal
+            continue
+        for name, each in scene.instances.items():
+            port = each.fmu.ports.get(variable)
+            if port is not None and port.causality == "output":
+                yield f"{name}.{variable}"
 
 
 def shaft_angle(scene: Scene) -> list[str]:
