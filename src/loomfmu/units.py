@@ -85,6 +85,8 @@ UNITS = {
     "kW": Unit(kg=1, m=2, s=-3, factor=1e3),
     "W/s": Unit(kg=1, m=2, s=-4),
     "kg/m": Unit(kg=1, m=-1),
+    "kg/m2": Unit(kg=1, m=-2),
+    "tex": Unit(kg=1, m=-1, factor=1e-6),
     "kg.m2": Unit(kg=1, m=2),
     "K": Unit(K=1),
     "K/s": Unit(K=1, s=-1),

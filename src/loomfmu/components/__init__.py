@@ -11,6 +11,7 @@ MODULES = {
     "DrivenShaft": "driven_shaft",
     "WeftInsertion": "weft_insertion",
     "BeltMonitor": "belt_monitor",
+    "WeftTension": "weft_tension",
     "DobbyDrive": "dobby.drive",
     "HealdFrame": "heald_frame",
     "HealdDamper": "heald_damper",

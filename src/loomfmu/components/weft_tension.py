@@ -1,0 +1,246 @@
+"""WeftTension: the weft yarn from its package over brake and guide eyes to the rapier head."""
+
+from dataclasses import dataclass
+from math import floor, pi
+
+from ..physics.shaft import carried, too_far
+from ..physics.weft import capstan_gain, drag_per_length, drawing_limit, eased, unstretched_length
+from .weft_variables import PROGRAM_POINTS
+from .weft_way import PEAK, PLACE, SLACK, TURN, YIELD, WeftWay
+
+SHORTEST = 1e-15  # s: two samples that are closer are one, since the squares of their distance underflow
+PARTS = 4  # of the way between two samples: in each the tension turns once at most
+MOST_CHANGES = 3  # of the brake in a part, between holding the yarn and letting it through
+
+
+@dataclass(slots=True)
+class WeftTension(WeftWay):
+    """Weft tension: yarn drawn by the rapier heads over brake and eyes, with its mass, drag and stretch.
+
+    Between two samples of its inputs the head moves on the quintic that joins them, and the limit at which
+    the brake lets yarn through runs on the cubic; for these the yarn's force is exact, whatever the step.
+    """
+
+    def initialize(self, time: float) -> int:
+        """Thread the yarn: drawn steadily if a head carries it, else waiting for the giver."""
+        self.gain = capstan_gain(self.friction, self.wrap_angle)
+        self.drag = drag_per_length(self.air_friction, self.yarn_diameter)
+        if not self.take_sample(time, 0.0):
+            return 1
+        self.inward = self.velocity >= 0.0
+        self.length_offset = self.supply_length - self.pick_up_travel
+        if not self.inward:  # how far the giver brought it is not known: to here
+            self.length_offset = self.length_offset + 2.0 * self.travel
+        self.unstretched = self.supply_length
+        if self.travel > self.pick_up_travel:
+            self.unstretched = unstretched_length(
+                self.yarn_stiffness, self.length_at(self.travel), self.new_limit
+            )
+        self.slack_so_far = 0.0
+        self.longest_slack = 0.0
+        self.pending = 0.0
+        self.remember(time)
+        self.show()
+        self.highest_tension = self.tension
+        return 0
+
+    def step(self, time: float, step_size: float) -> int:
+        """Follow the yarn from the last sample of the inputs to this one and show its state."""
+        lead = step_size if self.inputs_at_step_end else 0.0
+        if not self.take_sample(time, lead):
+            return 1
+        self.follow(step_size if self.inputs_at_step_end else self.pending)
+        self.pending = step_size
+        self.remember(time + lead)
+        if self.inputs_at_step_end:
+            self.show()
+            return 0
+        return self.show_ahead(time, step_size)
+
+    def take_sample(self, time: float, lead: float) -> bool:
+        """The inputs and what they make the brake do; false if the shaft is too far."""
+        self.new_travel = self.travel
+        self.new_velocity = self.velocity
+        self.new_acceleration = self.acceleration
+        return self.set_brake(time, lead)
+
+    def set_brake(self, time: float, lead: float) -> bool:
+        """Force of the brake at the shaft's angle, and the limit for the new sample; false if that is far."""
+        angle, speed, _acceleration = self.shaft(time, lead)
+        if too_far(angle):
+            return False
+        place = angle * PROGRAM_POINTS / (2.0 * pi)
+        point = floor(place)
+        share, slope = eased(
+            self.brake_program[point % PROGRAM_POINTS], self.brake_program[(point + 1) % PROGRAM_POINTS],
+            place - point,
+        )  # fmt: skip
+        self.brake = self.brake_force * share
+        self.new_limit, self.new_limit_rate = drawing_limit(
+            self.gain, self.supply_tension, self.unwinding_factor * self.linear_density, self.brake,
+            self.brake_force * slope * speed * PROGRAM_POINTS / (2.0 * pi),
+            self.new_velocity, self.new_acceleration,
+        )  # fmt: skip
+        return True
+
+    def remember(self, time: float) -> None:
+        """Make the new sample the last one."""
+        self.sampled_time = time
+        self.sampled_travel = self.new_travel
+        self.sampled_velocity = self.new_velocity
+        self.sampled_acceleration = self.new_acceleration
+        self.sampled_limit = self.new_limit
+        self.sampled_limit_rate = self.new_limit_rate
+
+    def follow(self, duration: float) -> None:
+        """Bring the yarn from the last sample to the new one, in parts in which the head does not turn."""
+        if duration <= SHORTEST:
+            return
+        self.prepare(duration)
+        low = 0.0
+        for part in range(PARTS):
+            high = (part + 1) / PARTS
+            at_low = self.velocity_at(low)
+            at_high = self.velocity_at(high)
+            if (at_low < 0.0 and at_high > 0.0) or (at_low > 0.0 and at_high < 0.0):
+                turn = self.crossing(TURN, at_low > 0.0, False, 0.0, 0.0, low, high)
+                self.follow_one_way(low, turn)
+                low = turn
+            self.follow_one_way(low, high)
+            low = high
+
+    def follow_one_way(self, low: float, high: float) -> None:
+        """Bring the yarn over a part of the way in one direction: waiting, taken up, carried or released."""
+        start = self.travel_at(low)
+        self.face(self.velocity_at(0.5 * (low + high)), start)
+        held = start > self.pick_up_travel
+        holds = self.travel_at(high) > self.pick_up_travel
+        passed = low
+        if held != holds:
+            passed = self.crossing(PLACE, held, False, 0.0, 0.0, low, high)
+        if holds and not held:
+            self.take_up(self.travel_at(passed))
+        if holds:
+            self.draw(passed, high)
+        elif held:
+            self.draw(low, passed)
+        if not holds:
+            self.slack_so_far = 0.0
+
+    def face(self, velocity: float, travel: float) -> None:
+        """Turn to the head's direction: a giver begins a new pick, a taker goes on with the giver's yarn."""
+        if velocity > 0.0 and not self.inward:
+            self.inward = True
+            self.length_offset = self.supply_length - self.pick_up_travel
+            self.take_up(travel)
+        elif velocity < 0.0 and self.inward:
+            self.inward = False
+            self.length_offset = self.length_offset + 2.0 * travel
+
+    def take_up(self, travel: float) -> None:
+        """Hand the head yarn that is straight and unstretched."""
+        self.unstretched = self.length_at(travel)
+        self.slack_so_far = 0.0
+
+    def draw(self, low: float, high: float) -> None:
+        """Bring the yarn over a part of the way on which a head draws it in one direction.
+
+        The brake holds or lets yarn through; it changes over where the tension of held yarn passes the limit.
+        """
+        start = low
+        force = self.force_at(False, start, 0.0, start)
+        passing = self.surplus_at(False, start, force, start) > 0.0
+        for change in range(MOST_CHANGES + 1):
+            end = high
+            changes = (self.surplus_at(passing, start, force, high) > 0.0) != passing
+            if changes and change < MOST_CHANGES:
+                end = self.crossing(YIELD, passing, passing, start, force, start, high)
+            self.watch(passing, start, end)
+            force = self.force_at(passing, start, force, end)
+            if passing:
+                self.unstretched = unstretched_length(
+                    self.yarn_stiffness, self.length_at(self.travel_at(end)), force
+                )
+            if end >= high:
+                break
+            start = end
+            passing = not passing
+
+    def watch(self, passing: bool, low: float, high: float) -> None:
+        """Keep the highest tension and the slack on a part of the way, divided where the tension turns."""
+        at_low = self.tension_at(passing, low)
+        at_high = self.tension_at(passing, high)
+        rate = self.tension_rate_at(passing, low)
+        if rate * self.tension_rate_at(passing, high) < 0.0:
+            turn = self.crossing(PEAK, rate > 0.0, passing, 0.0, 0.0, low, high)
+            between = self.tension_at(passing, turn)
+            self.note(passing, low, at_low, turn, between)
+            low = turn
+            at_low = between
+        self.note(passing, low, at_low, high, at_high)
+
+    def note(self, passing: bool, low: float, at_low: float, high: float, at_high: float) -> None:
+        """Keep the highest tension and the slack where the tension rises or falls throughout."""
+        if at_low > self.highest_tension:
+            self.highest_tension = at_low
+        if at_high > self.highest_tension:
+            self.highest_tension = at_high
+        taut = at_low > 0.0
+        passed = low if taut else high
+        if taut != (at_high > 0.0):
+            passed = self.crossing(SLACK, taut, passing, 0.0, 0.0, low, high)
+        hanging = 0.0 if taut else self.slack_so_far + self.way_time * (passed - low)
+        self.hang(hanging)
+        if at_high > 0.0:
+            self.slack_so_far = 0.0
+        elif taut:
+            self.hang(self.way_time * (high - passed))
+
+    def hang(self, duration: float) -> None:
+        """Keep the time without tension, and the longest one."""
+        self.slack_so_far = duration
+        if duration > self.longest_slack:
+            self.longest_slack = duration
+
+    def show(self) -> None:
+        """Outputs at the new sample."""
+        self.carried = self.new_travel > self.pick_up_travel
+        self.length = self.supply_length
+        self.strain = 0.0
+        self.eye_tension = 0.0
+        self.inertia_force = 0.0
+        self.drag_force = 0.0
+        if self.carried:
+            speed = self.new_velocity if self.inward else -self.new_velocity
+            acceleration = self.new_acceleration if self.inward else -self.new_acceleration
+            self.length = self.length_at(self.new_travel)
+            self.strain = (self.length - self.unstretched) / self.unstretched
+            held = self.yarn_stiffness * (self.strain + self.retardation_time * speed / self.unstretched)
+            self.eye_tension = held if held < self.new_limit else self.new_limit
+            self.inertia_force = self.linear_density * self.length * acceleration
+            self.drag_force = self.drag * self.length * speed * speed
+        tension = self.eye_tension + self.inertia_force + self.drag_force
+        self.slack = self.carried and tension <= 0.0
+        self.tension = tension if tension > 0.0 else 0.0
+
+    def show_ahead(self, time: float, lead: float) -> int:
+        """Outputs at the end of the step, the inputs carried over it; what the yarn keeps stays as it is."""
+        inward = self.inward
+        offset = self.length_offset
+        unstretched = self.unstretched
+        highest = self.highest_tension
+        longest = self.longest_slack
+        hanging = self.slack_so_far
+        self.new_travel = carried(self.travel, self.velocity, self.acceleration, lead)
+        self.new_velocity = self.velocity + self.acceleration * lead
+        if not self.set_brake(time, lead):
+            return 1
+        self.follow(lead)
+        self.show()
+        self.inward = inward
+        self.length_offset = offset
+        self.unstretched = unstretched
+        self.highest_tension = highest
+        self.longest_slack = longest
+        self.slack_so_far = hanging
+        return 0

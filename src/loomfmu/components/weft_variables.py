@@ -1,0 +1,137 @@
+"""What WeftTension is given, shows and keeps: its declarations."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..arrays import array
+from ..variables import Problem, Terminal, auxiliary, input_, output, parameter, state
+from .shaft_driven import TOO_FAR, ShaftDriven
+from .terminals import HEAD
+
+PROGRAM_POINTS = 24  # of the brake, evenly spaced over a revolution
+
+
+@dataclass(slots=True)
+class WeftVariables(ShaftDriven):
+    """Variables of the weft yarn, and what it declares of itself."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        *ShaftDriven.terminals,
+        HEAD.of("travel", "velocity", "acceleration"),
+    )
+
+    linear_density: float = parameter(
+        "kg/m", 30e-6, "Linear density of the yarn", display="tex", minimum=0.0, maximum=1.0, nominal=1e-5
+    )
+    yarn_stiffness: float = parameter(
+        "N", 75.0, "Tensile stiffness EA of the yarn, force per strain (assumed)",
+        minimum=1e-3, maximum=1e6, nominal=100.0,
+    )  # fmt: skip
+    retardation_time: float = parameter(
+        "s", 1e-4, "Retardation time of the yarn, viscosity over stiffness (assumed)", display="ms",
+        minimum=1e-9, maximum=1.0, nominal=1e-4,
+    )  # fmt: skip
+    yarn_diameter: float = parameter(
+        "m", 0.2e-3, "Diameter of the yarn, for its air drag", display="mm",
+        minimum=0.0, maximum=0.01, nominal=1e-4,
+    )  # fmt: skip
+    air_friction: float = parameter(
+        "1", 0.04, "Coefficient of friction in air along the yarn, for its circumference",
+        minimum=0.0, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    supply_tension: float = parameter(
+        "N", 0.05, "Tension at the package without speed (assumed)", display="cN",
+        minimum=0.0, maximum=1e3, nominal=0.1,
+    )  # fmt: skip
+    unwinding_factor: float = parameter(
+        "1", 1.0, "Unwinding tension over that of the yarn's momentum; above 1 with a balloon",
+        minimum=0.0, maximum=100.0,
+    )  # fmt: skip
+    brake_force: float = parameter(
+        "N", 0.2, "Force of the yarn brake, where brake_program is 1 (assumed)", display="cN",
+        minimum=0.0, maximum=1e3, nominal=0.1,
+    )  # fmt: skip
+    brake_program: tuple[float, ...] = array(
+        parameter(
+            "1", 1.0, f"Share of brake_force at a shaft angle of {point * 360 // PROGRAM_POINTS} deg",
+            minimum=0.0, maximum=1e3,
+        )
+        for point in range(PROGRAM_POINTS)
+    )  # fmt: skip
+    friction: float = parameter(
+        "1", 0.2, "Coefficient of friction between yarn and guide eyes (assumed)", minimum=0.0, maximum=2.0
+    )
+    wrap_angle: float = parameter(
+        "rad", 1.5707963267948966, "Sum of the wrap angles of all guide eyes (assumed)", display="deg",
+        minimum=0.0, maximum=20.0,
+    )  # fmt: skip
+    supply_length: float = parameter(
+        "m", 0.6, "Length of yarn from the brake to where the head takes it (assumed)", display="mm",
+        minimum=1e-2, maximum=100.0,
+    )  # fmt: skip
+    pick_up_travel: float = parameter(
+        "m", 0.1, "Travel at which the giver takes the weft, and the taker releases it (assumed)",
+        display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    travel: float = input_(
+        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
+    )
+    velocity: float = input_(
+        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
+        minimum=-1e9, maximum=1e9,
+    )  # fmt: skip
+    acceleration: float = input_(
+        "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
+    )
+    tension: float = output("N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5)
+    highest_tension: float = output(
+        "N", "Highest tension so far, on the continuous curve", display="cN", nominal=0.5,
+        highest_of="tension",
+    )  # fmt: skip
+    longest_slack: float = output(
+        "s", "Longest time so far that the weft was carried without tension", display="ms", nominal=1e-3
+    )
+    slack: bool = output("1", "The weft is carried without tension", start=False, variability="discrete")
+    carried: bool = output("1", "A head carries the weft", start=False, variability="discrete")
+    length: float = output("m", "Length of yarn from the brake to the head that carries it")
+    brake: float = output("N", "Force of the yarn brake at this shaft angle", display="cN", nominal=0.1)
+    eye_tension: float = output(
+        "N", "Tension of the weft behind the last guide eye", display="cN", nominal=0.5
+    )
+    inertia_force: float = output(
+        "N", "Part of tension that accelerates the yarn between brake and head", display="cN", nominal=0.1
+    )
+    drag_force: float = output("N", "Part of tension that the air drag takes", display="cN", nominal=0.1)
+    strain: float = output("1", "Strain of the yarn between brake and head", nominal=1e-2)
+
+    gain: float = auxiliary("1", "Ratio of the tensions after and before all guide eyes")
+    drag: float = auxiliary("kg/m2", "Air drag per length and square of the speed")
+    pending: float = state("s", "Time from the last sample of the inputs to the next", minimum=0.0)
+    inward: bool = state("1", "The head is on its way in, as a giver", start=True)
+    length_offset: float = state("m", "Length less the travel on the way in, plus it on the way out")
+    unstretched: float = state("m", "Unstretched length from brake to head", start=0.6, minimum=1e-60)
+    slack_so_far: float = state("s", "Time without tension up to now", minimum=0.0)
+    sampled_time: float = state("s", "Time of the last sample")
+    sampled_travel: float = state("m", "Travel at the last sample")
+    sampled_velocity: float = state("m/s", "Velocity at the last sample")
+    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
+    sampled_limit: float = state("N", "Limit of eye_tension at the last sample")
+    sampled_limit_rate: float = state("N/s", "Rate of that limit at the last sample")
+    new_travel: float = auxiliary("m", "Travel at the end of the way")
+    new_velocity: float = auxiliary("m/s", "Velocity at the end of the way")
+    new_acceleration: float = auxiliary("m/s2", "Acceleration at the end of the way")
+    new_limit: float = auxiliary("N", "Limit of eye_tension at the end of the way")
+    new_limit_rate: float = auxiliary("N/s", "Rate of that limit at the end of the way")
+    way_time: float = auxiliary("s", "Duration of the way between two samples", minimum=0.0)
+    way: tuple[float, ...] = array(
+        auxiliary("m", f"Travel by the share of the way: {what}")
+        for what in (
+            "value at its start", "rate at its start", "second rate, constant part",
+            "second rate, linear part", "second rate, quadratic part", "second rate, cubic part",
+        )
+    )  # fmt: skip
+    way_limit: tuple[float, ...] = array(
+        auxiliary("N", f"Limit of eye_tension by the share of the way: {part} part")
+        for part in ("constant", "linear", "quadratic", "cubic")
+    )
