@@ -14,6 +14,7 @@ from loomfmu.components.heald_play import HealdPlay
 from loomfmu.components.pattern_lock import PatternLock
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
+from loomfmu.components.weft_tension import WeftTension
 from loomfmu.variables import Component
 
 ROOT = Path(__file__).parents[1]
@@ -125,6 +126,10 @@ def main() -> None:
     rows = zip(time, critical, free, strict=True)
     window = [(at, force) for at, force, length in rows if length > 0.0 and force < max(load)]
     draw("belt_monitor", (*map(list, zip(*window, strict=True)), RED), (time, load, BLUE), levels=(0.0,))
+
+    chain = [WeftInsertion(), WeftTension(inputs_at_step_end=True)]
+    time, behind, tension = trace(chain, 1, "eye_tension", "tension")
+    draw("weft_tension", (time, behind, PALE), (time, tension, BLUE), levels=(0.0,))
 
     time, velocity = trace([DobbyDrive(speed_reduction=0.7)], 2, "rotor_velocity")
     draw("dobby_drive", (time, velocity, BLUE), levels=(DobbyDrive().speed,))

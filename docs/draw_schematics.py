@@ -216,6 +216,31 @@ def belt_monitor() -> Drawing:
     return d
 
 
+def weft_tension() -> Drawing:
+    """The yarn from its package to the head."""
+    d = Drawing(640, 240, "Weft tension: package, brake, guide eyes, the yarn on its way, the rapier head")
+    y = 110.0
+    d.path((30, y - 45), (90, y - 30), (90, y + 30), (30, y + 45), (30, y - 45), fill=PALE)
+    d.text((60, y + 72), "package: T₀")
+    d.path((90, y), (180, y), (250, y), (285, y + 42), (320, y), (560, y), colour=BLUE, width=3)
+    d.circle((250, y + 9), 9, fill=PALE)
+    d.circle((285, y + 33), 9, fill=PALE)
+    d.circle((320, y + 9), 9, fill=PALE)
+    d.text((285, y + 72), "eyes: μ, φ")
+    for side in (-1, 1):
+        d.box(160, y + 9 * side - 5, 40, 10)
+        d.arrow((180, y + 52 * side), (180, y + 18 * side))
+    d.text((180, y + 72), "brake: B")
+    d.path((560, y - 14), (596, y - 14), (616, y), (596, y + 14), (560, y + 14), (560, y - 14), fill=PALE)
+    d.text((585, y + 36), "head")
+    d.arrow((570, y - 40), (625, y - 40))
+    d.text((598, y - 50), "v, a", RED)
+    d.arrow((190, y - 70), (560, y - 70), GREY, both=True)
+    d.text((375, y - 78), "length L: q, EA, τ; drag c, d")
+    d.text((440, y + 22), "tension", BLUE)
+    return d
+
+
 def dobby_drive() -> Drawing:
     """The modulator between shaft and rotor, and the crank that lifts a frame."""
     d = Drawing(600, 240, "Dobby drive: shaft, modulator, rotor with the crank of a frame")
@@ -445,8 +470,8 @@ def detaching_roller() -> Drawing:
 def main() -> None:
     """Draw all of them."""
     for draw in (
-        main_shaft, driven_shaft, weft_insertion, belt_monitor, dobby_drive, heald_frame, heald_damper,
-        warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap, detaching_roller,
+        main_shaft, driven_shaft, weft_insertion, belt_monitor, weft_tension, dobby_drive, heald_frame,
+        heald_damper, warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap, detaching_roller,
     ):  # fmt: skip
         draw().write(draw.__name__)
 

@@ -20,6 +20,7 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
     "MainShaft": {},
     "WeftInsertion": SHAFT,
     "BeltMonitor": SHAFT | {name: ("WeftInsertion", name) for name in ("travel", "velocity", "acceleration")},
+    "WeftTension": SHAFT | {name: ("WeftInsertion", name) for name in ("travel", "velocity", "acceleration")},
     "DobbyDrive": SHAFT,
     "HealdFrame": {
         name: ("DobbyDrive", name)
@@ -39,6 +40,10 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
 # to any speed from 0.001 to 5,000 rev/min
 AT_ONE_RADIAN: dict[str, dict[str, Any]] = {
     "BeltMonitor": {"bending_stiffness": 1.5e-3, "head_mass": 1.0},
+    "WeftTension": {  # air has a density of its own: without drag
+        "linear_density": 2e-4, "yarn_stiffness": 10.0, "retardation_time": 1e-5, "air_friction": 0.0,
+        "brake_force": 6e-4, "supply_tension": 1.5e-4,
+    },
     "HealdFrame": {"frame_mass": 2.0, "gravity": 0.0, "pattern_length": 3},
     "WarpTension": {"pretension": 0.01, "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2},
     "HealdDamper": {

@@ -67,7 +67,7 @@ class BeltVariables(ShaftDriven):
     )
     yarn_tension: float = input_(
         "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
-        display="cN", minimum=-1e6, maximum=1e6,
+        display="cN", minimum=-1e6, maximum=1e6, source="yarn.tension",
     )  # fmt: skip
     guide_clearance: float = input_(
         "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",

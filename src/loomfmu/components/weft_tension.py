@@ -39,6 +39,7 @@ class WeftTension(WeftWay):
         self.slack_so_far = 0.0
         self.longest_slack = 0.0
         self.pending = 0.0
+        self.acceleration_rate = 0.0
         self.remember(time)
         self.show()
         self.highest_tension = self.tension
@@ -49,7 +50,10 @@ class WeftTension(WeftWay):
         lead = step_size if self.inputs_at_step_end else 0.0
         if not self.take_sample(time, lead):
             return 1
-        self.follow(step_size if self.inputs_at_step_end else self.pending)
+        duration = step_size if self.inputs_at_step_end else self.pending
+        self.follow(duration)
+        if duration > SHORTEST:
+            self.acceleration_rate = (self.acceleration - self.sampled_acceleration) / duration
         self.pending = step_size
         self.remember(time + lead)
         if self.inputs_at_step_end:
@@ -231,8 +235,10 @@ class WeftTension(WeftWay):
         highest = self.highest_tension
         longest = self.longest_slack
         hanging = self.slack_so_far
-        self.new_travel = carried(self.travel, self.velocity, self.acceleration, lead)
-        self.new_velocity = self.velocity + self.acceleration * lead
+        rise = self.acceleration_rate * lead
+        self.new_travel = carried(self.travel, self.velocity, self.acceleration + rise / 3.0, lead)
+        self.new_velocity = self.velocity + (self.acceleration + 0.5 * rise) * lead
+        self.new_acceleration = self.acceleration + rise
         if not self.set_brake(time, lead):
             return 1
         self.follow(lead)

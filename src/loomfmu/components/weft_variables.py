@@ -26,7 +26,7 @@ class WeftVariables(ShaftDriven):
     )
     yarn_stiffness: float = parameter(
         "N", 75.0, "Tensile stiffness EA of the yarn, force per strain (assumed)",
-        minimum=1e-3, maximum=1e6, nominal=100.0,
+        minimum=1e-6, maximum=1e6, nominal=100.0,
     )  # fmt: skip
     retardation_time: float = parameter(
         "s", 1e-4, "Retardation time of the yarn, viscosity over stiffness (assumed)", display="ms",
@@ -118,6 +118,7 @@ class WeftVariables(ShaftDriven):
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_limit: float = state("N", "Limit of eye_tension at the last sample")
     sampled_limit_rate: float = state("N/s", "Rate of that limit at the last sample")
+    acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
     new_travel: float = auxiliary("m", "Travel at the end of the way")
     new_velocity: float = auxiliary("m/s", "Velocity at the end of the way")
     new_acceleration: float = auxiliary("m/s2", "Acceleration at the end of the way")

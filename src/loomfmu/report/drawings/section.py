@@ -11,10 +11,12 @@ from .reed import beat_up
 from .shed import frames, shed
 from .sketch import Figure
 from .tracks import Tracks
+from .yarn import yarn
 
 DRAWN = {
     "WeftInsertion": ("travel",),
     "BeltMonitor": ("free_length", "deflection"),
+    "WeftTension": ("length", "tension"),
     "HealdFrame": ("lift",),
     "ReedBeatUp": ("position",),
 }
@@ -54,14 +56,16 @@ def still(subject: Subject) -> float:
 
 def _figures(tracks: Tracks) -> list[Figure]:
     """Drawings in the order of the weft's way, then of the warp's."""
-    weft, belts, reeds = (
-        instances(tracks.trace, fmu, *DRAWN[fmu]) for fmu in ("WeftInsertion", "BeltMonitor", "ReedBeatUp")
+    weft, belts, yarns, reeds = (
+        instances(tracks.trace, fmu, *DRAWN[fmu])
+        for fmu in ("WeftInsertion", "BeltMonitor", "WeftTension", "ReedBeatUp")
     )
     drives = [drive(tracks, name) for name in weft]
     found = [tracked(tracks, name) for name in belts]
     ways = [figure for belt in found for figure in (width(tracks, belt), between(tracks, belt))]
     warp = [shed(tracks, found[0].tip if found else ""), frames(tracks)]
-    every = [*drives, *ways, *warp, *(beat_up(tracks, name) for name in reeds)]
+    drawn = [yarn(tracks, name) for name in yarns]
+    every = [*drives, *ways, *drawn, *warp, *(beat_up(tracks, name) for name in reeds)]
     return [figure for figure in every if figure]
 
 
