@@ -134,6 +134,25 @@ def test_frames_and_carriers_are_at_their_recorded_places(
             assert y == pytest.approx(there, abs=0.03)
 
 
+# ---- the weft
+
+
+def test_the_weft_reaches_to_the_head_and_is_red_where_it_hangs_slack(tmp_path: Path, opened: Open) -> None:
+    # with a constant brake, it hangs slack before the taker releases it
+    constant = {f"yarn.brake_program_{n}": 1 for n in range(1, 25)}
+    trace = loomfmu.run(SIMS / "weft_tension.toml", set=constant, output=tmp_path / "weft.h5").trace
+    page = opened(report.write([trace], tmp_path / "weft.html"))
+    hung = page.locator("#motion-yarn-yarn g[data-shown]")
+    for degrees in (100.0, 200.0, 310.0):
+        seek(page, degrees)
+        there = 1000.0 * np.interp(math.radians(degrees), trace.shaft_angle, trace["yarn.length"])
+        _eye, head = points(page, "yarn-yarn", "link.weft", 1)
+        assert head == (pytest.approx(there, abs=2.0 * STEP), 0.0)
+        slack = np.interp(math.radians(degrees), trace.shaft_angle, trace["yarn.slack"]) > 0.5
+        assert hung.evaluate("part => part.hasAttribute('hidden')") != slack
+    assert slack
+
+
 # ---- the buckled belt
 
 
