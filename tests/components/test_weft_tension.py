@@ -131,7 +131,7 @@ def solved(times):
 
 
 @pytest.mark.no_cover
-@pytest.mark.parametrize(("steps", "error"), [(72, 2e-5), (144, 1e-6), (720, 2e-10)])
+@pytest.mark.parametrize(("steps", "error"), [(72, 1e-7), (144, 5e-9), (720, 1e-10)])
 def test_everything_together(steps, error):
     times = np.linspace(0.0, 2.0 * pi / SPEED, steps + 1)[1:-1]
     seen = []

@@ -67,8 +67,8 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
     (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
-    `warps` loads it with its threads, `play` adds the blows of its healds, `yarn` the weft that the heads draw,
-    `reed` and `locks` add beat-up and pattern locks.
+    `warps` loads it with its threads, `play` adds the blows of its healds. `yarn`, `reed` and `locks` add the
+    weft, beat-up and pattern locks.
     """
     for key in table:
         if key not in LOOM_KEYS:
