@@ -98,7 +98,7 @@ def unstretched_length(stiffness: float, length: float, force: float) -> float:
     >>> unstretched_length(75.0, 1.5, 37.5)
     1.0
     """
-    return length * stiffness / (stiffness + force)
+    return length * (stiffness / (stiffness + force))
 
 
 def relaxed_force(
