@@ -268,7 +268,7 @@ def test_the_brake_holds_and_yields_without_chatter():
     )  # fmt: skip
     strains, tensions = np.array(seen).T
     turns = np.sum(np.diff(np.sign(np.diff(tensions[20:]))) != 0)
-    assert turns <= 6  # rise and fall of the programme and of the speed, no more
+    assert turns <= 6  # rise and fall of the program and of the speed, no more
     assert np.abs(np.diff(strains)).max() < 1e-3
 
 

@@ -107,7 +107,7 @@ def test_a_yarn_without_viscosity_is_at_the_limit():
 
 
 @given(forces, forces, shares)
-def test_programme_does_not_overshoot(start, end, share):
+def test_program_does_not_overshoot(start, end, share):
     value, slope = eased(start, end, share)
     assert min(start, end) - 1e-15 <= value <= max(start, end) + 1e-15
     assert slope * (end - start) >= 0.0

@@ -49,7 +49,7 @@ def drag_per_length(coefficient: float, diameter: float) -> float:
 
 
 def eased(start: float, end: float, share: float) -> tuple[float, float]:
-    """Value between two points of a programme and its derivative by the share: `3 u^2 - 2 u^3`, no overshoot.
+    """Value between two points of a program and its derivative by the share: `3 u^2 - 2 u^3`, no overshoot.
 
     >>> eased(1.0, 3.0, 0.5)
     (2.0, 3.0)
