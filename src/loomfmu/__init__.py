@@ -1,9 +1,9 @@
 """The mechanisms of a weaving loom as FMI components, co-simulated over main-shaft time and judged.
 
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
-runs, `sweep` runs it with many values, `limit` finds how far a value may go, `fit`
-finds values from measured curves; `Trace` reads a recorded run,
-`judge` judges a claim on it, `compare` compares two. `design` solves the same physics for a design.
+runs, `sweep` runs it with many values, `limit` finds how far a value may go, `optimize` the best design,
+`fit` values from measured curves; `Trace` reads a recorded run, `judge` judges a claim on it, `compare`
+compares two. `design` solves the same physics for a design.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from .studies.limits.boundary import limit as limit
     from .studies.limits.results import Boundary as Boundary
     from .studies.limits.results import Limits as Limits
+    from .studies.optimizing.optimize import optimize as optimize
+    from .studies.optimizing.optimum import Optimum as Optimum
     from .studies.tolerances.tolerances import Tolerances as Tolerances
     from .studies.tolerances.tolerances import tolerances as tolerances
     from .sweeps.run import Sweep as Sweep
@@ -42,6 +44,7 @@ _HOMES = {
     "Fit": "studies.fitting.fit",
     "Limits": "studies.limits.results",
     "LoomfmuError": "errors",
+    "Optimum": "studies.optimizing.optimum",
     "Prepared": "cosim.prepared",
     "Result": "cosim.results",
     "Sweep": "sweeps.run",
@@ -55,6 +58,7 @@ _HOMES = {
     "judge": "cosim.claims.claims",
     "fit": "studies.fitting.fit",
     "limit": "studies.limits.boundary",
+    "optimize": "studies.optimizing.optimize",
     "run": "cosim.run",
     "sweep": "sweeps.run",
     "tolerances": "studies.tolerances.tolerances",

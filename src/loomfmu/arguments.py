@@ -52,6 +52,7 @@ def parser() -> argparse.ArgumentParser:
         _sweep,
         _limit,
         _tolerances,
+        _optimize,
         _fit,
         _list,
         _init,
@@ -162,16 +163,7 @@ def _compare(commands: Any) -> None:
 def _sweep(commands: Any) -> None:
     sweep = commands.add_parser("sweep", help="run a scene with many combinations of values")
     sweep.add_argument("sweep", metavar="SWEEP.toml")
-    sweep.add_argument("--output", metavar="DIR", help="folder for the results; results/SWEEP by default")
-    sweep.add_argument(
-        "--processes", type=int, metavar="N", help="worker processes on this machine; one per core by default"
-    )
-    sweep.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
-    )
-    sweep.add_argument(
-        "--restart", action="store_true", help="discard earlier results in DIR and run all rows"
-    )
+    _add_place(sweep, "SWEEP")
 
 
 def _limit(commands: Any) -> None:
@@ -219,6 +211,15 @@ def _tolerances(commands: Any) -> None:
     _add_set(tolerances)
     tolerances.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
     _add_force(tolerances, "the picture even if it is not one")
+
+
+def _optimize(commands: Any) -> None:
+    optimize = commands.add_parser(
+        "optimize", help="find the best design within ranges and choices, all claims met",
+        epilog="Exit status: 0 a design was found; 1 none meets all claims; 2 bad input or a failed FMU.",
+    )  # fmt: skip
+    optimize.add_argument("study", metavar="STUDY.toml")
+    _add_place(optimize, "STUDY")
 
 
 def _fit(commands: Any) -> None:
@@ -334,6 +335,19 @@ def _add_platform(command: argparse.ArgumentParser) -> None:
 
 def _add_scene(command: argparse.ArgumentParser) -> None:
     command.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+
+
+def _add_place(command: argparse.ArgumentParser, name: str) -> None:
+    command.add_argument("--output", metavar="DIR", help=f"folder for the results; results/{name} by default")
+    command.add_argument(
+        "--processes", type=int, metavar="N", help="worker processes on this machine; one per core by default"
+    )
+    command.add_argument(
+        "--scheduler", metavar="ADDRESS", help="run on a dask cluster, such as tcp://host:8786"
+    )
+    command.add_argument(
+        "--restart", action="store_true", help="discard earlier results in DIR and run everything again"
+    )
 
 
 def _add_set(command: argparse.ArgumentParser) -> None:

@@ -204,6 +204,12 @@ def _tolerances(options: argparse.Namespace) -> int:
     return command.run(options, _pairs(options.overrides))
 
 
+def _optimize(options: argparse.Namespace) -> int:
+    from .studies.optimizing import command
+
+    return command.run(options)
+
+
 def _fit(options: argparse.Namespace) -> int:
     from .studies.fitting import command
 
@@ -457,6 +463,7 @@ COMMANDS = {
     "sweep": _sweep,
     "limit": _limit,
     "tolerances": _tolerances,
+    "optimize": _optimize,
     "fit": _fit,
     "build": _build,
     "list": _list,

@@ -515,7 +515,7 @@ def test_missing_packages_are_named_with_what_installs_them(
     path = written(tmp_path, GRID + '[map]\nx = "belt.guide_clearance"\nvalue = "claim_1.worst"\n')
     for package, extra in (("pyarrow", "sweep"), ("matplotlib", "plot"), ("distributed", "sweep")):
         monkeypatch.setattr(
-            "loomfmu.sweeps.run.find_spec", lambda name, missing=package: None if name == missing else name
+            "loomfmu.sweeps.place.find_spec", lambda name, missing=package: None if name == missing else name
         )
         with pytest.raises(LoomfmuError, match=rf'this needs {package}: pip install "loomfmu\[{extra}\]'):
             loomfmu.sweep(path, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
@@ -538,7 +538,7 @@ def test_all_packages_that_a_sweep_lacks_are_named_at_once(
 ) -> None:
     drawn = '[map]\nx = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
     path = written(tmp_path, GRID + NO_TRACES + drawn)
-    monkeypatch.setattr("loomfmu.sweeps.run.find_spec", lambda _name: None)
+    monkeypatch.setattr("loomfmu.sweeps.place.find_spec", lambda _name: None)
     with pytest.raises(
         LoomfmuError, match=r'needs pyarrow and matplotlib: pip install "loomfmu\[sweep,plot\]"$'
     ):

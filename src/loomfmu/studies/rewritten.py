@@ -52,14 +52,23 @@ def check(scene: Scene) -> Path:
 def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool = False) -> Path:
     """Write a scene's text with these values, those that it was read with among them, and return its path.
 
-    What is written is read again first: it must be the same scene with the same values, wherever it is put.
-
-    Raises:
-        LoomfmuError: not from a TOML file, a file that may not be written, files that the scene names by
-            paths that do not lead there from its new place, or no `loomfmu[study]`
+    Raises LoomfmuError as `text_for`, and for a file that may not be written.
     """
     inputs = [check(scene)]
     check_target(path, KIND, inputs, overwrite)
+    return write_file(path, text_for(scene, values, path).encode(), KIND, inputs, overwrite)
+
+
+def text_for(scene: Scene, values: Mapping[str, Any], path: Path) -> str:
+    """A scene's text with these values, those that it was read with among them, as it may stand at a path.
+
+    It is read again first: it must be the same scene with the same values there.
+
+    Raises:
+        LoomfmuError: not from a TOML file, files that the scene names by paths that do not lead there from
+            its new place, or no `loomfmu[study]`
+    """
+    check(scene)
     every = {**scene.overrides, **values}
     expected = scenes.parse(scene.text, scene.name, every, scene.directory)
     text = rewritten(scene, every)
@@ -71,7 +80,7 @@ def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool =
     for name, each in expected.instances.items():
         if again.instances[name].effective() != each.effective():
             raise LoomfmuError(f"{path}: the values of {name} cannot be written to this scene")
-    return write_file(path, text.encode(), KIND, inputs, overwrite)
+    return text
 
 
 def rewritten(scene: Scene, values: Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LoomfmuError, suggestion
+from ..errors import LoomfmuError, shown, suggestion
 from .varied import Value, Varied
 
 MOST = 10_000_000  # combinations, points of an axis
@@ -60,13 +60,13 @@ def flattened(table: Any, where: str, prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def grid_axis(varied: Varied, given: Any) -> Axis:
+def grid_axis(varied: Varied, given: Any, table: str = "grid") -> Axis:
     """The axis of a grid from a list of values, or from its ends and their count.
 
     Raises:
         LoomfmuError: a value that is out of its bounds, of another unit, or there twice
     """
-    where = f"grid.{varied.key}"
+    where = f"{table}.{varied.key}"
     if isinstance(given, dict):
         low, high, logarithmic = _ends(varied, given, where)
         count = whole(given.get("count"), f"{where}.count", 2)
@@ -76,7 +76,8 @@ def grid_axis(varied: Varied, given: Any) -> Axis:
         return Axis(varied, np.array(values, TYPES[varied.kind]), logarithmic=logarithmic, doubts=doubts)
     if not isinstance(given, list) or not given:
         raise LoomfmuError(
-            f'{where} = {given!r} is neither a list of values nor {{ from = "..", to = "..", count = .. }}'
+            f"{where} = {shown(given)} is neither a list of values nor"
+            ' { from = "..", to = "..", count = .. }'
         )
     values = [varied.read(value) for value in given]
     seen: set[Value] = set()
@@ -92,6 +93,58 @@ def _doubts(varied: Varied, given: list[Any]) -> tuple[str, ...]:
     return tuple(filter(None, map(varied.doubt, given)))
 
 
+@dataclass(frozen=True)
+class Range:
+    """A key between two ends in SI, both included; shares of a logarithmic one are equal in the logarithm."""
+
+    varied: Varied
+    low: float
+    high: float
+    logarithmic: bool = False
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> str:
+        """What files call it."""
+        return self.varied.key
+
+    def at(self, shares: Any) -> NDArray[Any]:
+        """The values at shares of the range, 0 to 1; each whole number has an equal share."""
+        shares = np.asarray(shares, dtype=np.float64)
+        low, high = self.low, self.high
+        if self.varied.kind == "Integer":
+            return np.asarray(np.minimum(np.floor(low + shares * (high - low + 1)), high), np.int64)
+        values = low * (high / low) ** shares if self.logarithmic else low + shares * (high - low)
+        return np.asarray(np.clip(np.where(shares == 1.0, high, values), low, high))
+
+    def share(self, value: float) -> float:
+        """Where a real number lies in the range, 0 to 1; the nearer end for one outside."""
+        value = min(max(value, self.low), self.high)
+        if self.logarithmic:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    def sampled(self, shares: Any) -> Axis:
+        """The axis of a sample that has these shares."""
+        return Axis(self.varied, self.at(shares), True, self.logarithmic, self.doubts)
+
+
+def range_of(varied: Varied, given: Any, where: str, lists: str = "grid") -> Range:
+    """A range from `[low, high]` or from a table of both ends, as the table `where` of a file has it.
+
+    Raises LoomfmuError; `lists` is the table for what has no range.
+    """
+    where = f"{where}.{varied.key}"
+    if isinstance(given, list) and len(given) == 2:
+        given = {"from": given[0], "to": given[1]}
+    if not isinstance(given, dict):
+        raise LoomfmuError(f"{where} = {shown(given)} is not a range [low, high]")
+    if "count" in given:
+        raise LoomfmuError(f"{where}.count: a range here has no points of its own; leave out count")
+    low, high, logarithmic = _ends(varied, given, where, lists)
+    return Range(varied, low, high, logarithmic, _doubts(varied, [given["from"], given["to"]]))
+
+
 def sample_axes(ranges: list[tuple[Varied, Any]], count: int, seed: int) -> list[Axis]:
     """The axes of a Latin hypercube sample: each of the `count` equal shares of a range is met once.
 
@@ -101,35 +154,14 @@ def sample_axes(ranges: list[tuple[Varied, Any]], count: int, seed: int) -> list
         return []
     from scipy.stats import qmc
 
-    ends = [_ends(varied, _as_range(varied, given), f"sample.{varied.key}") for varied, given in ranges]
+    found = [range_of(varied, given, "sample") for varied, given in ranges]
     points = qmc.LatinHypercube(len(ranges), rng=seed).random(count)
-    axes = []
-    for (varied, given), (low, high, logarithmic), shares in zip(ranges, ends, points.T, strict=True):
-        if varied.kind == "Integer":
-            values = np.minimum(np.floor(low + shares * (high - low + 1)), high).astype(np.int64)
-        elif logarithmic:
-            values = low * (high / low) ** shares
-        else:
-            values = low + shares * (high - low)
-        ends_given = _as_range(varied, given)
-        doubts = _doubts(varied, [ends_given["from"], ends_given["to"]])
-        axes.append(Axis(varied, values, sampled=True, logarithmic=logarithmic, doubts=doubts))
-    return axes
+    return [each.sampled(shares) for each, shares in zip(found, points.T, strict=True)]
 
 
-def _as_range(varied: Varied, given: Any) -> dict[str, Any]:
-    """A range as a table, from one or from `[low, high]`."""
-    where = f"sample.{varied.key}"
-    if isinstance(given, list) and len(given) == 2:
-        given = {"from": given[0], "to": given[1]}
-    if not isinstance(given, dict):
-        raise LoomfmuError(f"{where} = {given!r} is not a range [low, high]")
-    if "count" in given:
-        raise LoomfmuError(f"{where}.count: all samples share one count; set sample.count")
-    return given
-
-
-def _ends(varied: Varied, table: dict[str, Any], where: str) -> tuple[float, float, bool]:
+def _ends(
+    varied: Varied, table: dict[str, Any], where: str, lists: str = "grid"
+) -> tuple[float, float, bool]:
     """Both ends of a range, and whether it is logarithmic."""
     for key in table:
         if key not in RANGE:
@@ -138,7 +170,7 @@ def _ends(varied: Varied, table: dict[str, Any], where: str) -> tuple[float, flo
         if key not in table:
             raise LoomfmuError(f"{where} has no {key!r}")
     if varied.kind not in ("Real", "Integer"):
-        raise LoomfmuError(f"{where} is not a number: list its values in [grid]")
+        raise LoomfmuError(f"{where} is not a number: list its values in [{lists}]")
     ends: list[Value] = [varied.read(table[key]) for key in ("from", "to")]
     low, high = (float(end) for end in ends)
     if not low < high:

@@ -9,19 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosim.importing.fmus import FLAVOURS, Flavour, Port
-from ..cosim.planning.requested import checked_claims, output_port
-from ..cosim.scenes import scene as scenes
+from ..cosim.importing.fmus import Flavour, Port
+from ..cosim.planning.requested import output_port
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.tables import toml
-from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of
 from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
+from .header import HEAD, Header, check_by_scene, header, variables
 from .request import Map, requested
-from .varied import Varied, varied
 
-KEYS = ("title", "scene", "flavour", "values", "set", "grid", "sample", "traces", "map")
+KEYS = (*HEAD, "values", "grid", "sample", "traces", "map")
 
 
 @dataclass(frozen=True)
@@ -102,33 +100,17 @@ def load(path: str | Path) -> SweepPlan:
         raise LoomfmuError(f"{path}: {error}") from None
 
 
-def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
-    """A scene from its file or its system package."""
-    reader = ssp_read.load if path.suffix.lower() == ".ssp" else scenes.load
-    return reader(path, fixed)
-
-
 def _parse(text: str, path: Path) -> SweepPlan:
     tables = toml(text)
-    for key in tables:
-        if key not in KEYS:
-            raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
-    if not isinstance(tables.get("scene"), str):
-        raise LoomfmuError('a sweep must name its scene: scene = "loom.toml", relative to the sweep file')
-    flavour = tables.get("flavour", "native")
-    if flavour not in FLAVOURS:
-        raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(str(flavour), FLAVOURS)}")
-    scene_path = (path.parent / tables["scene"]).resolve()
-    fixed = flattened(tables.get("set", {}), "set")
-    scene = checked_claims(read_scene(scene_path, fixed))
-    grid, sample = _axes(scene, fixed, tables)
-    _check_by_scene(scene_path, fixed, [*grid, *sample])
-    values = _values(scene, tables.get("values", []), [*grid, *sample])
-    columns = [*values, *(f"claim_{number + 1}.worst" for number in range(len(scene.claims)))]
+    head = header(tables, path, KEYS, "sweep")
+    grid, sample = _axes(head, tables)
+    check_by_scene(head, [*grid, *sample])
+    values = _values(head.scene, tables.get("values", []), [*grid, *sample])
+    columns = [*values, *(f"claim_{number + 1}.worst" for number in range(len(head.scene.claims)))]
     request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
     plan = SweepPlan(
-        title=str(tables.get("title", path.stem)), name=path.stem, text=text, path=scene_path, scene=scene,
-        flavour=flavour, fixed=fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
+        title=head.title, name=path.stem, text=text, path=head.path, scene=head.scene,
+        flavour=head.flavour, fixed=head.fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
         traces=_traces(tables.get("traces", {})), map=request,
     )  # fmt: skip
     if plan.rows > MOST:
@@ -136,23 +118,12 @@ def _parse(text: str, path: Path) -> SweepPlan:
     return plan
 
 
-def _axes(scene: Scene, fixed: dict[str, Any], tables: dict[str, Any]) -> tuple[list[Axis], list[Axis]]:
-    """The axes of the grid and those of the sample. No two set the same, nor what is fixed."""
+def _axes(head: Header, tables: dict[str, Any]) -> tuple[list[Axis], list[Axis]]:
+    """The axes of the grid and those of the sample."""
     gridded = flattened(tables.get("grid", {}), "grid")
     ranges = flattened(tables.get("sample", {}), "sample")
     count, seed = ranges.pop("count", None), ranges.pop("seed", None)
-    taken = {target: "set" for key in fixed for target in varied(scene, key).targets}
-    found: dict[str, Varied] = {}
-    for where, keys in (("grid", gridded), ("sample", ranges)):
-        for key in keys:
-            try:
-                found[f"{where}.{key}"] = varied(scene, key)
-            except LoomfmuError as error:
-                raise LoomfmuError(f"{where}: {error}") from None
-            for target in found[f"{where}.{key}"].targets:
-                if target in taken:
-                    raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} already sets")
-                taken[target] = f"{where}.{key}"
+    found = variables(head, {"grid": gridded, "sample": ranges})
     if not found:
         raise LoomfmuError('nothing varies: list values in [grid], such as "shaft.speed" = ["500 rpm"]')
     if ranges:
@@ -163,15 +134,6 @@ def _axes(scene: Scene, fixed: dict[str, Any], tables: dict[str, Any]) -> tuple[
         [grid_axis(found[f"grid.{key}"], given) for key, given in gridded.items()],
         sample_axes([(found[f"sample.{key}"], given) for key, given in ranges.items()], count, seed),
     )
-
-
-def _check_by_scene(path: Path, fixed: dict[str, Any], axes: list[Axis]) -> None:
-    """Let the scene judge, one by one, the values that nothing else can."""
-    for axis in axes:
-        if axis.varied.needs_scene:
-            values = [axis.values.min(), axis.values.max()] if axis.sampled else axis.values
-            for value in np.asarray(values).tolist():
-                read_scene(path, fixed | dict.fromkeys(axis.varied.targets, axis.varied.setting(value)))
 
 
 def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:

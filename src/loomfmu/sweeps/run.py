@@ -1,29 +1,25 @@
 """Running a sweep: batches until all rows are there, then the table, the picture and the traces."""
 
 import hashlib
-import os
 from contextlib import ExitStack
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..cosim.scenes.scene_files import files_of
-from ..errors import LoomfmuError, described, path_of, shown
+from ..errors import LoomfmuError, described, path_of
 from ..progress import Advance
 from ..progress import progress as progress_bar
 from ..traces import TRACE
 from . import plan as plans
+from .place import check_packages, check_place, cluster, local
 from .plan import SweepPlan
-from .pools import Died, Here, Pool, Processes, Task
+from .pools import Died, Pool, Task
 from .schedule import run_batches
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:
     from .store import Store
-
-# package -> extra
-NEEDED = {"pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "sweep"}
 
 
 @dataclass(frozen=True)
@@ -103,15 +99,10 @@ def sweep(
         LoomfmuError: bad input, or a directory that holds another sweep; one line that names what and where
         KeyboardInterrupt: Ctrl-C; the batches that are finished stay, and the same call goes on from there
     """
-    if processes is not None and (
-        isinstance(processes, bool) or not isinstance(processes, int) or processes < 1
-    ):
-        raise LoomfmuError(f"processes = {shown(processes)} must be 1 or more")
-    if scheduler is not None and not isinstance(scheduler, str):
-        raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
+    check_place(processes, scheduler)
     path = path_of(path, "sweep")
     plan = plans.load(path)
-    _check_packages(
+    check_packages(
         path, {"pyarrow": True, "matplotlib": plan.map is not None, "distributed": bool(scheduler)}
     )
     from .store import opened
@@ -121,9 +112,8 @@ def sweep(
     try:
         fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
-            here = _local(plan, processes)
-            pools.callback(here.close)
-            rows_pool = _cluster(scheduler, pools) if scheduler else here
+            here = pools.enter_context(local(plan, processes, plan.rows))
+            rows_pool = pools.enter_context(cluster(scheduler)) if scheduler else here
             ran = _run_rows(store, job, rows_pool, progress)
             table = store.finish()
             picture = _draw(store, table)
@@ -136,39 +126,12 @@ def sweep(
     return Sweep(plan, table, store.table_path, ran, picture, traces, untraced)
 
 
-def _check_packages(path: Path, used: dict[str, bool]) -> None:
-    """Refuse a sweep that uses packages which are not installed, and name all of them."""
-    missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
-    if missing:
-        extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
-        raise LoomfmuError(f'{path}: this needs {" and ".join(missing)}: pip install "loomfmu[{extras}]"')
-
-
 def _fingerprint(plan: SweepPlan, job: Job) -> str:
     """What tells a sweep from others: its text, its points, and all that its results depend on."""
     digest = hashlib.sha256(f"{plan.text}\0{job.identity}".encode())
     for axis in plan.axes:  # a sample may be another with another scipy
         digest.update(repr(axis.values.tolist()).encode())
     return digest.hexdigest()
-
-
-def _local(plan: SweepPlan, processes: int | None) -> Pool:
-    """This process where one is enough, unless an FMU may end it."""
-    workers = min(processes or _cores(), plan.rows)
-    return Processes(workers) if workers > 1 or plan.scene.unprotected else Here()
-
-
-def _cluster(address: str, pools: ExitStack) -> Pool:
-    from .cluster import Cluster
-
-    cluster = Cluster(address)
-    pools.callback(cluster.close)
-    return cluster
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
@@ -182,7 +145,7 @@ def _run_rows(store: "Store", job: Job, pool: Pool, progress: bool) -> int:
             store.write(rows, batch)
             advance(len(rows))
 
-        run_batches(store.plan, job, left, pool, keep)
+        run_batches(store.plan.scene, store.plan.settings, job, left, pool, keep)
     return count
 
 

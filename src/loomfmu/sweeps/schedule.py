@@ -2,8 +2,9 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable
+from typing import Any
 
-from .plan import SweepPlan
+from ..cosim.scenes.scene import Scene
 from .pools import Died, Pool, Task
 from .worker import Batch, Job, failed, run_rows
 
@@ -80,9 +81,10 @@ class Schedule:
 
 
 def run_batches(
-    plan: SweepPlan, job: Job, left: Iterable[range], pool: Pool, store: Callable[[range, Batch], None]
-) -> None:
-    """Run all rows that are left and store each batch as it is done.
+    scene: Scene, settings: Callable[[range], list[dict[str, Any]]], job: Job, left: Iterable[range],
+    pool: Pool, store: Callable[[range, Batch], None],
+) -> None:  # fmt: skip
+    """Run all rows that are left, each with its settings, and store each batch as it is done.
 
     Raises what a worker raised unless a row caused it.
     """
@@ -90,7 +92,7 @@ def run_batches(
     done: list[tuple[range, Batch]] = []
     while True:
         while pool.room() > 0 and (rows := schedule.next()) is not None:
-            pool.submit(Task(rows, run_rows, (job, plan.settings(rows))))
+            pool.submit(Task(rows, run_rows, (job, settings(rows))))
         for rows, batch in done:  # while the workers are busy again
             store(rows, batch)
         if not schedule.running:
@@ -103,11 +105,11 @@ def run_batches(
             elif not isinstance(outcome, Died):
                 raise outcome
             elif schedule.died(rows):
-                done.append((rows, Batch([failed(job, plan.scene, _reason(plan, outcome))], (), 0.0)))
+                done.append((rows, Batch([failed(job, scene, _reason(scene, outcome))], (), 0.0)))
 
 
-def _reason(plan: SweepPlan, died: Died) -> str:
+def _reason(scene: Scene, died: Died) -> str:
     """Why a row could not be run whose process has ended."""
-    inside = plan.scene.unprotected
+    inside = scene.unprotected
     who = f", with {', '.join(inside)} in it; isolated = true says which call of which FMU" if inside else ""
     return f"{died}{who}"

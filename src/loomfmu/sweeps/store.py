@@ -9,8 +9,6 @@ lock              there while a sweep writes; a process that ends, however, lets
 """
 
 import contextlib
-import json
-import os
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,17 +16,16 @@ from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-from filelock import FileLock, Timeout
 
 from ..errors import LoomfmuError
-from ..files import ANY, cannot_write, check_target, replace_file
+from ..files import replace_file
+from .directory import files, owned
 from .plan import SweepPlan
 from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
 PARTIAL, TRACE_PARTIAL = ".*.partial", "row_*.h5*.partial"
-LOCK, IDENTITY = "lock", "sweep.json"
 
 
 class Store:
@@ -100,7 +97,7 @@ class Store:
 
     def tidy(self) -> None:
         """Delete the batches of a sweep that is done: the table has their rows."""
-        for path in _files(self.batches, "rows_*.parquet"):
+        for path in files(self.batches, "rows_*.parquet"):
             path.unlink()
         with contextlib.suppress(OSError):  # it holds something that is not ours, or is gone
             self.batches.rmdir()
@@ -114,22 +111,26 @@ class Store:
                 f"{path}: cannot be read ({reason}); delete it to run its rows again"
             ) from None
 
-    def clear(self) -> None:
-        """Delete what a sweep wrote here, and nothing else."""
-        # its identity last: what a kill leaves over is still known
-        for path in [*self.results(), *self.partial(), self.directory / IDENTITY]:
-            path.unlink(missing_ok=True)
+    @property
+    def targets(self) -> list[Path]:
+        """The files that are written under names of their own."""
+        return [self.table_path, self.map_path]
+
+    @property
+    def folders(self) -> list[Path]:
+        """The folders of all others."""
+        return [self.batches, self.traces]
 
     def results(self) -> list[Path]:
         """What is there under the names of a sweep's results."""
         patterns = ((self.batches, "rows_*.parquet"), (self.traces, "row_*.h5"), (self.traces, TRACE_PARTIAL))
-        found = [path for folder, pattern in patterns for path in _files(folder, pattern)]
+        found = [path for folder, pattern in patterns for path in files(folder, pattern)]
         return [path for path in (self.table_path, self.map_path) if path.exists()] + found
 
     def partial(self) -> list[Path]:
         """What a sweep that was killed was about to write."""
         patterns = ((self.directory, PARTIAL), (self.batches, PARTIAL), (self.traces, TRACE_PARTIAL))
-        return [path for folder, pattern in patterns for path in _files(folder, pattern)]
+        return [path for folder, pattern in patterns for path in files(folder, pattern)]
 
 
 @contextlib.contextmanager
@@ -142,52 +143,8 @@ def opened(
         LoomfmuError: another sweep is there, finished or not, or is running there now
     """
     store = Store(directory, plan)
-    for target in (store.table_path, store.map_path, directory / LOCK, directory / IDENTITY):
-        check_target(target, ANY, inputs)
-    for folder in (store.batches, store.traces):
-        if folder.is_symlink():  # what lies behind it is not ours to write and to delete
-            raise LoomfmuError(f"{folder}: cannot be written (it is a symbolic link)")
-    directory.mkdir(parents=True, exist_ok=True)
-    with _locked(directory):
-        _check_identity(store, fingerprint, restart)
-        for path in store.partial():
-            path.unlink(missing_ok=True)
+    with owned(store, "sweep", plan.title, fingerprint, restart, inputs):
         yield store
-
-
-def _check_identity(store: Store, fingerprint: str, restart: bool) -> None:
-    """Refuse to mix two sweeps, and to touch what no sweep wrote; only a sweep's own files are deleted."""
-    path = store.directory / IDENTITY
-    known = _known(path)
-    if known is None and (path.exists() or store.results()):
-        foreign = path if path.exists() else store.results()[0]
-        raise LoomfmuError(
-            f"{store.directory}: contains files that no loomfmu sweep wrote ({foreign.name});"
-            " choose another directory with --output"
-        )
-    if restart:
-        store.clear()
-    elif known not in (None, fingerprint):
-        raise LoomfmuError(
-            f"{store.directory}: contains another sweep, or the sweep, its scene, an FMU or loomfmu has"
-            " changed since; --restart deletes the old results, --output chooses another directory"
-        )
-    if restart or known is None:
-        content = {"title": store.plan.title, "rows": store.plan.rows, "fingerprint": fingerprint}
-        replace_file(path, (json.dumps(content, indent=1) + "\n").encode())
-
-
-def _known(path: Path) -> str | None:
-    """The fingerprint of the sweep that a directory holds; none without one."""
-    try:
-        return str(json.loads(path.read_text(encoding="utf-8"))["fingerprint"])
-    except (FileNotFoundError, ValueError, KeyError, TypeError):
-        return None
-
-
-def _files(folder: Path, pattern: str) -> list[Path]:
-    """The files of a folder with such names, and links to files: a folder may be called like a file."""
-    return [path for path in folder.glob(pattern) if path.is_file() or path.is_symlink()]
 
 
 def _write(table: Any, path: Path) -> None:
@@ -195,50 +152,3 @@ def _write(table: Any, path: Path) -> None:
     sink = pa.BufferOutputStream()
     pq.write_table(table, sink, row_group_size=max(1, table.num_rows))
     replace_file(path, sink.getvalue())
-
-
-@contextlib.contextmanager
-def _locked(directory: Path) -> Iterator[None]:
-    """Keep other sweeps out of a directory. The system frees the lock with the process that has it."""
-    path = directory / LOCK
-    descriptors: list[int] = []
-    lock = FileLock(path, blocking=False, on_acquired=descriptors.append)
-    try:
-        lock.acquire()
-    except Timeout:
-        raise LoomfmuError(f"{directory}: another sweep is running there{_holder(path)}") from None
-    try:
-        _sign(path, descriptors[0])
-        try:
-            yield
-        finally:
-            with contextlib.suppress(PermissionError):  # Windows deletes it when it is let go
-                path.unlink(missing_ok=True)
-    finally:
-        lock.release()
-
-
-def _sign(path: Path, descriptor: int) -> None:
-    """Write into a lock that is ours which process we are."""
-    if os.fstat(descriptor).st_nlink > 1:
-        raise LoomfmuError(f"{path}: cannot be written (it is a hard link to another file; delete it)")
-    written = os.read(descriptor, 20).strip()
-    if written and not written.isdigit():
-        raise LoomfmuError(f"{path}: not the lock of a sweep; choose another directory with --output")
-    try:
-        os.ftruncate(descriptor, 0)
-        os.lseek(descriptor, 0, os.SEEK_SET)
-        # a blank first: other processes cannot read the byte that Windows locks
-        os.write(descriptor, f" {os.getpid()}".encode())
-    except OSError as error:
-        path.unlink(missing_ok=True)
-        raise cannot_write(path, error) from None
-
-
-def _holder(path: Path) -> str:
-    """The process that has a lock, as the end of a message; empty if that is unknown."""
-    with contextlib.suppress(OSError), path.open("rb", buffering=0) as file:
-        file.seek(1)
-        if (process := file.read(20)).isdigit():
-            return f" (process {process.decode()})"
-    return ""

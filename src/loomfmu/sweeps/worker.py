@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from .. import machines
 from ..cosim.claims.claims import called
@@ -22,7 +22,7 @@ from ..cosim.run import prepare
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
 from ..traces import Verdict
-from .plan import SweepPlan, read_scene
+from .header import read_scene
 
 # the threads of one process share the instances that rest between runs: they take turns
 _turn = threading.Lock()
@@ -64,7 +64,31 @@ class Batch:
     seconds: float
 
 
-def job_of(plan: SweepPlan) -> Job:
+class Planned(Protocol):
+    """What a sweep and a search have in common: a scene, and how it is run."""
+
+    @property
+    def path(self) -> Path:
+        """Of the scene."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene with what is fixed."""
+
+    @property
+    def flavour(self) -> Flavour:
+        """Of its FMUs."""
+
+    @property
+    def fixed(self) -> dict[str, Any]:
+        """Values that stay."""
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """Signals whose final values are wanted."""
+
+
+def job_of(plan: Planned) -> Job:
     """What workers need of a plan."""
     return Job(
         plan.path, tuple(plan.fixed.items()), plan.flavour, plan.values, identity(plan.scene, plan.flavour)

@@ -1,0 +1,19 @@
+"""The command `loomfmu optimize`."""
+
+from typing import Any
+
+from ...printed import complain
+from .optimize import optimize
+from .report import show
+
+
+def run(options: Any) -> int:
+    """Search, print what was found, and return the exit status."""
+    found = optimize(
+        options.study, processes=options.processes, output=options.output, scheduler=options.scheduler,
+        restart=options.restart, progress=True,
+    )  # fmt: skip
+    for warning in found.warnings:
+        complain(f"warning: {warning}")
+    show(found)
+    return 0 if found else 1

@@ -1,0 +1,156 @@
+"""The directory of a search, and what is written there of its end: scenes, tables, a picture.
+
+study.json        which study it is
+runs.jsonl        every design that was run: its values and its result, as it comes
+designs.csv       the same as a table with units, at the end
+best.toml         the best scene; best_01.toml ... for a front, whose goals are in front.csv
+best.png          the picture
+"""
+
+import csv
+import io
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from ... import units
+from ...cosim.claims.claims import called
+from ...cosim.run import evaluate
+from ...files import ANY, write_file
+from ...sweeps.directory import files
+from ...traces import Verdict
+from .. import rewritten
+from .binding import binding
+from .optimum import Best, Optimum, front_table
+from .runs import Design, Point, Runs
+from .study import Study
+
+
+class Files:
+    """What a search writes into its directory."""
+
+    def __init__(self, directory: Path):
+        self.directory = directory
+        self.runs, self.designs = directory / "runs.jsonl", directory / "designs.csv"
+        self.front, self.picture = directory / "front.csv", directory / "best.png"
+
+    def scene(self, number: int = 0) -> Path:
+        """The scene of a best design, counted from 1 in a front."""
+        return self.directory / (f"best_{number:02d}.toml" if number else "best.toml")
+
+    @property
+    def targets(self) -> list[Path]:
+        """The files that are written under names of their own."""
+        return [self.runs, self.designs, self.front, self.picture, self.scene()]
+
+    @property
+    def folders(self) -> list[Path]:
+        """There are none."""
+        return []
+
+    def results(self) -> list[Path]:
+        """What is there under these names."""
+        fronts = [path for path in files(self.directory, "best_*.toml") if path.stem[5:].isdigit()]
+        return [path for path in self.targets if path.exists()] + fronts
+
+    def partial(self) -> list[Path]:
+        """What a search that was killed was about to write."""
+        return files(self.directory, ".*.partial")
+
+    def check(self, study: Study, own: Point) -> None:
+        """Refuse a scene that cannot be written here with other values. Raises LoomfmuError."""
+        values = [each.value(number) for each, number in zip(study.variables, own, strict=True)]
+        rewritten.text_for(study.scene, study.written(values), self.scene())
+
+
+def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: Files) -> Optimum:
+    """Write what was found and say it; `own` are the verdicts on the scene's own design."""
+    study = runs.study
+    names = [called(claim, verdict) for claim, verdict in zip(study.scene.claims, own, strict=True)]
+    numbers = [0] if len(best) == 1 else range(1, len(best) + 1)
+    front = [
+        _written(runs, each, names, files.scene(number)) for number, each in zip(numbers, best, strict=True)
+    ]
+    designs = list(runs.designs.values())
+    _write(files.designs, _table(study, designs, names, own))
+    picture = find_spec("matplotlib") is not None
+    warnings = study.notes if picture else (*study.notes, 'no picture: pip install "loomfmu[plot]"')
+    found = Optimum(
+        study, tuple(front), len(designs), sum(each.allowed for each in designs),
+        sum(bool(each.error) for each in designs), _nowhere(designs, names, own), files.directory,
+        files.picture if picture else None, warnings,
+    )  # fmt: skip
+    if len(study.goals) > 1:
+        headings, rows = front_table(found)
+        _write(files.front, [headings, *rows])
+    if picture:
+        from ...report import pictures
+        from .picture import draw
+
+        pictures.save(draw(found, designs), files.picture, study.title, overwrite=True)
+    return found
+
+
+def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Best:
+    """A best design, written as a scene and judged as that scene runs."""
+    study = runs.study
+    rewritten.write(study.scene, study.written(design.values), path, overwrite=True)
+    verdicts = evaluate(path, flavour=study.flavour).claims
+    values = dict(zip((each.key for each in study.variables), design.values, strict=True))
+    goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
+    return Best(values, tuple(goals), verdicts, tuple(binding(runs, design, names)), path)
+
+
+def _nowhere(designs: Sequence[Design], names: Sequence[str], own: Sequence[Verdict]) -> tuple[str, ...]:
+    """The claims that no design meets, with the nearest that any came."""
+    found = []
+    for number, (name, verdict) in enumerate(zip(names, own, strict=True)):
+        if any(each.room[number] >= 0.0 for each in designs):
+            continue
+        distances = [each.distances[number] for each in designs if np.isfinite(each.distances[number])]
+        near = (
+            f"; the nearest distance from its bound is {verdict.shown(max(distances))}" if distances else ""
+        )
+        found.append(f"'{name}'{near}")
+    return tuple(found)
+
+
+def _table(
+    study: Study, designs: Sequence[Design], names: Sequence[str], own: Sequence[Verdict]
+) -> list[list[str]]:
+    """All designs, in the units that people read."""
+    columns = [_labelled(each.key, each.varied.unit, each.varied.display) for each in study.variables]
+    goals = [(goal.display, goal.unit) for goal in study.goals]
+    columns += [_labelled(goal.words, goal.unit, goal.display) for goal in study.goals]
+    columns += [f"distance of {name} [{verdict.label}]" for name, verdict in zip(names, own, strict=True)]
+    rows = [[*columns, "holds", "error"]]
+    for each in designs:
+        values = [
+            f"{value / units.unit(variable.varied.display).factor:.13g}"
+            if isinstance(value, float)
+            else str(value)
+            for variable, value in zip(study.variables, each.values, strict=True)
+        ]
+        values += [
+            f"{goal.sign * height / units.unit(display).factor:.13g}"
+            for goal, height, (display, _unit) in zip(study.goals, each.heights, goals, strict=True)
+        ]
+        values += [
+            f"{verdict.displayed(distance):.13g}"
+            for verdict, distance in zip(own, each.distances, strict=True)
+        ]
+        rows.append([*values, str(each.allowed).lower(), each.error])
+    return rows
+
+
+def _labelled(name: str, unit: str, display: str) -> str:
+    shown = unit if display == "1" else display
+    return name if shown == "1" else f"{name} [{shown}]"
+
+
+def _write(path: Path, rows: Sequence[Sequence[str]]) -> None:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    write_file(path, text.getvalue().encode(), ANY)

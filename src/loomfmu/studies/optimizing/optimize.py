@@ -1,0 +1,75 @@
+"""`optimize`: the best designs of a scene within ranges and choices, all claims met."""
+
+from __future__ import annotations
+
+import hashlib
+from contextlib import ExitStack, closing
+from pathlib import Path
+
+from ...cosim.run import evaluate
+from ...cosim.scenes.scene_files import files_of
+from ...errors import path_of
+from ...progress import progress as progress_bar
+from ...sweeps.place import check_packages, check_place, cluster, local
+from ...sweeps.worker import job_of
+from . import study as studies
+from .found import Files, found_of
+from .optimum import Optimum
+from .runs import Runs
+from .scattered import generation
+from .search import expected, searched
+from .start import limits_of, own_point
+
+
+def optimize(
+    path: str | Path,
+    *,
+    processes: int | None = None,
+    output: str | Path | None = None,
+    scheduler: str | None = None,
+    restart: bool = False,
+    progress: bool = False,
+) -> Optimum:
+    """Search the best design of a study, or go on with a search, and write it as a scene that runs.
+
+    Differential evolution searches everywhere; from the best design of each combination of options, linear
+    programs go on to where claims bind. The result is the same on any number of processes.
+
+    Args:
+        path: the study file
+        processes: worker processes on this machine, all cores by default; 1 runs in this process
+        output: directory of the results; `results/<study>` below the current directory by default
+        scheduler: address of a dask scheduler, such as "tcp://host:8786", whose workers run the designs
+        restart: discard earlier results in the directory, of this or another study
+        progress: show a progress bar, if standard error is a terminal
+
+    Raises:
+        LoomfmuError: bad input, or a directory that holds another study; one line that names what and where
+        KeyboardInterrupt: Ctrl-C; the designs that were run stay, and the same call goes on from there
+    """
+    check_place(processes, scheduler)
+    path = path_of(path, "study")
+    study = studies.load(path)
+    check_packages(path, {"filelock": True, "tomlkit": True, "distributed": bool(scheduler)})
+    from ...sweeps.directory import owned
+
+    job = job_of(study)
+    files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
+    fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
+    try:
+        with ExitStack() as stack:
+            own = own_point(study)
+            files.check(study, own)  # what could not be written is refused now, not after the search
+            verdicts = evaluate(study.scene, flavour=study.flavour).claims
+            limits = limits_of(study, verdicts, path)
+            inputs = [path, *files_of(study.scene)]
+            stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
+            place = cluster(scheduler) if scheduler else local(study, processes, generation(study))
+            pool = stack.enter_context(place)
+            advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
+            runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance)))
+            return found_of(runs, searched(runs, own, path), verdicts, files)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; finished runs are kept in {files.directory}; run the same command to continue"
+        ) from None

@@ -1,0 +1,170 @@
+"""What a search for the best design found: as data, and as the words in which people read it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ... import notebook, units
+from ...cosim.claims.claims import called
+from ...sweeps.varied import Value
+from ...traces import Verdict
+from .study import Goal, Study
+
+HEADINGS = ("", "best", "may be", "")
+CLAIMS = ("verdict", "claim", "worst", "bound", "distance", "")
+
+
+@dataclass(frozen=True)
+class Best:
+    """A best design: the values (SI) of what varies by their keys, its goals, and the verdicts on its claims.
+
+    `binding` names what keeps it from being better: claims that are as near to their bounds as they may be,
+    and values that are at an end of their range. `scene` is the file that has it.
+    """
+
+    values: dict[str, Value]
+    goals: tuple[float, ...]
+    verdicts: tuple[Verdict, ...]
+    binding: tuple[str, ...]
+    scene: Path
+
+
+@dataclass(frozen=True, repr=False)
+class Optimum:
+    """The best designs of a study: one, or several goals' front; true if there is one. A search, not a proof.
+
+    `front` has them in the order of the first goal. `runs` counts the designs that were tried, `allowed`
+    those that meet all claims; `nowhere` are the claims that no design meets. Values are in SI.
+    """
+
+    study: Study = field(repr=False)
+    front: tuple[Best, ...]
+    runs: int
+    allowed: int
+    failed: int
+    nowhere: tuple[str, ...]
+    path: Path
+    picture: Path | None
+    warnings: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.front)
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """Those of the first design, by their keys; empty without one."""
+        return self.front[0].values if self.front else {}
+
+    @property
+    def goal(self) -> float:
+        """The first goal of the first design; NaN without one."""
+        return self.front[0].goals[0] if self.front else math.nan
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Those on the first design."""
+        return self.front[0].verdicts if self.front else ()
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """What keeps the first design from being better."""
+        return self.front[0].binding if self.front else ()
+
+    @property
+    def scene(self) -> Path | None:
+        """The file of the first design."""
+        return self.front[0].scene if self.front else None
+
+    def __str__(self) -> str:
+        return " ".join(conclusion(self))
+
+    def __repr__(self) -> str:
+        return f"<Optimum of {self.study.title}: {self}>"
+
+    def _repr_html_(self) -> str:
+        tables = [notebook.table(*front_table(self))] if len(self.study.goals) > 1 else []
+        if len(self.study.goals) == 1 and self.front:
+            (best,) = self.front
+            tables = [
+                notebook.table(HEADINGS, value_rows(self, best)),
+                notebook.table(CLAIMS, claim_rows(self, best)),
+            ]
+        return notebook.block(self.study.title, *tables, *map(notebook.line, conclusion(self)))
+
+
+# ---- in words
+
+
+def shown_goal(goal: Goal, best: Best, place: int) -> str:
+    """A goal of a design with its unit."""
+    value = best.goals[place]
+    if goal.kind == "claim":
+        return best.verdicts[goal.place].shown_distance
+    if goal.display != "1":
+        return units.show(value, goal.display)
+    return f"{value:.7g}" + ("" if goal.unit == "1" else f" {goal.unit}")
+
+
+def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
+    """A row for each goal and each variable, below `HEADINGS`."""
+    goals: list[tuple[str, ...]] = [
+        (goal.words, shown_goal(goal, best, place), "", "goal")
+        for place, goal in enumerate(found.study.goals)
+    ]
+    return goals + [
+        (
+            each.key, each.varied.show(best.values[each.key]), each.text,
+            "binds" if each.range and each.key in best.binding else "",
+        )
+        for each in found.study.variables
+    ]  # fmt: skip
+
+
+def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
+    """A row for each claim, below `CLAIMS`."""
+    return [
+        (
+            each.word, each.claim, each.shown(each.worst), each.shown(each.bound), each.shown_distance,
+            "binds" if called(claim, each) in best.binding else "",
+        )
+        for claim, each in zip(found.study.scene.claims, best.verdicts, strict=True)
+    ]  # fmt: skip
+
+
+def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Headings and a row for each design of a front."""
+    study = found.study
+    headings = (*(goal.words for goal in study.goals), *(each.key for each in study.variables), "binding")
+    rows = [
+        (
+            *(shown_goal(goal, best, place) for place, goal in enumerate(study.goals)),
+            *(each.varied.show(best.values[each.key]) for each in study.variables),
+            ", ".join(best.binding) or "-",
+        )
+        for best in found.front
+    ]  # fmt: skip
+    return headings, rows
+
+
+def conclusion(found: Optimum) -> Iterator[str]:
+    """What was found, in sentences."""
+    if not found.front:
+        yield f"None of the {found.runs} designs that were tried meets all claims."
+        for claim in found.nowhere:
+            yield f"No design meets {claim}."
+    elif len(found.study.goals) == 1:
+        (best,) = found.front
+        goal = found.study.goals[0]
+        yield f"{goal.words}: {shown_goal(goal, best, 0)}."
+        keys = [each.key for each in found.study.variables]
+        names = " and ".join(
+            f"the end of the range of {each}" if each in keys else f"'{each}'" for each in best.binding
+        )
+        yield f"It is limited by {names}." if names else "No claim and no end of a range limits it."
+    else:
+        yield f"{len(found.front)} designs of which none is better than another in all goals."
+    if found.failed:
+        yield f"{found.failed} of {found.runs} designs could not be run."

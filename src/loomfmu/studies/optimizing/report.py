@@ -1,0 +1,41 @@
+"""The best design as people read it in a terminal."""
+
+from ... import printed
+from ...printed import say
+from .optimum import CLAIMS, HEADINGS, Optimum, claim_rows, conclusion, front_table, value_rows
+
+
+def show(found: Optimum) -> None:
+    """Print the best design, or the front, and where it is."""
+    study = found.study
+    say(f"{study.title}: {found.runs} designs, {found.allowed} of which meet all claims")
+    if found.front and len(study.goals) == 1:
+        (best,) = found.front
+        rows = value_rows(found, best)
+        printed.show(
+            HEADINGS, rows, [(f"{name}: {value}", _bracketed(text, note)) for name, value, text, note in rows]
+        )
+        rows = claim_rows(found, best)
+        printed.show(
+            CLAIMS, rows,
+            [(f"{word}  {claim}:", f"{worst}, bound {bound}", _bracketed(distance, note))
+             for word, claim, worst, bound, distance, note in rows],
+        )  # fmt: skip
+    elif found.front:
+        headings, rows = front_table(found)
+        entries = [
+            tuple(f"{head}: {cell};" for head, cell in zip(headings, row, strict=True)) for row in rows
+        ]
+        printed.show(headings, rows, entries)
+    say(*conclusion(found))
+    say("This is a search, not a proof that there is no better design.")
+    for best in found.front:
+        say(f"scene: {best.scene}")
+    say(f"table: {found.path / 'designs.csv'}")
+    if found.picture is not None:
+        say(f"picture: {found.picture}")
+
+
+def _bracketed(*parts: str) -> str:
+    found = "; ".join(filter(None, parts))
+    return f"({found})" if found else ""

@@ -1,0 +1,185 @@
+"""The designs of a search: each is run once, kept in a file as it comes, and known from there afterwards."""
+
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from io import BufferedRandom
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LoomfmuError
+from ...files import cannot_write
+from ...sweeps.pools import Pool
+from ...sweeps.schedule import run_batches
+from ...sweeps.varied import Value
+from ...sweeps.worker import Batch, Job
+from .study import Study
+
+Point = tuple[float, ...]  # a number for each variable, see `Variable.value`
+Floats = NDArray[np.float64]
+OF_CLAIM = 5  # columns of a claim in a result: holds, worst, bound, distance, note
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design that was run. `heights` are its goals, each the better the smaller; `room` is how much farther
+    each claim is from its bound than it must be, negative if it is nearer or fails, as a share of its scale.
+
+    NaN stands for what there is not; `error` says why there is nothing at all.
+    """
+
+    point: Point
+    values: tuple[Value, ...]
+    heights: Floats
+    room: Floats
+    distances: Floats
+    holds: bool
+    error: str
+
+    @property
+    def allowed(self) -> bool:
+        """Whether all claims hold, as far from their bounds as wanted, and all goals have values."""
+        return self.holds and bool(np.all(self.room >= 0.0)) and bool(np.all(np.isfinite(self.heights)))
+
+    @property
+    def shortfall(self) -> float:
+        """How far it is from being allowed, 0 if it is: the sum of what its claims lack."""
+        if self.error or not np.all(np.isfinite(self.heights)):
+            return 10.0 + len(self.room)
+        short = float(np.sum(np.where(np.isnan(self.room), 1.0, np.maximum(0.0, -self.room))))
+        return 0.0 if self.allowed else max(short, 1e-12)
+
+
+class Runs:
+    """Runs designs in a pool. What the file `path` has of an earlier search is not run again."""
+
+    def __init__(
+        self, study: Study, job: Job, pool: Pool, path: Path, limits: "Limits", advance: Callable[[int], None]
+    ):
+        self.study = study
+        self.designs: dict[tuple[Value, ...], Design] = {}  # in the order in which they were first wanted
+        self.ran = 0  # now, and not in an earlier search
+        self._job, self._pool, self._limits, self._advance = job, pool, limits, advance
+        self._results = _read(path)
+        try:
+            self._file: BufferedRandom = path.open("r+b" if path.exists() else "w+b")
+        except OSError as error:
+            raise cannot_write(path, error) from None
+        self._file.truncate(sum(map(len, _whole_lines(path))))  # a kill may have left half a line
+        self._file.seek(0, 2)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def at(self, points: Sequence[Point]) -> list[Design]:
+        """The designs at points, run unless they were."""
+        variables = self.study.variables
+        wanted = [
+            tuple(each.value(number) for each, number in zip(variables, point, strict=True))
+            for point in points
+        ]
+        if left := [values for values in dict.fromkeys(wanted) if values not in self._results]:
+            self._run(left)
+        for point, values in zip(points, wanted, strict=True):
+            if values not in self.designs:
+                self.designs[values] = self._design(point, values, self._results[values])
+                self._advance(1)
+        return [self.designs[values] for values in wanted]
+
+    def _run(self, left: list[tuple[Value, ...]]) -> None:
+        def settings(rows: range) -> list[dict[str, Any]]:
+            return [self.study.fixed | self.study.setting(left[row]) for row in rows]
+
+        def keep(rows: range, batch: Batch) -> None:
+            for row, result in zip(rows, batch.results, strict=True):
+                self._results[left[row]] = result
+                self._file.write(json.dumps([left[row], result]).encode() + b"\n")
+            self._file.flush()
+            self.ran += len(rows)
+
+        run_batches(self.study.scene, settings, self._job, [range(len(left))], self._pool, keep)
+
+    def _design(self, point: Point, values: tuple[Value, ...], result: list[Any]) -> Design:
+        study = self.study
+        signals, claims = result[: len(study.values)], result[len(study.values) :]
+        columns = range(0, OF_CLAIM * len(study.scene.claims), OF_CLAIM)
+        holds = [bool(claims[column]) for column in columns]
+        bounds, distances = (_numbers(claims[column + 2 + each] for column in columns) for each in (0, 1))
+        of_kind: dict[str, Any] = {"signal": _numbers(signals), "claim": distances, "variable": values}
+        heights = np.array([goal.sign * float(of_kind[goal.kind][goal.place]) for goal in study.goals])
+        room = self._limits.room(holds, bounds, distances)
+        error = result[-1] or ""
+        return Design(point, values, heights, room, distances, bool(all(holds) and not error), error)
+
+
+class Measured(NamedTuple):
+    """What a design is worth: the largest of `heights` is to be small, each of `room` not negative."""
+
+    heights: Floats
+    room: Floats
+
+
+Pieces = Callable[[Floats], Floats]  # of the goals of a design
+Function = Callable[[Sequence[Floats]], list[Measured | None]]  # at several points at once
+
+
+def about(runs: Runs, design: Design, pieces: Pieces) -> Function:
+    """What designs are worth that differ from one in its values within ranges, given as shares of these."""
+    places = runs.study.continuous
+
+    def measured(shares: Sequence[Floats]) -> list[Measured | None]:
+        points = []
+        for each in shares:
+            point = list(design.point)
+            for place, share in zip(places, each.tolist(), strict=True):
+                point[place] = share
+            points.append(tuple(point))
+        return [
+            Measured(pieces(each.heights), np.where(np.isnan(each.room), -1.0, each.room))
+            if not each.error and np.all(np.isfinite(each.heights))
+            else None
+            for each in runs.at(points)
+        ]
+
+    return measured
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How far claims must stay from their bounds: shares of these, and amounts; `scales` make them alike."""
+
+    shares: Floats
+    amounts: Floats
+    scales: Floats
+
+    def room(self, holds: Sequence[bool], bounds: Floats, distances: Floats) -> Floats:
+        """How much farther each claim is from its bound than it must be, as a share of its scale."""
+        rest = (distances - self.shares * np.abs(bounds) - self.amounts) / self.scales
+        return np.where(np.isnan(distances), np.where(holds, 0.0, np.nan), rest)
+
+
+def _numbers(given: Any) -> Floats:
+    return np.array([math.nan if each is None else float(each) for each in given], dtype=np.float64)
+
+
+def _whole_lines(path: Path) -> list[bytes]:
+    """The lines of a file without one that a kill cut off."""
+    try:
+        return [line for line in path.read_bytes().splitlines(keepends=True) if line.endswith(b"\n")]
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+def _read(path: Path) -> dict[tuple[Value, ...], list[Any]]:
+    """The results of a file by the values of their designs. Raises LoomfmuError for one that is damaged."""
+    try:
+        return {tuple(values): result for values, result in map(json.loads, _whole_lines(path))}
+    except (ValueError, TypeError) as error:
+        raise LoomfmuError(f"{path}: is damaged ({error}); --restart runs all designs again") from None

@@ -1,0 +1,127 @@
+"""The search: everywhere, then near the best design of each combination of options, for each kind of best."""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from .polished import polished
+from .runs import Design, Floats, Pieces, Point, Runs, about
+from .scattered import first_points, generation, scattered
+from .start import check_effects
+from .study import Study
+
+POLISHED = 6  # combinations of options that are searched near their best design
+EXPECTED = 60  # runs of that for each variable, as a progress bar expects them
+BETWEEN = 4  # a design within a front has that part of the runs of one at its ends
+TIE = 1e-4  # weight of the sum of all goals beside the largest: none is worse than it must be
+
+
+def expected(study: Study) -> int:
+    """How many designs a search will run, roughly."""
+    near = EXPECTED * len(study.continuous) * min(study.combinations, POLISHED)
+    inside = len(_weights(study)) - len(study.goals) if len(study.goals) > 1 else 0
+    ends = (study.search["runs"] + near) * len(study.goals)
+    return ends + inside * (study.search["runs"] // BETWEEN + near)
+
+
+def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
+    """The best designs: one for a single goal, else a front in the order of the first goal; none if no design
+    meets all claims. Raises LoomfmuError for a variable that changes nothing."""
+    study, seed = runs.study, runs.study.search["seed"]
+    first = first_points(study, own, generation(study), seed)
+    check_effects(runs, first, path)
+    known = np.array([each.heights for each in runs.at(first)])
+    scales = _spread(known)
+    count = len(study.goals)
+    budget = study.search["runs"]
+    if count == 1:
+        return _best(runs, lambda heights: heights / scales, first, budget)
+    ends = [_best(runs, _end(place, scales), first, budget) for place in range(count)]
+    if not all(ends):
+        return []
+    corner = np.array([each.heights for (each,) in ends])
+    ideal, far = corner.min(axis=0), np.maximum(_spread(corner), 1e-9 * scales)
+    found = [each for (each,) in ends]
+    for weights in _weights(study):
+        if np.count_nonzero(weights) > 1:
+            found += _best(runs, _towards(weights, ideal, far), first, budget // BETWEEN)
+    return _front(found)
+
+
+def _spread(heights: Floats) -> Floats:
+    """How far each goal ranges, 1 where it does not."""
+    known = np.where(np.isfinite(heights), heights, np.nan)
+    with np.errstate(invalid="ignore"):
+        spread = np.nan_to_num(
+            np.nanmax(known, axis=0, initial=-np.inf) - np.nanmin(known, axis=0, initial=np.inf)
+        )
+    return np.where((spread > 0.0) & np.isfinite(spread), spread, 1.0)
+
+
+def _end(place: int, scales: Floats) -> Pieces:
+    """One goal alone; the others decide between designs that are alike in it."""
+    return lambda heights: np.array([heights[place] / scales[place] + TIE * float(np.sum(heights / scales))])
+
+
+def _towards(weights: Floats, ideal: Floats, far: Floats) -> Pieces:
+    """The weighted distance from the best of each goal, of the goal that is the farthest."""
+
+    def pieces(heights: Floats) -> Floats:
+        shares = (heights - ideal) / far
+        return np.asarray(weights * shares + TIE * float(np.sum(shares)))
+
+    return pieces
+
+
+def _weights(study: Study) -> list[Floats]:
+    """Weights of the goals, spread evenly."""
+    count, steps = len(study.goals), study.search["points"] - 1
+    return [np.array(each) / steps for each in product(range(steps + 1), repeat=count) if sum(each) == steps]
+
+
+def _best(runs: Runs, pieces: Pieces, first: Sequence[Point], budget: int) -> list[Design]:
+    """The best design by these pieces, if any meets all claims."""
+
+    def height(design: Design) -> float:
+        return float(np.max(pieces(design.heights)))
+
+    def rank(design: Design) -> tuple[float, float]:
+        return design.shortfall, height(design) if np.all(np.isfinite(design.heights)) else np.inf
+
+    known = sorted(runs.designs.values(), key=rank)[: len(first) // 2]
+    start = list(dict.fromkeys([*(each.point for each in known), *first]))[: len(first)]
+    scattered(runs, height, start, budget, runs.study.search["seed"])
+    if runs.study.continuous:
+        for design in list(_leaders(runs, rank)):
+            shares = np.array([design.point[place] for place in runs.study.continuous])
+            polished(about(runs, design, pieces), shares)
+    allowed = [each for each in runs.designs.values() if each.allowed]
+    return [min(allowed, key=height)] if allowed else []
+
+
+def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]]) -> Iterator[Design]:
+    """The best design of each of the best combinations of options."""
+    options = [place for place, each in enumerate(runs.study.variables) if not each.range]
+    seen: set[tuple[float, ...]] = set()
+    for design in sorted(runs.designs.values(), key=rank):
+        combination = tuple(float(round(design.point[place])) for place in options)
+        if combination not in seen and not design.error:
+            seen.add(combination)
+            yield design
+        if len(seen) == POLISHED:
+            return
+
+
+def _front(designs: Sequence[Design]) -> list[Design]:
+    """Those that no other one is better than in one goal and as good in all, each once."""
+    unique = list({each.values: each for each in designs}.values())
+    best = [
+        each
+        for each in unique
+        if not any(
+            np.all(other.heights <= each.heights) and np.any(other.heights < each.heights) for other in unique
+        )
+    ]
+    return sorted(best, key=lambda each: tuple(each.heights.tolist()))

@@ -1,0 +1,282 @@
+"""A study file, read and checked against its scene: what is wanted, and what may vary."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import prod
+from pathlib import Path
+from typing import Any
+
+from ... import units
+from ...cosim.importing.fmus import Flavour
+from ...cosim.planning.requested import output_port
+from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.tables import toml
+from ...errors import LoomfmuError, shown, suggestion
+from ...files import text_of
+from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
+from ...sweeps.header import HEAD, Header, check_by_scene, header, variables
+from ...sweeps.varied import Value, Varied
+
+WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
+KEYS = (*HEAD, *WAYS, "safety", "ranges", "choices", "search")
+SEARCH = {"runs": 2000, "seed": 1, "points": 11}  # of the search, and what they are by default
+LEAST = {"runs": 50, "seed": 0, "points": 3}
+MOST_GOALS = 3
+
+
+@dataclass(frozen=True)
+class Variable:
+    """What may vary: in a `range` of real numbers, or among `options`."""
+
+    varied: Varied
+    range: Range | None
+    options: Sequence[Value] = ()
+
+    @property
+    def key(self) -> str:
+        """What the file calls it."""
+        return self.varied.key
+
+    @property
+    def last(self) -> float:
+        """The largest number that stands for a value; the smallest is 0."""
+        return 1.0 if self.range else len(self.options) - 1.0
+
+    def value(self, number: float) -> Value:
+        """The value that a number stands for: a share of the range, or which option."""
+        if self.range is None:
+            return self.options[round(number)]
+        return float(self.range.at(number))
+
+    def number(self, value: Value) -> float | None:
+        """The number that stands for a value; None for one that is not there."""
+        if self.range is None:
+            return float(self.options.index(value)) if value in self.options else None
+        return self.range.share(float(value)) if self.range.low <= float(value) <= self.range.high else None
+
+    @property
+    def text(self) -> str:
+        """What it may be."""
+        if self.range is None:
+            return " | ".join(map(self.varied.show, self.options))
+        return f"{self.varied.show(self.range.low)} to {self.varied.show(self.range.high)}"
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is to be made small (`sign` 1) or large (-1).
+
+    `place` is its number among the variables, the claims or the signals of a study, as `kind` says.
+    """
+
+    name: str
+    sign: float
+    kind: str
+    place: int
+    unit: str = "1"
+    display: str = "1"
+
+    @property
+    def words(self) -> str:
+        """What is wanted of it."""
+        way = "smallest" if self.sign > 0.0 else "largest"
+        return f"{way} {'distance of ' if self.kind == 'claim' else ''}{self.name}"
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is searched: a scene, what may vary in it, goals, and how far claims stay from their bounds.
+
+    `shares` and `amounts` are those distances for each claim: as a share of its bound, and in its unit.
+    """
+
+    name: str
+    text: str
+    header: Header
+    variables: tuple[Variable, ...]
+    goals: tuple[Goal, ...]
+    values: tuple[str, ...]
+    shares: tuple[float, ...]
+    amounts: tuple[str, ...]
+    search: dict[str, int]
+
+    @property
+    def title(self) -> str:
+        """What it is about."""
+        return self.header.title
+
+    @property
+    def path(self) -> Path:
+        """The file of the scene."""
+        return self.header.path
+
+    @property
+    def scene(self) -> Scene:
+        """The scene with what stays."""
+        return self.header.scene
+
+    @property
+    def flavour(self) -> Flavour:
+        """That of its FMUs."""
+        return self.header.flavour
+
+    @property
+    def fixed(self) -> dict[str, Any]:
+        """Values that stay."""
+        return self.header.fixed
+
+    @cached_property
+    def continuous(self) -> list[int]:
+        """The places of the variables that have a range of real numbers."""
+        return [place for place, each in enumerate(self.variables) if each.range]
+
+    @property
+    def combinations(self) -> int:
+        """Number of combinations of options."""
+        return prod(len(each.options) for each in self.variables if not each.range)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user is to be warned of."""
+        doubts = (doubt for each in self.variables if each.range for doubt in each.range.doubts)
+        return (*self.scene.notes, *doubts)
+
+    def setting(self, values: Sequence[Value]) -> dict[str, Any]:
+        """What sets values of the variables in the scene."""
+        return {
+            target: each.varied.setting(value)
+            for each, value in zip(self.variables, values, strict=True)
+            for target in each.varied.targets
+        }
+
+    def written(self, values: Sequence[Value]) -> dict[str, Any]:
+        """The values by their keys, as a scene is written with them."""
+        pairs = zip(self.variables, values, strict=True)
+        return {each.key: each.varied.setting(value) for each, value in pairs}
+
+
+def load(path: Path) -> Study:
+    """Read a study file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
+    text = text_of(path)
+    try:
+        return _parse(text, path)
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{path}: {error}") from None
+
+
+def _parse(text: str, path: Path) -> Study:
+    tables = toml(text)
+    head = header(tables, path, KEYS, "study")
+    found = _variables(head, tables)
+    goals = _goals(head.scene, tables, found)
+    shares, amounts = _safety(head.scene, tables.get("safety", 0.0))
+    signals = tuple(goal.name for goal in goals if goal.kind == "signal")
+    return Study(
+        path.stem, text, head, tuple(found), tuple(goals), signals, shares, amounts,
+        _search(tables.get("search", {})),
+    )  # fmt: skip
+
+
+def _variables(head: Header, tables: dict[str, Any]) -> list[Variable]:
+    """What may vary, ranges first."""
+    ranges, choices = (flattened(tables.get(name, {}), name) for name in ("ranges", "choices"))
+    known = variables(head, {"ranges": ranges, "choices": choices})
+    for where, each in known.items():
+        if "." not in where.partition(".")[2] and each.targets == (each.key,):
+            raise LoomfmuError(f"{where} belongs to the run, not to the design; fix it in [set]")
+    found = []
+    for key, given in ranges.items():
+        each = known[f"ranges.{key}"]
+        span = range_of(each, given, "ranges", lists="choices")
+        whole_numbers = each.kind == "Integer"
+        options = range(int(span.low), int(span.high) + 1) if whole_numbers else ()
+        found.append(Variable(each, None if whole_numbers else span, options))
+    axes = [grid_axis(known[f"choices.{key}"], given, "choices") for key, given in choices.items()]
+    check_by_scene(head, axes)
+    for axis in axes:
+        if len(axis.values) < 2:
+            raise LoomfmuError(f"choices.{axis.key} has one value; fix it in [set], or give several")
+        found.append(Variable(axis.varied, None, tuple(axis.values.tolist())))
+    if not found:
+        raise LoomfmuError(
+            'nothing may vary: give ranges in [ranges], such as "shaft.speed" = ["400 rpm", "800 rpm"]'
+        )
+    return found
+
+
+def _goals(scene: Scene, tables: dict[str, Any], known: Sequence[Variable]) -> list[Goal]:
+    goals: list[Goal] = []
+    signals = 0
+    for way, sign in WAYS.items():
+        given = tables.get(way, [])
+        for name in [given] if isinstance(given, str) else given if isinstance(given, list) else [given]:
+            if not isinstance(name, str):
+                raise LoomfmuError(f"{way} = {shown(name)} is not a name such as {way} = 'shaft.speed'")
+            if any(goal.name == name for goal in goals):
+                raise LoomfmuError(f"{way}: {name} is already a goal")
+            goals.append(_goal(scene, way, name, sign, known, signals))
+            signals += goals[-1].kind == "signal"
+    if not goals:
+        raise LoomfmuError("there is no goal: write maximise = ..., such as maximise = 'shaft.speed'")
+    if len(goals) > MOST_GOALS:
+        raise LoomfmuError(f"{len(goals)} goals; the limit is {MOST_GOALS}")
+    return goals
+
+
+def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variable], signals: int) -> Goal:
+    """A goal: a variable, a claim by its name, or the final value of an output."""
+    keys = [each.key for each in known]
+    if name in keys:
+        each = known[keys.index(name)].varied
+        if each.kind == "Text":
+            raise LoomfmuError(f"{way} = {name!r} is a choice; a goal must be a number")
+        return Goal(name, sign, "variable", keys.index(name), each.unit, each.display)
+    claims = [str(claim.get("name")) for claim in scene.claims]
+    if name in claims:
+        return Goal(name, sign, "claim", claims.index(name))
+    try:
+        port = output_port(scene, name, way)
+    except LoomfmuError as error:
+        near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
+        raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None
+    return Goal(name, sign, "signal", signals, port.unit, port.display)
+
+
+def _safety(scene: Scene, given: Any) -> tuple[tuple[float, ...], tuple[str, ...]]:
+    """How far each claim stays from its bound: a share of the bound, or a quantity in the claim's unit."""
+    names = [str(claim.get("name") or f"claim_{number + 1}") for number, claim in enumerate(scene.claims)]
+    if not scene.claims and given:
+        raise LoomfmuError(f"safety = {shown(given)}, but the scene has no claims")
+    table = given if isinstance(given, dict) else dict.fromkeys(names, given)
+    for name in table:
+        if name not in names:
+            raise LoomfmuError(f"safety: the scene has no claim {name!r}{suggestion(name, names)}")
+    shares, amounts = [], []
+    for name in names:
+        share, amount = _distance(table.get(name, 0.0), name if isinstance(given, dict) else "")
+        shares.append(share)
+        amounts.append(amount)
+    return tuple(shares), tuple(amounts)
+
+
+def _distance(given: Any, name: str) -> tuple[float, str]:
+    where = f"safety.{name!r}" if name else "safety"
+    try:
+        share, amount = units.parse(given, "1"), ""
+    except units.UnitError as error:
+        if not isinstance(given, str) or not name:
+            raise LoomfmuError(f"{where}: {error}; give a share of the bound, such as '2 %'") from None
+        share, amount = 0.0, given
+    if not 0.0 <= share < 1000.0:
+        raise LoomfmuError(f"{where} = {share:g} is outside [0, 1000]")
+    return share, amount
+
+
+def _search(given: Any) -> dict[str, int]:
+    if not isinstance(given, dict):
+        raise LoomfmuError("search must be a table")
+    for key in given:
+        if key not in SEARCH:
+            raise LoomfmuError(f"search.{key} is unknown{suggestion(key, SEARCH)}")
+    return {key: whole(given.get(key, usual), f"search.{key}", LEAST[key]) for key, usual in SEARCH.items()}

@@ -1,0 +1,83 @@
+"""What files of sweeps and of searches have in common: the scene, what is fixed in it, and what varies."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..cosim.importing.fmus import FLAVOURS, Flavour
+from ..cosim.planning.requested import checked_claims
+from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.scene import Scene
+from ..cosim.scenes.tables import text as text_in
+from ..cosim.ssp import read as ssp_read
+from ..errors import LoomfmuError, shown, suggestion
+from .axes import Axis, flattened
+from .varied import Varied, varied
+
+HEAD = ("title", "scene", "flavour", "set")  # keys of every such file
+
+
+@dataclass(frozen=True)
+class Header:
+    """The scene that a file names, read with the values that stay; `path` is that of the scene."""
+
+    title: str
+    path: Path
+    scene: Scene
+    flavour: Flavour
+    fixed: dict[str, Any]
+
+
+def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
+    """A scene from its file or its system package."""
+    reader = ssp_read.load if path.suffix.lower() == ".ssp" else scenes.load
+    return reader(path, fixed)
+
+
+def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -> Header:
+    """What a file says of its scene; `keys` are all that it may have, `what` names its kind.
+
+    Raises LoomfmuError.
+    """
+    for key in tables:
+        if key not in keys:
+            raise LoomfmuError(f"{key} is unknown{suggestion(key, keys)}")
+    if not isinstance(tables.get("scene"), str):
+        raise LoomfmuError(f'a {what} must name its scene: scene = "loom.toml", relative to the {what} file')
+    flavour = tables.get("flavour", "native")
+    if flavour not in FLAVOURS:
+        raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
+    scene_path = (path.parent / tables["scene"]).resolve()
+    fixed = flattened(tables.get("set", {}), "set")
+    scene = checked_claims(read_scene(scene_path, fixed))
+    return Header(text_in(tables, "title", path.stem), scene_path, scene, flavour, fixed)
+
+
+def variables(head: Header, tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Varied]:
+    """What varies, by table and key as in "grid.shaft.speed". No two set the same, nor what is fixed."""
+    taken = {target: "set" for key in head.fixed for target in varied(head.scene, key).targets}
+    found: dict[str, Varied] = {}
+    for where, keys in tables.items():
+        for key in keys:
+            try:
+                each = found[f"{where}.{key}"] = varied(head.scene, key)
+            except LoomfmuError as error:
+                raise LoomfmuError(f"{where}: {error}") from None
+            for target in each.targets:
+                if target in taken:
+                    raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} already sets")
+                taken[target] = f"{where}.{key}"
+    return found
+
+
+def check_by_scene(head: Header, axes: Sequence[Axis]) -> None:
+    """Let the scene judge, one by one, the values that nothing else can."""
+    for axis in axes:
+        if axis.varied.needs_scene:
+            values = [axis.values.min(), axis.values.max()] if axis.sampled else axis.values
+            for value in np.asarray(values).tolist():
+                setting = dict.fromkeys(axis.varied.targets, axis.varied.setting(value))
+                read_scene(head.path, head.fixed | setting)

@@ -1,0 +1,59 @@
+"""Where the rows of a sweep and the runs of a search are done, and which packages that takes."""
+
+import os
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from ..errors import LoomfmuError, shown
+from .pools import Here, Pool, Processes
+from .worker import Planned
+
+# package -> extra
+NEEDED = {
+    "pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "sweep", "SALib": "sweep",
+    "tomlkit": "study",
+}  # fmt: skip
+
+
+def check_place(processes: Any, scheduler: Any) -> None:
+    """Refuse what is not a number of processes or an address. Raises LoomfmuError."""
+    if processes is not None and (
+        isinstance(processes, bool) or not isinstance(processes, int) or processes < 1
+    ):
+        raise LoomfmuError(f"processes = {shown(processes)} must be 1 or more")
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
+
+
+def check_packages(path: Path, used: dict[str, bool]) -> None:
+    """Refuse a file that uses packages which are not installed, and name all of them."""
+    missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
+    if missing:
+        extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
+        raise LoomfmuError(f'{path}: this needs {" and ".join(missing)}: pip install "loomfmu[{extras}]"')
+
+
+@contextmanager
+def local(plan: Planned, processes: int | None, rows: int) -> Iterator[Pool]:
+    """This process where one is enough, unless an FMU may end it; else processes of this machine."""
+    workers = min(processes or _cores(), rows)
+    pool: Pool = Processes(workers) if workers > 1 or plan.scene.unprotected else Here()
+    with closing(pool):
+        yield pool
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Pool]:
+    """The workers of a dask scheduler."""
+    from .cluster import Cluster
+
+    with closing(Cluster(address)) as pool:
+        yield pool
+
+
+def _cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

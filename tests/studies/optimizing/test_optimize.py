@@ -1,0 +1,220 @@
+"""The best design: cases with a known solution, fronts, what limits it, resumption, what is written."""
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from study_files import FAST, QUICK, study
+
+from loomfmu import LoomfmuError, Optimum, evaluate, optimize
+from loomfmu.cli import main
+from loomfmu.design import loom as design
+from loomfmu.studies.optimizing import runs as runs_module
+
+RPM = math.pi / 30.0
+EXACT = "[set]\nrevolutions = 1\n"  # with the scene's own steps
+MARGIN = "the belt keeps a margin of 10 %"
+SAFE = "the loom runs below its safe speed"
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def alone(tmp_path: Path, claim: str) -> Path:
+    """The demo with one of its claims."""
+    from study_files import DEMO
+
+    head, *claims = DEMO.read_text().split("[[claims]]")
+    (kept,) = (each for each in claims if claim in each)
+    path = tmp_path / "alone.toml"
+    path.write_text(f"{head}[[claims]]{kept}")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high", "expected"),
+    [
+        ("belt.guide_clearance", "0.1 mm", "0.8 mm", lambda: design.clearance_for("650 rpm", "WL680-3600")),
+        ("belt.head_mass", "50 g", "300 g", lambda: design.mass_for("650 rpm", "WL680-3600")),
+    ],
+)
+def test_the_best_value_for_a_wanted_speed_is_that_of_the_closed_form(
+    tmp_path: Path, key: str, low: str, high: str, expected: object
+) -> None:
+    text = f'maximise = "{key}"\n[ranges]\n"{key}" = ["{low}", "{high}"]'
+    path = study(
+        tmp_path, text, alone(tmp_path, SAFE), f'{EXACT}"shaft.speed" = "650 rpm"\n{QUICK}'
+    )  # fmt: skip
+    found = optimize(path, processes=1)
+    # that claims are kept 1e-9 inside, and 1e-9 of the extreme between samples
+    assert found.values[key] == pytest.approx(expected(), rel=1e-8)  # type: ignore[operator]
+    assert found.binding == (SAFE,) and all(found.verdicts) and "not a proof" not in str(found)
+
+
+def test_the_fastest_loom_has_the_speed_of_the_closed_form(tmp_path: Path) -> None:
+    text = """maximise = "shaft.speed"
+[ranges]
+"shaft.speed" = ["400 rpm", "900 rpm"]
+"belt.guide_clearance" = ["0.2 mm", "0.5 mm"]
+[choices]
+head = ["GS900 right", "G6300 left", "G6300 right", "GS900 left"]"""
+    found = optimize(study(tmp_path, text, alone(tmp_path, MARGIN), EXACT + QUICK), processes=1)
+    speeds = {
+        head: design.safe_speed("WL680-3600", head, clearance="0.2 mm").speed * math.sqrt(0.9)
+        for head in ("GS900 right", "G6300 left", "G6300 right", "GS900 left")
+    }
+    best = max(speeds, key=lambda head: speeds[head])
+    assert found.values["head"] == best and found.values["belt.guide_clearance"] == 0.2e-3
+    assert found.goal == pytest.approx(speeds[best], rel=1e-8)
+    assert found.binding == (MARGIN, "belt.guide_clearance")
+    assert found.scene is not None
+    again = evaluate(found.scene)  # the scene that was written
+    assert again and again.claims == found.verdicts
+
+
+def test_a_safety_distance_is_kept(tmp_path: Path) -> None:
+    text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["400 rpm", "900 rpm"]\n'
+    scene = alone(tmp_path, SAFE)
+    for number, (safety, expected) in enumerate([
+        (f"safety = '5 %'\n{text}", 1.0 / 1.05),
+        (f"{text}[safety]\n'{SAFE}' = '30 rpm'", 1.0 - 30.0 * RPM / design.safe_speed("WL680-3600").speed),
+    ]):  # fmt: skip
+        found = optimize(
+            study(tmp_path, safety, scene, EXACT + QUICK), processes=1, output=tmp_path / str(number)
+        )
+        assert found.goal == pytest.approx(design.safe_speed("WL680-3600").speed * expected, rel=1e-8)
+        assert found.binding == (SAFE,)
+
+
+def test_a_front_lies_on_the_curve_of_the_closed_form(tmp_path: Path) -> None:
+    text = """maximise = ["shaft.speed", "belt.guide_clearance"]
+[ranges]
+"shaft.speed" = ["400 rpm", "900 rpm"]
+"belt.guide_clearance" = ["0.2 mm", "0.6 mm"]"""
+    path = study(tmp_path, text, alone(tmp_path, SAFE), f"{EXACT}[search]\nruns = 100\npoints = 4\n")
+    found = optimize(path, processes=1)
+    assert len(found.front) == 4 and found.front[0].scene.name == "best_01.toml"
+    speeds = [best.values["shaft.speed"] for best in found.front]
+    assert speeds == sorted(speeds, reverse=True)
+    for best in found.front:
+        clearance = best.values["belt.guide_clearance"]
+        expected = design.safe_speed("WL680-3600", clearance=clearance).speed  # type: ignore[arg-type]
+        # the design of a front need not be at a corner: it is as far from it as the last region is wide
+        assert best.values["shaft.speed"] == pytest.approx(expected, rel=1e-7)
+        assert all(best.verdicts)
+    assert all(SAFE in best.binding for best in found.front[1:-1])
+    assert found.front[0].values["belt.guide_clearance"] == pytest.approx(0.2e-3, rel=1e-6)
+    assert found.front[-1].values["belt.guide_clearance"] == 0.6e-3
+    assert len(Path("results/study/front.csv").read_text().splitlines()) == 5
+    assert "<table" in found._repr_html_()
+
+
+SMALL = """title = "Small"
+maximise = "shaft.speed"
+[ranges]
+"shaft.speed" = ["400 rpm", "900 rpm"]
+"dobby.speed_reduction" = [0.3, 0.7]
+[choices]
+"dobby.law" = ["sloped_line", "sloped_sine"]"""
+
+
+def outcome(found: Optimum) -> tuple[object, ...]:
+    return found.values, found.verdicts, found.binding, found.runs, found.allowed
+
+
+def test_the_result_is_the_same_on_any_number_of_processes_and_after_a_kill(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = study(tmp_path, SMALL, head=FAST + QUICK)
+    whole = optimize(path, processes=1, output="whole")
+    assert outcome(optimize(path, processes=2, output="two")) == outcome(whole)
+    lines = Path("whole/runs.jsonl").read_bytes().splitlines(keepends=True)
+    assert len(lines) == whole.runs
+
+    calls = []
+    run_batches = runs_module.run_batches
+
+    def killed(*arguments: object) -> None:
+        calls.append(arguments)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        run_batches(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(runs_module, "run_batches", killed)
+    with pytest.raises(KeyboardInterrupt, match="finished runs are kept in part; run the same command"):
+        optimize(path, processes=1, output="part")
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    kept = Path("part/runs.jsonl").read_bytes()
+    assert lines[0] in kept and len(kept.splitlines()) < len(lines)
+    Path("part/runs.jsonl").write_bytes(kept + lines[-1][:20])  # half a line, as a kill leaves it
+    assert outcome(optimize(path, processes=1, output="part")) == outcome(whole)
+    assert Path("part/runs.jsonl").read_bytes() == b"".join(lines)
+    assert Path("part/best.toml").read_bytes() == Path("whole/best.toml").read_bytes()
+    assert Path("part/designs.csv").read_bytes() == Path("whole/designs.csv").read_bytes()
+
+
+def test_a_directory_of_another_study_is_refused(tmp_path: Path) -> None:
+    path = study(tmp_path, SMALL, head=FAST + QUICK)
+    optimize(path, processes=1, output="here")
+    path.write_text(path.read_text().replace("0.7", "0.6"))
+    with pytest.raises(LoomfmuError, match="here: contains another study, or the study, its scene"):
+        optimize(path, processes=1, output="here")
+    assert optimize(path, processes=1, output="here", restart=True)
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    (foreign / "best.toml").write_text("mine")
+    with pytest.raises(LoomfmuError, match="foreign: contains files that no loomfmu study wrote"):
+        optimize(path, processes=1, output=foreign)
+    Path("here/runs.jsonl").write_text("nonsense\n")
+    with pytest.raises(LoomfmuError, match=r"runs\.jsonl: is damaged .*--restart runs all designs again"):
+        optimize(path, processes=1, output="here")
+
+
+def test_the_command_prints_and_writes_what_it_finds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = study(tmp_path, SMALL, head=FAST + QUICK)
+    assert main(["optimize", str(path), "--processes", "1"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("Small: ") and "It is limited by 'the belt keeps a margin of 10 %'." in said
+    assert "This is a search, not a proof that there is no better design." in said
+    assert "646.8" in said  # 681.804 sqrt(0.9); with 90 steps the lowest margin is off by some 1e-5
+    directory = Path("results/study")
+    assert sorted(each.name for each in directory.iterdir()) == [
+        "best.png", "best.toml", "designs.csv", "runs.jsonl", "study.json"
+    ]  # fmt: skip
+    with (directory / "designs.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert {"shaft.speed [rev/min]", "dobby.law", "holds", "error"} < set(rows[0])
+    assert max(float(row["shaft.speed [rev/min]"]) for row in rows if row["holds"] == "true") < 646.83
+    assert main(["run", str(directory / "best.toml")]) == 0
+
+
+def test_a_claim_that_holds_nowhere_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = SMALL.replace('"400 rpm"', '"800 rpm"')
+    assert main(["optimize", str(study(tmp_path, text, head=FAST + QUICK)), "--processes", "1"]) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "designs that were tried meets all claims." in said
+    assert f"No design meets '{MARGIN}'; the nearest distance from its bound is -0.4" in said
+    assert not Path("results/study/best.toml").exists() and Path("results/study/designs.csv").exists()
+
+
+def test_designs_that_cannot_be_run_are_counted(tmp_path: Path) -> None:
+    text = SMALL + '\n"heald.stroke" = ["10 mm", "98 mm"]'  # clear_shed cannot be judged at 10 mm
+    found = optimize(study(tmp_path, text, head=FAST + QUICK), processes=1)
+    assert found.failed > 0 and f"{found.failed} of {found.runs} designs could not be run." in str(found)
+    assert found.values["heald.stroke"] == pytest.approx(0.098)
+
+
+def test_a_goal_may_be_the_distance_of_a_claim_and_whole_numbers_may_vary(tmp_path: Path) -> None:
+    text = f"""maximise = "{MARGIN}"
+[ranges]
+"shaft.speed" = ["500 rpm", "900 rpm"]
+"belt.guide_clearance" = ["0.2 mm", "0.5 mm"]"""
+    found = optimize(study(tmp_path, text, head=FAST + QUICK), processes=1)
+    assert found.values == pytest.approx({"shaft.speed": 500.0 * RPM, "belt.guide_clearance": 0.2e-3})
+    assert found.goal == pytest.approx(found.verdicts[0].distance, rel=1e-12)

@@ -1,0 +1,105 @@
+"""Study files: what they may say, and what is refused in one line that names the file."""
+
+from pathlib import Path
+
+import pytest
+from study_files import DEMO, FAST, QUICK, study
+
+from loomfmu import LoomfmuError, optimize
+from loomfmu.studies.optimizing.study import load
+
+SPEED = '[ranges]\n"shaft.speed" = ["400 rpm", "900 rpm"]\n'
+GOAL = 'maximise = "shaft.speed"\n'
+
+
+def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
+    path = study(
+        tmp_path,
+        'maximise = ["shaft.speed", "the belt keeps a margin of 10 %"]\nminimise = "damper_1.peak_load"\n'
+        f"safety = '2 %'\n{SPEED}[choices]\n"
+        '"dobby.law" = ["sloped_line", "sloped_sine"]\nhead = ["G6300 left", "GS900 left"]\n',
+    )
+    found = load(path)
+    assert [each.key for each in found.variables] == ["shaft.speed", "dobby.law", "head"]
+    assert [each.last for each in found.variables] == [1.0, 1.0, 1.0] and found.combinations == 4
+    assert [(each.kind, each.sign) for each in found.goals] == [
+        ("signal", 1.0), ("variable", -1.0), ("claim", -1.0)
+    ]  # fmt: skip
+    assert found.values == ("damper_1.peak_load",)
+    assert found.shares == (0.02,) * len(found.scene.claims)
+    speed = found.variables[0]
+    assert speed.value(0.0) == pytest.approx(41.887902) and speed.value(1.0) == pytest.approx(94.247780)
+    assert speed.number(speed.value(0.25)) == pytest.approx(0.25, rel=1e-12) and speed.number(1e3) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (GOAL, "nothing may vary: give ranges in [ranges], such as"),
+        (f"{GOAL}[ranges]\n'shaft.speed' = ['700 rpm', '600 rpm']",
+         "ranges.shaft.speed: 700 rev/min is not below 600"),
+        (f"{GOAL}[ranges]\n'shaft.sped' = ['400 rpm', '600 rpm']", "did you mean 'speed'?"),
+        (f"{GOAL}[ranges]\n'shaft.speed' = ['400 rpm', '6 m']", "'6 m' is in m, which does not fit rad/s"),
+        (f"{GOAL}[ranges]\n'dobby.law' = [0, 3]",
+         "ranges.dobby.law is not a number: list its values in [choices]"),
+        (f"{GOAL}{SPEED}'heald.stroke' = ['90 mm', '98 mm']\n'heald_1.stroke' = ['90 mm', '98 mm']",
+         "ranges.heald_1.stroke sets heald_1.stroke, which ranges.heald.stroke already sets"),
+        (f"{GOAL}{SPEED}duration = ['1 s', '2 s']", "belongs to the run, not to the design; fix it in [set]"),
+        (f"{GOAL}{SPEED}[choices]\n'dobby.law' = ['sloped-sin']", "did you mean"),
+        (f"{GOAL}{SPEED}[choices]\nhead = ['G6300 left', 'G7000']", "there is no head 'G7000'"),
+        (f"{GOAL}{SPEED}[choices]\nmachine = ['WL680-3600', 'WL680-3600']",
+         "choices.machine: WL680-3600 appears twice"),
+        (SPEED, "there is no goal: write maximise ="),
+        (f"maximise = 3\n{SPEED}", "maximise = 3 is not a name"),
+        (f"maximise = 'belt.magrin'\n{SPEED}",
+         "maximise: belt has no output 'magrin'; did you mean 'margin'?"),
+        (f"maximise = ['shaft.speed', 'shaft.speed']\n{SPEED}", "maximise: shaft.speed is already a goal"),
+        (f"maximise = 'dobby.law'\n{SPEED}[choices]\n'dobby.law' = ['uniform', 'sloped_sine']",
+         "is a choice; a goal must be a number"),
+        (f"maximize = 'shaft.speed'\n{SPEED}", "maximize is unknown; did you mean 'maximise'?"),
+        (f"{GOAL}safety = '2 mm'\n{SPEED}", "safety: '2 mm' is in mm, which does not fit"),
+        (f"{GOAL}safety = -1\n{SPEED}", "safety = -1 is outside [0, 1000]"),
+        (f"{GOAL}{SPEED}[safety]\n'the belt' = 0.1", "safety: the scene has no claim 'the belt'"),
+        (f"{GOAL}{SPEED}[safety]\n'the stops withstand the carrier' = '3 mm'", "which does not fit N"),
+        (f"{GOAL}{SPEED}[search]\nruns = 3", "search.runs = 3 is outside [50, "),
+        (f"{GOAL}{SPEED}[search]\nevaluations = 3", "search.evaluations is unknown"),
+    ],
+)  # fmt: skip
+def test_what_is_refused(text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = study(tmp_path, text)
+    with pytest.raises(LoomfmuError) as caught:
+        optimize(path, processes=1)
+    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_share_of_a_bound_of_0_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = study(
+        tmp_path, f"{GOAL}safety = 0.1\n[ranges]\n'shaft.speed' = ['150 rpm', '250 rpm']",
+        scene=DEMO.with_name("damper.toml"),
+    )  # fmt: skip
+    with pytest.raises(LoomfmuError, match=r"safety = 0\.1 is a share of the bound, and that of .* is 0"):
+        optimize(path, processes=1)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        # used by another law alone
+        ("'dobby.plateau_angle' = ['80 deg', '90 deg']",
+         "ranges.dobby.plateau_angle changes neither a goal nor a claim"),
+        ("[choices]\n'dobby.lever_radius' = ['80 mm', '90 mm']",
+         "choices.dobby.lever_radius changes neither a goal nor a claim (80 mm | 90 mm); leave it out"),
+        ("[choices]\n'dobby.law' = ['uniform']", "choices.dobby.law has one value; fix it in [set]"),
+    ],
+)  # fmt: skip
+def test_what_changes_nothing_is_refused(
+    text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = study(tmp_path, f"{GOAL}{SPEED}{text}", head=FAST + QUICK)
+    with pytest.raises(LoomfmuError) as caught:
+        optimize(path, processes=1)
+    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
