@@ -181,7 +181,7 @@ def test_a_full_disk_is_told_with_the_files_name_and_leaves_no_lock(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with monkeypatch.context() as patched:
-        patched.setattr("loomfmu.sweeps.store.os.write", full)
+        patched.setattr("loomfmu.sweeps.directory.os.write", full)
         with (
             pytest.raises(LoomfmuError, match=r"lock: cannot be written \(No space left on device\)"),
             opened(place, plan, "one", restart=False),

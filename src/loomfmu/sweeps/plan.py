@@ -15,11 +15,13 @@ from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.tables import toml
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of
-from .axes import MOST, Axis, flattened, grid_axis, sample_axes, whole
+from .axes import MOST, Axis, flattened, grid_axis, range_of, sample_axes, whole
 from .header import HEAD, Header, check_by_scene, header, variables
 from .request import Map, requested
+from .sensitivity import OPTIONS, Sensitivity, sensitivity_of
 
-KEYS = (*HEAD, "values", "grid", "sample", "traces", "map")
+KEYS = (*HEAD, "values", "grid", "sample", "sensitivity", "traces", "map")
+NO_TRACES = {"failures": 0, "sample": 0}  # by default of rows that only indices need
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ class SweepPlan:
     values: tuple[str, ...]
     traces: Traces
     map: Map | None
+    sensitivity: Sensitivity | None = None
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -103,15 +106,16 @@ def load(path: str | Path) -> SweepPlan:
 def _parse(text: str, path: Path) -> SweepPlan:
     tables = toml(text)
     head = header(tables, path, KEYS, "sweep")
-    grid, sample = _axes(head, tables)
+    columns = _results(head.scene, tables.get("values", []))
+    wanted = _sensitivity(head, tables, columns) if "sensitivity" in tables else None
+    grid, sample = ([], wanted.axes()) if wanted else _axes(head, tables)
     check_by_scene(head, [*grid, *sample])
     values = _values(head.scene, tables.get("values", []), [*grid, *sample])
-    columns = [*values, *(f"claim_{number + 1}.worst" for number in range(len(head.scene.claims)))]
     request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
     plan = SweepPlan(
         title=head.title, name=path.stem, text=text, path=head.path, scene=head.scene,
         flavour=head.flavour, fixed=head.fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
-        traces=_traces(tables.get("traces", {})), map=request,
+        traces=_traces(tables.get("traces", NO_TRACES if wanted else {})), map=request, sensitivity=wanted,
     )  # fmt: skip
     if plan.rows > MOST:
         raise LoomfmuError(f"{plan.rows} combinations; the limit is {MOST}")
@@ -134,6 +138,25 @@ def _axes(head: Header, tables: dict[str, Any]) -> tuple[list[Axis], list[Axis]]
         [grid_axis(found[f"grid.{key}"], given) for key, given in gridded.items()],
         sample_axes([(found[f"sample.{key}"], given) for key, given in ranges.items()], count, seed),
     )
+
+
+def _sensitivity(head: Header, tables: dict[str, Any], columns: list[str]) -> Sensitivity:
+    """What `[sensitivity]` asks for: it has its own rows."""
+    for other in ("grid", "sample"):
+        if other in tables:
+            raise LoomfmuError(f"[sensitivity] chooses the rows itself; leave out [{other}]")
+    given = flattened(tables["sensitivity"], "sensitivity")
+    options = {key: given.pop(key) for key in OPTIONS if key in given}
+    found = variables(head, {"sensitivity": given})
+    ranges = [range_of(found[f"sensitivity.{key}"], each, "sensitivity") for key, each in given.items()]
+    return sensitivity_of(options, ranges, columns)
+
+
+def _results(scene: Scene, values: Any) -> list[str]:
+    """The columns of results that a picture or indices can be of."""
+    claims = range(len(scene.claims))
+    listed = [each for each in values if isinstance(each, str)] if isinstance(values, list) else []
+    return [*listed, *(f"claim_{number + 1}.{part}" for part in ("worst", "distance") for number in claims)]
 
 
 def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:

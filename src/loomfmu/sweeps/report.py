@@ -7,6 +7,8 @@ from .. import printed, units
 from ..printed import say
 from .ranking import beyond, worst_rows
 from .run import Sweep
+from .sensitivity import WORDS, Influences
+from .store import INDICES_FILE
 from .tables import claim_columns, labels_of, note_column
 
 SHOWN = 5  # rows of a kind
@@ -18,9 +20,12 @@ def show(sweep: Sweep) -> None:
     again = f" ({before} of them run before)" if before else ""
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail", f"{sweep.errors} could not be run"]
     say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {', '.join(counts)}")
-    _show_worst(sweep)
+    if sweep.sensitivity is None:
+        _show_worst(sweep)
     _show_texts(sweep, "error", "could not be run", sys.stdout)
     _show_texts(sweep, "warnings", "warned", sys.stderr)
+    if sweep.sensitivity is not None:
+        _show_indices(sweep.sensitivity)
     say(f"table: {sweep.path}")
     if sweep.map is not None:
         say(f"map: {sweep.map}")
@@ -32,6 +37,15 @@ def show(sweep: Sweep) -> None:
         say(f"row {row} has no trace: {reason}", to=sys.stderr)
     if len(sweep.untraced) > SHOWN:
         say(f"and {len(sweep.untraced) - SHOWN} more rows have no trace", to=sys.stderr)
+
+
+def _show_indices(found: Influences) -> None:
+    """Print how much each output depends on each range."""
+    rows = found.brief
+    printed.show(("output", found.lead), rows, [(f"{output}:", cells) for output, cells in rows])
+    say(f"{found.lead}: {WORDS[found.lead]}, with its 95 % interval; all indices are in {INDICES_FILE}")
+    for key in found.idle:
+        say(f"{key} changes none of these outputs.")
 
 
 def _show_worst(sweep: Sweep) -> None:

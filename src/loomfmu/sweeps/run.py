@@ -3,11 +3,13 @@
 import hashlib
 from contextlib import ExitStack
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, described, path_of
+from ..files import ANY, write_file
 from ..progress import Advance
 from ..progress import progress as progress_bar
 from ..traces import TRACE
@@ -16,6 +18,7 @@ from .place import check_packages, check_place, cluster, local
 from .plan import SweepPlan
 from .pools import Died, Pool, Task
 from .schedule import run_batches
+from .sensitivity import Influences, as_csv, influences
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:
@@ -28,7 +31,7 @@ class Sweep:
 
     `table` is a pyarrow.Table as in the file `path`, `ran` the number of rows that were run now and not
     before, `map` the picture if the file has a `[map]`, `traces` the full traces of single rows, `untraced`
-    why there is none of some of them.
+    why there is none of some of them; `sensitivity` the indices if the file has a `[sensitivity]`.
     """
 
     plan: SweepPlan
@@ -38,6 +41,7 @@ class Sweep:
     map: Path | None
     traces: tuple[Path, ...]
     untraced: dict[int, str]
+    sensitivity: Influences | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -117,13 +121,14 @@ def sweep(
             ran = _run_rows(store, job, rows_pool, progress)
             table = store.finish()
             picture = _draw(store, table)
+            found = _indices(store, table)
             traces, untraced = _run_traces(store, job, table, here, progress)
             store.tidy()
     except KeyboardInterrupt:
         raise KeyboardInterrupt(
             f"interrupted; finished rows are kept in {directory}; run the same command to continue"
         ) from None
-    return Sweep(plan, table, store.table_path, ran, picture, traces, untraced)
+    return Sweep(plan, table, store.table_path, ran, picture, traces, untraced, found)
 
 
 def _fingerprint(plan: SweepPlan, job: Job) -> str:
@@ -156,6 +161,20 @@ def _draw(store: "Store", table: Any) -> Path | None:
     from .maps import draw
 
     return draw(store.plan, table, store.map_path)
+
+
+def _indices(store: "Store", table: Any) -> Influences | None:
+    """The indices of the sweep, if it has a `[sensitivity]`, as table and picture."""
+    plan = store.plan
+    if plan.sensitivity is None:
+        return None
+    found = influences(plan.sensitivity, table, plan.sample, plan.title)
+    write_file(store.indices_path, as_csv(found).encode(), ANY)
+    if find_spec("matplotlib") is not None:
+        from .bars import draw
+
+        draw(found, store.bars_path)
+    return found
 
 
 def _run_traces(

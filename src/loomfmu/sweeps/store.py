@@ -5,6 +5,7 @@ batches/          rows_000000_000041.parquet ...; gone when the sweep is done
 table.parquet     all rows
 traces/           row_000017.h5 ...
 map.png
+sensitivity.csv   and sensitivity.png: indices
 lock              there while a sweep writes; a process that ends, however, lets it go
 """
 
@@ -25,6 +26,7 @@ from .tables import schema_of, table_of, whole_table
 from .worker import Batch
 
 NAME = re.compile(r"rows_(\d+)_(\d+)\.parquet")
+INDICES_FILE = "sensitivity.csv"
 PARTIAL, TRACE_PARTIAL = ".*.partial", "row_*.h5*.partial"
 
 
@@ -38,6 +40,8 @@ class Store:
         self.traces = directory / "traces"
         self.table_path = directory / "table.parquet"
         self.map_path = directory / "map.png"
+        self.indices_path = directory / INDICES_FILE
+        self.bars_path = directory / "sensitivity.png"
 
     def trace_path(self, row: int) -> Path:
         """Where the full trace of a row is."""
@@ -114,7 +118,7 @@ class Store:
     @property
     def targets(self) -> list[Path]:
         """The files that are written under names of their own."""
-        return [self.table_path, self.map_path]
+        return [self.table_path, self.map_path, self.indices_path, self.bars_path]
 
     @property
     def folders(self) -> list[Path]:
@@ -125,7 +129,7 @@ class Store:
         """What is there under the names of a sweep's results."""
         patterns = ((self.batches, "rows_*.parquet"), (self.traces, "row_*.h5"), (self.traces, TRACE_PARTIAL))
         found = [path for folder, pattern in patterns for path in files(folder, pattern)]
-        return [path for path in (self.table_path, self.map_path) if path.exists()] + found
+        return [path for path in self.targets if path.exists()] + found
 
     def partial(self) -> list[Path]:
         """What a sweep that was killed was about to write."""

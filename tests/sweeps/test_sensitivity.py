@@ -1,0 +1,150 @@
+"""Sensitivity: indices against their closed forms, what is written and printed, what is refused."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sweep_files import written
+
+from loomfmu import LoomfmuError, sweep
+from loomfmu.cli import main
+
+# 1 - margin = mass speed^2 / stiffness, times what stays: a product of powers of independent values
+RANGES = """
+"belt.head_mass" = ["90 g", "130 g"]
+"shaft.speed" = ["500 rpm", "700 rpm"]
+"belt.bending_stiffness" = [0.2, 0.3]
+"""
+POWERS = {
+    "belt.head_mass": (90.0, 130.0, 1),
+    "shaft.speed": (500.0, 700.0, 2),
+    "belt.bending_stiffness": (0.2, 0.3, -1),
+}
+WANTED = '[sensitivity]\nmethod = "{method}"\nsamples = {samples}\nseed = 3\noutputs = ["claim_1.distance"]\n'
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_indices_of_sobol_are_those_of_the_product(tmp_path: Path) -> None:
+    path = written(tmp_path, WANTED.format(method="sobol", samples=256) + RANGES)
+    found = sweep(path, processes=1)
+    assert found.rows == 256 * 5 and not found.traces
+    means, squares = [], []
+    for low, high, power in POWERS.values():
+        x = np.linspace(low, high, 100001)
+        means.append(float(np.mean(x**power)))
+        squares.append(float(np.mean(x ** (2 * power))))
+    variance = math.prod(squares) - math.prod(means) ** 2
+    assert found.sensitivity is not None
+    (influence,) = found.sensitivity.outputs
+    for place in range(3):
+        own = squares[place] - means[place] ** 2
+        others = [each for each in range(3) if each != place]
+        first = own * math.prod(means[each] ** 2 for each in others) / variance
+        total = own * math.prod(squares[each] for each in others) / variance
+        # the estimate's own 95 % interval; a seed that is fixed cannot fail by chance
+        assert abs(influence.indices["S1"][place] - first) <= influence.indices["S1_conf"][place]
+        assert abs(influence.indices["ST"][place] - total) <= influence.indices["ST_conf"][place]
+        assert influence.indices["ST_conf"][place] < 0.1
+    assert found.sensitivity.brief[0][1].startswith("shaft.speed 0.")
+    assert sorted(each.name for each in Path("results/swept").iterdir()) == [
+        "sensitivity.csv", "sensitivity.png", "sweep.json", "table.parquet"
+    ]  # fmt: skip
+
+
+def test_mean_changes_of_morris_are_those_of_the_product(tmp_path: Path) -> None:
+    path = written(tmp_path, WANTED.format(method="morris", samples=100) + RANGES)
+    found = sweep(path, processes=1)
+    assert found.rows == 100 * 4
+    assert found.sensitivity is not None
+    (influence,) = found.sensitivity.outputs
+    grids = {key: np.linspace(low, high, 4) ** power for key, (low, high, power) in POWERS.items()}
+    # what stays: the margin at the scene's own values
+    from loomfmu import evaluate
+
+    own = 1.0 - evaluate(tmp_path / "scene.toml").claims[0].worst
+    mass, speed, stiffness = 110.5, 600.0, 0.25
+    stays = own * stiffness / (mass * speed**2)
+    for place, (key, values) in enumerate(grids.items()):
+        change = 0.75 * (values[2] + values[3] - values[0] - values[1])  # mean of two steps of 2/3, per range
+        others = math.prod(float(np.mean(grid)) for other, grid in grids.items() if other != key)
+        expected = -stays * change * others
+        spread = influence.indices["sigma"][place] / math.sqrt(100)
+        assert influence.indices["mu"][place] == pytest.approx(expected, abs=4.0 * spread)
+        assert influence.indices["mu_star"][place] == pytest.approx(abs(expected), abs=4.0 * spread)
+
+
+def test_the_command_prints_what_matters_and_what_does_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = '[sensitivity]\nmethod = "morris"\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]\n'
+    path = written(tmp_path, text + '"weft.moving_mass" = ["90 g", "120 g"]\n')
+    for _again in range(2):  # from the rows that are there
+        assert main(["sweep", str(path), "--processes", "1"]) == 0
+    said = capsys.readouterr().out
+    assert "belt.lowest_speed_limit: depends on none of them" in said
+    assert "distance of the belt does not buckle" in said and "shaft.speed 0." in said
+    assert "weft.moving_mass changes none of these outputs." in said
+    assert "mu_star: mean change over its range, with its 95 % interval" in said
+    with Path("results/swept/sensitivity.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["range"] for row in rows[:2]] == ["shaft.speed", "weft.moving_mass"]
+    assert rows[0]["note"] == "depends on none of them" and rows[2]["mu_star"] != ""
+
+
+def test_an_output_without_a_value_in_some_rows_says_so(tmp_path: Path) -> None:
+    scene = 'title = "x"\nrevolutions = 1\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n' \
+        'head = "G6300 left"\nweave = "10/01"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n' \
+        'clearance = "6 mm"\nat_least = "90 deg"\n'  # fmt: skip
+    text = '[sensitivity]\nmethod = "morris"\nsamples = 8\n"heald.stroke" = ["10 mm", "98 mm"]\n'
+    path = written(tmp_path, text + '"dobby.speed_reduction" = [0.4, 0.6]\n', scene, 'scene = "scene.toml"\n')
+    found = sweep(path, processes=1)
+    assert found.sensitivity is not None and found.errors > 0
+    assert f"no indices: no value in {found.errors} of 24 rows" == found.sensitivity.outputs[0].note
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("method = 'sobel'\nsamples = 8", "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?"),
+        ("samples = 100", "sensitivity.samples = 100 must be a power of 2 for sobol, such as 128"),
+        ("method = 'morris'", "sensitivity.samples = None is not a whole number"),
+        ("samples = 8\noutputs = ['claim_7.distance']", "'claim_7.distance' is not a column of results"),
+        ("samples = 8\noutputs = []", "is not a list such as"),
+        ("samples = 8\nmethods = 'sobol'", "'methods' cannot be set"),
+    ],
+)
+def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    path = written(tmp_path, f"[sensitivity]\n{text}\n{RANGES}")
+    with pytest.raises(LoomfmuError) as caught:
+        sweep(path)
+    assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('[sensitivity]\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]',
+         "sensitivity needs two ranges or more"),
+        (f"[sensitivity]\nsamples = 8\n{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
+         r"\[sensitivity\] chooses the rows itself; leave out \[grid\]"),
+        ('[sensitivity]\nsamples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
+         "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min"),
+        ('[sensitivity]\nsamples = 8\n"dobby.law" = ["uniform", "table"]', "has no instance 'dobby'"),
+    ],
+)  # fmt: skip
+def test_rows_of_another_kind_and_empty_ranges_are_refused(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        sweep(written(tmp_path, text))
+
+
+def test_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "SALib.sample.sobol", None)
+    path = written(tmp_path, f"[sensitivity]\nsamples = 8\n{RANGES}")
+    with pytest.raises(LoomfmuError, match=r'needs the extra "study": pip install "loomfmu\[study\]"'):
+        sweep(path)
