@@ -101,7 +101,7 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.chdir(tmp_path)
     expected = {"shaft.speed=700rpm": 1, "belt.guide_clearance=0.5mm": 1}  # a claim fails there
     for arguments in commands(README):
-        if arguments[0] in ("build", "export", "sweep", "compare"):  # long, or of runs below
+        if arguments[0] in ("build", "export", "sweep", "optimize", "compare"):  # long, or of runs below
             continue
         status = next((code for value, code in expected.items() if value in arguments), 0)
         assert cli.main(arguments) == status, arguments
@@ -118,7 +118,7 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
 
 
-FOLLOWED = ("tour", "report", "scenes", "traces", "testing", "limits", "tolerances", "fitting")
+FOLLOWED = ("tour", "report", "scenes", "traces", "testing", "limits", "tolerances", "optimizing", "fitting")
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",

@@ -45,6 +45,16 @@ def test_a_cluster_makes_the_table_of_one_process(tmp_path: Path, cluster: Any) 
     assert found.path.read_bytes() == one.path.read_bytes()
 
 
+def test_a_search_on_a_cluster_finds_what_one_process_finds(tmp_path: Path, cluster: Any) -> None:
+    text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["500 rpm", "800 rpm"]\n[search]\nruns = 50\n'
+    path = written(tmp_path, text, head='scene = "scene.toml"\n')
+    one = loomfmu.optimize(path, processes=1, output=tmp_path / "one")
+    found = loomfmu.optimize(path, scheduler=cluster.scheduler_address, output=tmp_path / "cluster")
+    assert found.goal == one.goal and found.runs == one.runs
+    names = ("designs.csv", "best.toml")
+    assert all((found.path / name).read_bytes() == (one.path / name).read_bytes() for name in names)
+
+
 def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
     tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -14,7 +14,9 @@ SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
 
 
 def test_there_is_a_test_for_each() -> None:
-    assert sorted(path.name for path in SWEEPS.iterdir()) == ["damper.toml", "safe_speed.toml"]
+    assert sorted(path.name for path in SWEEPS.iterdir()) == [
+        "damper.toml", "safe_speed.toml", "what_matters.toml"
+    ]  # fmt: skip
 
 
 def test_safe_speed_falls_with_wear_and_is_that_of_the_design(
@@ -46,3 +48,16 @@ def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
     assert len(soft) > 5 and min(soft) > 0
     assert len(stiff) > 5 and max(stiff) == 0
     assert (output / "map.png").stat().st_size > 10_000
+
+
+def test_clearance_matters_most_for_the_belt_and_the_law_for_the_dwell(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = (SWEEPS / "what_matters.toml").read_text().replace("samples = 256", "samples = 64")
+    path = tmp_path / "what_matters.toml"
+    path.write_text(short.replace("../wl680_3600.toml", str(SWEEPS.parent / "wl680_3600.toml")))
+    assert main(["sweep", str(path), "--output", str(tmp_path / "out"), "--processes", "1"]) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "distance of the belt keeps a margin of 10 %: lowest margin: belt.guide_clearance 0." in said
+    assert "distance of the shed stays clear: warp beyond 6 mm: dobby.speed_reduction 1" in said
+    assert (tmp_path / "out" / "sensitivity.png").stat().st_size > 10_000

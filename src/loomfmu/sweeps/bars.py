@@ -2,6 +2,7 @@
 
 from io import BytesIO
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from ..files import PICTURE, write_file
 from .sensitivity import INDICES, WORDS, Influences
 
 COLOURS = ("#0072b2", "#e69f00")
-WIDTH, LINE, REST = 8.0, 0.32, 1.0  # [in]
+WIDTH, LINE, REST = 8.0, 0.27, 0.9  # [in]
+LONGEST = 48  # letters of a line of a title
 ACROSS = 2  # panels
 
 
@@ -33,7 +35,7 @@ def draw(found: Influences, path: Path) -> Path:
                 label=f"{name}: {WORDS[name]}",
             )  # fmt: skip
         axes.set_yticks(places, each.keys, fontsize=8)
-        axes.set_title(each.words, fontsize=8)
+        axes.set_title(fill(each.words, LONGEST), fontsize=8)
         axes.tick_params(axis="x", labelsize=8)
         axes.grid(axis="x", color="#e0e0e0")
         axes.set_axisbelow(True)

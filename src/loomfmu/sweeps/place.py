@@ -13,7 +13,7 @@ from .worker import Planned
 
 # package -> extra
 NEEDED = {
-    "pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "sweep", "SALib": "study",
+    "pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "study", "SALib": "study",
     "tomlkit": "study",
 }  # fmt: skip
 

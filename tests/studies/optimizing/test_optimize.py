@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 import pytest
-from study_files import FAST, QUICK, study
+from study_files import DEMO, FAST, QUICK, SIMS, study
 
 from loomfmu import LoomfmuError, Optimum, evaluate, optimize
 from loomfmu.cli import main
@@ -25,8 +25,6 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def alone(tmp_path: Path, claim: str) -> Path:
     """The demo with one of its claims."""
-    from study_files import DEMO
-
     head, *claims = DEMO.read_text().split("[[claims]]")
     (kept,) = (each for each in claims if claim in each)
     path = tmp_path / "alone.toml"
@@ -210,7 +208,7 @@ def test_designs_that_cannot_be_run_are_counted(tmp_path: Path) -> None:
     assert found.values["heald.stroke"] == pytest.approx(0.098)
 
 
-def test_a_goal_may_be_the_distance_of_a_claim_and_whole_numbers_may_vary(tmp_path: Path) -> None:
+def test_a_goal_may_be_the_distance_of_a_claim(tmp_path: Path) -> None:
     text = f"""maximise = "{MARGIN}"
 [ranges]
 "shaft.speed" = ["500 rpm", "900 rpm"]
@@ -218,3 +216,17 @@ def test_a_goal_may_be_the_distance_of_a_claim_and_whole_numbers_may_vary(tmp_pa
     found = optimize(study(tmp_path, text, head=FAST + QUICK), processes=1)
     assert found.values == pytest.approx({"shaft.speed": 500.0 * RPM, "belt.guide_clearance": 0.2e-3})
     assert found.goal == pytest.approx(found.verdicts[0].distance, rel=1e-12)
+
+
+def test_whole_numbers_may_vary(tmp_path: Path) -> None:
+    text = """maximise = "damper.thread_count"
+[ranges]
+"damper.thread_count" = [0, 4000]"""
+    scene = SIMS / "damper.toml"
+    head = f"[set]\nrevolutions = 2\nsteps_per_revolution = 90\n{QUICK}"
+    found = optimize(study(tmp_path, text, scene, head), processes=1)
+    count = found.values["damper.thread_count"]
+    assert isinstance(count, int) and 0 < count < 4000
+    setting = {"revolutions": 2, "steps_per_revolution": 90}
+    assert evaluate(scene, set={**setting, "damper.thread_count": count})
+    assert not evaluate(scene, set={**setting, "damper.thread_count": count + 1})

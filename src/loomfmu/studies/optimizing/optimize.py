@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...cosim.run import evaluate
 from ...cosim.scenes.scene_files import files_of
-from ...errors import path_of
+from ...errors import LoomfmuError, path_of
 from ...progress import progress as progress_bar
 from ...sweeps.place import check_packages, check_place, cluster, local
 from ...sweeps.worker import job_of
@@ -59,8 +59,11 @@ def optimize(
     try:
         with ExitStack() as stack:
             own = own_point(study)
-            files.check(study, own)  # what could not be written is refused now, not after the search
-            verdicts = evaluate(study.scene, flavour=study.flavour).claims
+            try:  # what could not be run or written is refused now, not after the search
+                files.check(study, own)
+                verdicts = evaluate(study.scene, flavour=study.flavour).claims
+            except LoomfmuError as error:
+                raise LoomfmuError(f"{path}: {error}") from None
             limits = limits_of(study, verdicts, path)
             inputs = [path, *files_of(study.scene)]
             stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))

@@ -137,11 +137,13 @@ def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
 def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Headings and a row for each design of a front."""
     study = found.study
-    headings = (*(goal.words for goal in study.goals), *(each.key for each in study.variables), "binding")
+    goals = [goal.name for goal in study.goals]
+    others = [each for each in study.variables if each.key not in goals]
+    headings = (*(goal.words for goal in study.goals), *(each.key for each in others), "binding")
     rows = [
         (
             *(shown_goal(goal, best, place) for place, goal in enumerate(study.goals)),
-            *(each.varied.show(best.values[each.key]) for each in study.variables),
+            *(each.varied.show(best.values[each.key]) for each in others),
             ", ".join(best.binding) or "-",
         )
         for best in found.front
@@ -158,7 +160,7 @@ def conclusion(found: Optimum) -> Iterator[str]:
     elif len(found.study.goals) == 1:
         (best,) = found.front
         goal = found.study.goals[0]
-        yield f"{goal.words}: {shown_goal(goal, best, 0)}."
+        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}."
         keys = [each.key for each in found.study.variables]
         names = " and ".join(
             f"the end of the range of {each}" if each in keys else f"'{each}'" for each in best.binding

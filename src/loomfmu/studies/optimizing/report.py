@@ -29,8 +29,9 @@ def show(found: Optimum) -> None:
         printed.show(headings, rows, entries)
     say(*conclusion(found))
     say("This is a search, not a proof that there is no better design.")
-    for best in found.front:
-        say(f"scene: {best.scene}")
+    if found.front:
+        first, last = found.front[0].scene, found.front[-1].scene
+        say(f"scene: {first}" if first == last else f"scenes: {first} to {last.name}")
     say(f"table: {found.path / 'designs.csv'}")
     if found.picture is not None:
         say(f"picture: {found.picture}")

@@ -93,8 +93,9 @@ def _best(runs: Runs, pieces: Pieces, first: Sequence[Point], budget: int) -> li
     known = sorted(runs.designs.values(), key=rank)[: len(first) // 2]
     start = list(dict.fromkeys([*(each.point for each in known), *first]))[: len(first)]
     scattered(runs, height, start, budget, runs.study.search["seed"])
-    if runs.study.continuous:
-        for design in list(_leaders(runs, rank)):
+    for leader in list(_leaders(runs, rank)):
+        design = _stepped(runs, leader, rank)
+        if runs.study.continuous:
             shares = np.array([design.point[place] for place in runs.study.continuous])
             polished(about(runs, design, pieces), shares)
     allowed = [each for each in runs.designs.values() if each.allowed]
@@ -112,6 +113,24 @@ def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]]) -> Itera
             yield design
         if len(seen) == POLISHED:
             return
+
+
+def _stepped(runs: Runs, design: Design, rank: Callable[[Design], tuple[float, float]]) -> Design:
+    """A design with better whole numbers, if there is one: by steps to either side, the next half as long."""
+    variables = runs.study.variables
+    places = [place for place, each in enumerate(variables) if isinstance(each.options, range)]
+    step = 2.0 ** max((int(variables[place].last).bit_length() for place in places), default=0)
+    while places and step >= 1.0:
+        points = [
+            (*design.point[:place], number, *design.point[place + 1 :])
+            for place in places
+            for number in (round(design.point[place]) - step, round(design.point[place]) + step)
+            if 0.0 <= number <= variables[place].last
+        ]
+        best = min([design, *runs.at(points)], key=rank)
+        step = step if best is not design else step / 2.0
+        design = best
+    return design
 
 
 def _front(designs: Sequence[Design]) -> list[Design]:

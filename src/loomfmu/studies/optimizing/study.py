@@ -58,9 +58,10 @@ class Variable:
     @property
     def text(self) -> str:
         """What it may be."""
-        if self.range is None:
+        if self.range is None and not isinstance(self.options, range):
             return " | ".join(map(self.varied.show, self.options))
-        return f"{self.varied.show(self.range.low)} to {self.varied.show(self.range.high)}"
+        ends = (self.range.low, self.range.high) if self.range else (self.options[0], self.options[-1])
+        return " to ".join(map(self.varied.show, ends))
 
 
 @dataclass(frozen=True)
