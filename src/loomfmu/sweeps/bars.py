@@ -1,30 +1,26 @@
 """The picture of sensitivities: how much each output depends on each range, as bars."""
 
-from io import BytesIO
-from pathlib import Path
 from textwrap import fill
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ..files import PICTURE, write_file
+from ..traces.plotting import COLOURS, figure
 from .sensitivity import INDICES, WORDS, Influences
 
-COLOURS = ("#0072b2", "#e69f00")
 WIDTH, LINE, REST = 8.0, 0.27, 0.9  # [in]
 LONGEST = 48  # letters of a line of a title
 ACROSS = 2  # panels
 
 
-def draw(found: Influences, path: Path) -> Path:
-    """Write a picture with a panel for each output that has indices."""
+def draw(found: Influences) -> Any:
+    """A figure of matplotlib with a panel for each output that has indices."""
     shown = [each for each in found.outputs if each.indices]
     across = min(ACROSS, max(1, len(shown)))
     down = max(1, -(-len(shown) // across))
     height = down * (LINE * len(found.outputs[0].keys) + REST) + 0.6
-    figure = Figure(figsize=(WIDTH, height), dpi=150, layout="constrained")
-    panels: list[Any] = list(figure.subplots(down, across, squeeze=False, sharey=True).flat)
+    drawn = figure((WIDTH, height))
+    panels = list(drawn.subplots(down, across, squeeze=False, sharey=True).flat)
     bars = INDICES[found.method][:2]
     for axes, each in zip(panels, shown, strict=False):
         places = np.arange(len(each.keys))
@@ -44,10 +40,8 @@ def draw(found: Influences, path: Path) -> Path:
     if shown:
         panels[0].invert_yaxis()
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
+        drawn.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     for axes in panels[len(shown) :]:
         axes.set_axis_off()
-    figure.suptitle(found.title, fontsize=11)
-    drawn = BytesIO()
-    figure.savefig(drawn, format="png", metadata={"Software": None})
-    return write_file(path, drawn.getvalue(), PICTURE)
+    drawn.suptitle(found.title, fontsize=11)
+    return drawn

@@ -171,9 +171,10 @@ def _indices(store: "Store", table: Any) -> Influences | None:
     found = influences(plan.sensitivity, table, plan.sample, plan.title)
     write_file(store.indices_path, as_csv(found).encode(), ANY)
     if find_spec("matplotlib") is not None:
+        from ..report import pictures
         from .bars import draw
 
-        draw(found, store.bars_path)
+        pictures.save(draw(found), store.bars_path, plan.title)
     return found
 
 

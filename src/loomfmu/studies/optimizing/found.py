@@ -78,7 +78,7 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
     picture = find_spec("matplotlib") is not None
     warnings = study.notes if picture else (*study.notes, 'no picture: pip install "loomfmu[plot]"')
     found = Optimum(
-        study, tuple(front), len(designs), sum(each.allowed for each in designs),
+        study, tuple(front), len(designs), runs.ran, sum(each.allowed for each in designs),
         sum(bool(each.error) for each in designs), _nowhere(designs, names, own), files.directory,
         files.picture if picture else None, warnings,
     )  # fmt: skip

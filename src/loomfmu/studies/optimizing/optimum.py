@@ -36,13 +36,15 @@ class Best:
 class Optimum:
     """The best designs of a study: one, or several goals' front; true if there is one. A search, not a proof.
 
-    `front` has them in the order of the first goal. `runs` counts the designs that were tried, `allowed`
-    those that meet all claims; `nowhere` are the claims that no design meets. Values are in SI.
+    `front` has them in the order of the first goal. `runs` counts the designs that were tried, `ran` those
+    that were run now and not before, `allowed` those that meet all claims, `failed` those that could not be
+    run; `nowhere` are the claims that no design meets. Values are in SI.
     """
 
     study: Study = field(repr=False)
     front: tuple[Best, ...]
     runs: int
+    ran: int
     allowed: int
     failed: int
     nowhere: tuple[str, ...]

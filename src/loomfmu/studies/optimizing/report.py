@@ -8,7 +8,9 @@ from .optimum import CLAIMS, HEADINGS, Optimum, claim_rows, conclusion, front_ta
 def show(found: Optimum) -> None:
     """Print the best design, or the front, and where it is."""
     study = found.study
-    say(f"{study.title}: {found.runs} designs, {found.allowed} of which meet all claims")
+    before = found.runs - found.ran
+    again = f" ({before} of them run before)" if before > 0 else ""
+    say(f"{study.title}: {found.runs} designs{again}, {found.allowed} of which meet all claims")
     if found.front and len(study.goals) == 1:
         (best,) = found.front
         rows = value_rows(found, best)

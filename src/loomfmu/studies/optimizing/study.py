@@ -49,12 +49,6 @@ class Variable:
             return self.options[round(number)]
         return float(self.range.at(number))
 
-    def number(self, value: Value) -> float | None:
-        """The number that stands for a value; None for one that is not there."""
-        if self.range is None:
-            return float(self.options.index(value)) if value in self.options else None
-        return self.range.share(float(value)) if self.range.low <= float(value) <= self.range.high else None
-
     @property
     def text(self) -> str:
         """What it may be."""
