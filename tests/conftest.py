@@ -2,11 +2,12 @@
 
 import pytest
 from browser import chromium, opened
+from compiled import belt_in_c
 from hypothesis import settings
 from sharing import fmu_cache
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
-__all__ = ["chromium", "fmu_cache", "opened"]
+__all__ = ["belt_in_c", "chromium", "fmu_cache", "opened"]
 
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 

@@ -16,7 +16,7 @@ SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
 
 def test_there_is_a_test_for_each() -> None:
     assert sorted(path.name for path in SWEEPS.iterdir()) == [
-        "damper.toml", "safe_speed.toml", "what_matters.toml"
+        "belt_motion.toml", "damper.toml", "safe_speed.toml", "what_matters.toml"
     ]  # fmt: skip
 
 
@@ -62,3 +62,15 @@ def test_clearance_matters_most_for_the_belt_and_the_law_for_the_dwell(
     assert "distance of the belt keeps a margin of 10 %: lowest margin: belt.guide_clearance 0." in said
     assert re.search(r"warp beyond 6 mm: dobby\.speed_reduction [\d.]+ ± [\d.]+ distance of", said)  # alone
     assert (tmp_path / "out" / "sensitivity.png").stat().st_size > 10_000
+
+
+def test_a_bow_over_the_whole_span_deflects_farther_than_the_belts_own(tmp_path: Path) -> None:
+    output = tmp_path / "out"
+    assert main(["sweep", str(SWEEPS / "belt_motion.toml"), "--output", str(output), "--processes", "1"]) == 1
+    table = pq.read_table(output / "table.parquet")
+    assert table.num_rows == 162 and table["error"].null_count == 162
+    deflection = table["belt_motion.largest_at_risk"].to_numpy().reshape(9, 3, 3, 2)
+    assert np.all(deflection[..., 1] > deflection[..., 0])
+    assert np.all(np.diff(deflection, axis=0) > 0.0)  # faster
+    assert np.all(np.diff(deflection, axis=2) > 0.0)  # more bow
+    assert (output / "map.png").stat().st_size > 10_000

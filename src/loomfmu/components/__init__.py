@@ -11,6 +11,7 @@ MODULES = {
     "DrivenShaft": "driven_shaft",
     "WeftInsertion": "weft_insertion",
     "BeltMonitor": "belt_monitor",
+    "BeltDynamics": "belt_dynamics",
     "WeftTension": "weft_tension",
     "DobbyDrive": "dobby.drive",
     "HealdFrame": "heald_frame",

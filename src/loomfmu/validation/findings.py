@@ -12,7 +12,7 @@ from ..design import loom
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics.belt import elastica_deflection
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, rotor_law
-from . import belt, cam, loads, rotor
+from . import belt, belt_motion, cam, loads, rotor
 from .chain import RPM, carrier
 from .lock import limit as lock_limit
 from .sections import Chapter, Row, Section, number
@@ -32,6 +32,7 @@ def chapter() -> Chapter:
             against_the_tables(),
             belt_design(),
             over_speed(),
+            *belt_motion.sections(),
             loads.weft(),
             shed(),
             limits(),

@@ -29,9 +29,9 @@ FILES = (
 
 
 Kind = Literal[  # for editors and type checkers; a test holds it to the classes
-    "above", "below", "clear_shed", "dwell", "dwell_contains", "energy_balance", "heald_blows",
-    "locks_in_time", "lowest_margin", "motor_power", "nip_holds", "peak_load", "rapier_in_open_shed",
-    "reed_clear_of_rapier", "speed_fluctuation", "stop_contacts",
+    "above", "below", "belt_deflection", "clear_shed", "dwell", "dwell_contains", "energy_balance",
+    "heald_blows", "locks_in_time", "lowest_margin", "motor_power", "nip_holds", "peak_load",
+    "rapier_in_open_shed", "reed_clear_of_rapier", "speed_fluctuation", "stop_contacts",
 ]  # fmt: skip
 
 

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
+from ... import units
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
-from .claim import AT_MOST, FORCE, LANDINGS, NOTHING, VELOCITY, Claim, Landings
+from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim, Landings
 from .curves import Floats
 
 ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
@@ -30,6 +31,25 @@ class LowestMargin(Claim):
 
     def landings(self, trace: Signals) -> Landings:
         return Landings([], [(f"{self.belt}.lowest_margin", 1.0)])
+
+
+class BeltDeflection(Claim):
+    """The belt in motion is never deflected farther than that."""
+
+    at_most: float = argument(Quantity("m", "mm", low=0.0))
+    belt: str = argument(Name(), "belt_motion")
+
+    needs = ("belt.deflection", "belt.largest_deflection", "belt.largest_at_risk", "belt.folded")
+    sense, unit, grid = AT_MOST, LENGTH, NOTHING
+
+    def judge(self, trace: Signals) -> Verdict:
+        latch = f"{self.belt}.largest_deflection"
+        worst, time = float(trace[latch][-1]), _reached(trace, latch, -trace[f"{self.belt}.deflection"])
+        pushed = units.show(float(trace[f"{self.belt}.largest_at_risk"][-1]), "mm")
+        notes = [f"while the head was pushed: {pushed}"]
+        if trace[f"{self.belt}.folded"][-1]:
+            notes.append("the belt folded")
+        return self.verdict(trace, "largest deflection of the belt", latch, self.at_most, worst, time, *notes)
 
 
 class PeakLoad(Claim):

@@ -16,6 +16,7 @@ COMPONENT_OF = {
     "shaft": "MainShaft",
     "weft": "WeftInsertion",
     "belt": "BeltMonitor",
+    "belt_motion": "BeltDynamics",
     "yarn": "WeftTension",
     "dobby": "DobbyDrive",
     "heald": "HealdFrame",
@@ -40,7 +41,7 @@ ALL = "*."  # in the place of an instance: the output of that name of every inst
 FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
 
 FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one for each frame
-LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock"}  # one for the loom
+LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock", "belt_motion": "belt_motion"}  # one for the loom
 LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
 PICKS_IN_A_WORD = 16
 
@@ -67,8 +68,8 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
     (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
-    `warps` loads it with its threads, `play` adds the blows of its healds. `yarn`, `reed` and `locks` add the
-    weft, beat-up and pattern locks.
+    `warps` loads it with its threads, `play` adds the blows of its healds. `yarn`, `reed`, `locks` and
+    `belt_motion` add the weft, beat-up, pattern locks and the deflection of the belt.
     """
     for key in table:
         if key not in LOOM_KEYS:

@@ -231,3 +231,20 @@ def largest_between(a0: float, a1: float, a2: float, a3: float) -> float:
         if value > largest:
             largest = value
     return largest
+
+
+def met(
+    share: float, step: float, start: float, start_rate: float, end: float, end_rate: float
+) -> tuple[float, float]:
+    """Value and rate at a share of the step, on the cubic that joins two samples with their rates.
+
+    >>> met(0.5, 2.0, 0.0, 0.0, 8.0, 12.0)  # t^3
+    (1.0, 3.0)
+    """
+    rise = step * start_rate
+    fall = step * end_rate
+    a2 = 3.0 * (end - start) - 2.0 * rise - fall
+    a3 = 2.0 * (start - end) + rise + fall
+    value = start + share * (rise + share * (a2 + share * a3))
+    slope = rise + share * (2.0 * a2 + 3.0 * share * a3)
+    return value, slope / step if step > 0.0 else end_rate

@@ -116,6 +116,12 @@
       return { worst: last(latch), bound: claim.bound, time: reached(run, latch, run.signal(`${claim.belt}.margin`)),
                note: last(latch) >= 1 ? "the belt is never at risk in this run" : "" };
     },
+    belt_deflection: (run, claim) => {
+      const latch = run.signal(`${claim.belt}.largest_deflection`);
+      const deflection = run.signal(`${claim.belt}.deflection`).map(each => -each);
+      return { worst: last(latch), bound: claim.at_most, time: reached(run, latch, deflection),
+               note: last(run.signal(`${claim.belt}.folded`)) ? "the belt folded" : "" };
+    },
     peak_load: (run, claim) => {
       const latch = run.signal(`${claim.damper}.peak_load`);
       const force = run.signal(`${claim.damper}.transmitted_force`).map(each => -Math.abs(each));

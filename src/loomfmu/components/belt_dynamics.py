@@ -1,0 +1,237 @@
+"""BeltDynamics: the rapier belt between guide and head in motion, its bow amplified by the push."""
+
+from dataclasses import dataclass
+from math import cos, fabs, pi, sin, sqrt
+
+from ..physics.belt import LARGEST_BEND
+from ..physics.belt_modes import end_amplitude, end_shape
+from ..physics.belt_shape import LEAST_SQUARE, shape_at, shape_extremes, shortening
+from ..physics.numerics.extremes import highest_so_far
+from ..physics.numerics.motion import met
+from .belt_rest import BeltRest
+
+JUMP = 1e-6  # m, that a standing head may be off
+MOST_SWEEPS = 2500  # over the stages of the integration in one step; both strokes of a loom need fewer
+MOST_HALVINGS = 9
+BALANCED = 1e-9  # of the energy: what an integration step may leave unexplained, if it can be halved
+EASY = 1e-3  # of that: then the next step may be twice as long
+LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
+GROWTH = 0.05  # of the free length in a step of the integration
+MOST_STEPS = 50  # of the integration in one step, before they are halved
+LARGEST_STEP = 5e-4  # s, of the integration
+STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
+SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
+
+
+@dataclass(slots=True)
+class BeltDynamics(BeltRest):
+    """Rapier belt in motion: a beam of growing length that moves through the guide and pushes the head.
+
+    Between two samples of the inputs the head moves on the quintic that joins them; six modes are integrated
+    by Gauss's method of order 6.
+    """
+
+    def initialize(self, time: float) -> int:
+        """Let the belt rest in equilibrium and forget all extremes and work."""
+        self.outside = False
+        self.held = False
+        self.folded = False
+        self.largest_deflection = 0.0
+        self.largest_at_risk = 0.0
+        self.lowest_margin = 1.0
+        self.push_work = 0.0
+        self.guide_work = 0.0
+        self.lost_work = 0.0
+        self.energy_through = 0.0
+        self.energy_residual = 0.0
+        self.forget()
+        self.remember()
+        self.lay_path(0.0)
+        if self.path[0] > self.shortest_length:
+            self.come_out(0.0)
+        return self.show()
+
+    def step(self, time: float, step_size: float) -> int:
+        """Move the belt over the step: out of the guide, on, and back into it."""
+        if step_size < SHORTEST_STEP:
+            return 0
+        jumped = self.jumps(step_size if self.inputs_at_step_end else self.path_step)
+        self.lay_path(step_size)
+        ends_outside = self.length_at(1.0) > self.shortest_length
+        share = 0.0
+        if jumped:
+            self.outside = False
+            self.held = False
+            self.forget()
+            share = 1.0 if self.inputs_at_step_end else 0.0
+        if not self.outside and ends_outside:
+            if share == 0.0 and self.length_at(0.0) < self.shortest_length:
+                share = self.crossing()
+            self.come_out(share)
+        if self.outside and ends_outside:
+            self.move(share, 1.0)
+        elif self.outside:
+            if self.length_at(0.0) > self.shortest_length:
+                self.move(0.0, self.crossing())
+            self.outside = False
+            self.held = False
+            self.forget()
+        self.remember()
+        return self.show()
+
+    def jumps(self, since: float) -> bool:
+        """Whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
+        rates = fabs(self.sampled_velocity) + fabs(self.velocity)
+        seconds = fabs(self.sampled_acceleration) + fabs(self.acceleration)
+        change = self.travel - self.sampled_travel - 0.5 * since * (self.sampled_velocity + self.velocity)
+        return fabs(change) > since * (0.5 * rates + since * seconds) + JUMP
+
+    def crossing(self) -> float:
+        """Share of the step at which the free length passes the shortest one."""
+        low = 0.0
+        high = 1.0
+        starts_outside = self.length_at(0.0) > self.shortest_length
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if (self.length_at(middle) > self.shortest_length) == starts_outside:
+                low = middle
+            else:
+                high = middle
+        return high
+
+    def come_out(self, share: float) -> None:
+        """Put the belt where it comes out in equilibrium under its load, or without it if there is none."""
+        self.outside = True
+        self.held = False
+        length = self.length_at(share)
+        self.rest(length, self.velocity_at(share), self.acceleration_at(share), self.tension_at(share))
+        if not self.at_rest:
+            self.rest(length, 0.0, 0.0, 0.0)
+        self.look(share)
+        if not (self.at_rest and self.steepness < STEEPEST):
+            self.hold(share)
+            return
+        self.take_extremes(share, 0.0)
+
+    def hold(self, share: float) -> None:
+        """Hold the belt as it folded: it counts as bent as far as a belt of its length can be."""
+        self.settle()
+        self.deflection = LARGEST_BEND * self.length_at(share)
+        if self.deflection > self.largest_deflection:
+            self.largest_deflection = self.deflection
+        if self.pushed_at(share) > 0.0 and self.deflection > self.largest_at_risk:
+            self.largest_at_risk = self.deflection
+        self.deflection_rate = 0.0
+        self.growth_rate = 0.0
+        self.energy = 0.0
+        self.held = True
+        self.folded = True
+
+    def move(self, start: float, end: float) -> None:
+        """Integrate over a part of the step, in equal steps; one that does not settle is halved."""
+        if self.held or self.rests(start):
+            return
+        self.push_before = self.pushed_at(start)
+        duration = (end - start) * self.path_step
+        count = 1
+        if duration > LARGEST_STEP:
+            count = MOST_STEPS
+            if duration < MOST_STEPS * LARGEST_STEP:
+                count = 1 + int(duration / LARGEST_STEP * (1.0 - 1e-9))
+        self.try_modes()
+        self.energy = self.energy_at(start)
+        self.sweeps = 0
+        share = start
+        halvings = 0
+        while end - share > 1e-12 and halvings <= MOST_HALVINGS and self.sweeps < MOST_SWEEPS:
+            taken = self.suited(share, end, (end - start) / count) / 2.0**halvings
+            taken = taken if taken < end - share - 1e-12 else end - share
+            if not self.advance(share, taken):
+                halvings = halvings + 1
+                continue
+            energy = self.energy_at(share + taken)
+            missing = energy - self.energy - self.step_push - self.step_guide + self.step_loss
+            error = fabs(missing) / (fabs(energy) + fabs(self.energy) + self.step_through + LEAST_ENERGY)
+            if error > BALANCED and halvings < MOST_HALVINGS:
+                halvings = halvings + 1
+                continue
+            if error < EASY * BALANCED and halvings > 0:
+                halvings = halvings - 1
+            share = share + taken
+            self.go_on()
+            self.energy = energy
+            self.energy_residual = self.energy_residual + missing
+            self.look(share)
+            self.take_extremes(share, taken * self.path_step)
+            if not self.steepness < STEEPEST:
+                break
+        if end - share > 1e-12:
+            self.hold(share)
+
+    def suited(self, share: float, end: float, size: float) -> float:
+        """Share of the step over which the free length changes by a twentieth, or a given smaller one."""
+        length = self.length_at(share)
+        ahead = share + size if share + size < end else end
+        change = fabs(self.length_at(ahead) - length)
+        if self.length_at(ahead) < length:
+            length = self.length_at(ahead)
+        if change <= GROWTH * length or length < 0.5 * self.shortest_length:
+            return size
+        return size * GROWTH * length / change
+
+    def look(self, share: float) -> None:
+        """Find where the belt is farthest from its line, and how steep and bent it is."""
+        length = self.length_at(share)
+        turned = pi * length / self.bow_length
+        end, end_by_length = end_amplitude(
+            self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
+        )
+        a1, a2, a3, a4, a5, a6 = end_shape(end, *self.mode)
+        place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, end)
+        end = self.velocity_at(share) * end_by_length
+        a1, a2, a3, a4, a5, a6 = end_shape(end, *self.mode_rate)
+        rate, _first, _second = shape_at(place, a1, a2, a3, a4, a5, a6, end)
+        self.last_deflection = self.deflection
+        self.last_rate = self.deflection_rate
+        self.deflection = fabs(farthest)
+        self.deflection_rate = rate if farthest >= 0.0 else -rate
+        self.deflection_place = (1.0 - place) * length
+        self.steepness = steepest
+        self.bending_strain = 0.5 * self.thickness * bend
+
+    def take_extremes(self, share: float, duration: float) -> None:
+        """Bring the largest deflections up to a share of the step, on the cubic from the last look."""
+        self.largest_deflection = highest_so_far(
+            self.largest_deflection, duration, self.last_deflection, self.last_rate, self.deflection,
+            self.deflection_rate,
+        )  # fmt: skip
+        pushed = self.pushed_at(share)
+        value = self.deflection
+        rate = self.deflection_rate
+        part = 1.0
+        if pushed <= 0.0 and self.push_before > 0.0:
+            part = self.push_before / (self.push_before - pushed)
+            value, rate = met(
+                part, duration, self.last_deflection, self.last_rate, self.deflection, self.deflection_rate
+            )
+        if pushed > 0.0 or self.push_before > 0.0:
+            self.largest_at_risk = highest_so_far(
+                self.largest_at_risk, part * duration, self.last_deflection, self.last_rate, value, rate
+            )
+        self.push_before = pushed
+
+    def show(self) -> int:
+        """Outputs at the end of the step."""
+        self.free_length, _second = self.joined_at(1.0)
+        self.compression = self.head_mass * self.acceleration_at(1.0) + self.tension_at(1.0)
+        if self.outside and not self.held:
+            self.try_modes()
+            self.found_a = self.rates_at(1.0)
+            wave = pi / self.free_length
+            own = 0.5 * self.belt_mass * self.acceleration_at(1.0) * self.free_length
+            excess = self.compression + own - self.stiffness * wave * wave
+            self.growth_rate = wave * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
+            self.shortening = shortening(self.free_length, *self.mode)
+        self.margin = 1.0 - self.deflection / self.allowed_deflection
+        self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
+        return 1 if self.held else 0

@@ -1,0 +1,187 @@
+"""What BeltDynamics is given, shows and keeps: its declarations."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..arrays import array
+from ..variables import Component, Problem, Terminal, at_step_end, auxiliary, input_, output, parameter, state
+from .terminals import HEAD
+
+NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+@dataclass(slots=True)
+class BeltDynamicsVariables(Component):
+    """Variables of the belt in motion, and what it declares of itself."""
+
+    problems: ClassVar[tuple[Problem, ...]] = (
+        Problem(
+            "the belt has folded, or moves too fast to be followed, at a free length of {free_length}: until"
+            " it is back in its guide, its deflection is shown as {deflection}, the largest possible",
+            warning=True,
+        ),
+    )
+    terminals: ClassVar[tuple[Terminal, ...]] = (HEAD.of("travel", "velocity", "acceleration"),)
+
+    bending_stiffness: float = parameter(
+        "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6,
+        source="belt.bending_stiffness",
+    )  # fmt: skip
+    head_mass: float = parameter(
+        "kg", 0.1105, "Mass of rapier head and rigid section of the belt", display="g",
+        minimum=1e-6, maximum=100.0, nominal=0.1, source="belt.head_mass",
+    )  # fmt: skip
+    head_length: float = parameter(
+        "m", 0.550, "Length of head and rigid section", display="mm", minimum=0.0, maximum=10.0,
+        source="belt.head_length",
+    )  # fmt: skip
+    idle_travel: float = parameter(
+        "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0,
+        source="belt.idle_travel",
+    )  # fmt: skip
+    taker: bool = parameter(
+        "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in",
+        source="belt.taker",
+    )  # fmt: skip
+    belt_mass: float = parameter(
+        "kg/m", 0.05, "Mass of the belt per length (assumed: none published; 0.02 to 0.1)",
+        minimum=1e-9, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    damping: float = parameter(
+        "1/s", 0.0, "Rate at which a free vibration of the belt decays (assumed: none published)",
+        minimum=0.0, maximum=1e4, nominal=10.0,
+    )  # fmt: skip
+    bow: float = parameter(
+        "m", 0.3e-3, "Amplitude of the bow (assumed: none published; 0.05 to 0.5 mm)", display="mm",
+        minimum=0.0, maximum=0.1, nominal=1e-3,
+    )  # fmt: skip
+    bow_of: int = parameter(
+        "1", 1, "What has the bow: the belt, which takes it along, or the span between guide and head",
+        choices=("belt", "span"),
+    )  # fmt: skip
+    bow_length: float = parameter(
+        "m", 0.2, "Half a wave of the belt's own bow (assumed)", display="mm", minimum=1e-3, maximum=100.0,
+        nominal=0.1,
+    )  # fmt: skip
+    thickness: float = parameter(
+        "m", 2.5e-3, "Thickness of the belt, for its strain (assumed: none published)", display="mm",
+        minimum=1e-6, maximum=0.1, nominal=1e-3,
+    )  # fmt: skip
+    allowed_deflection: float = parameter(
+        "m", 2e-3, "Deflection that the shed leaves room for", display="mm", minimum=1e-6, maximum=1.0,
+        nominal=1e-3,
+    )  # fmt: skip
+    shortest_length: float = parameter(
+        "m", 0.02, "Free length below which the belt is taken as straight", display="mm",
+        minimum=1e-4, maximum=1.0, nominal=0.01,
+    )  # fmt: skip
+    modes: int = parameter("1", 6, "Number of modes, the others being held at 0", minimum=1, maximum=6)
+    inputs_at_step_end: bool = at_step_end()
+    travel: float = input_(
+        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
+    )
+    velocity: float = input_(
+        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
+        minimum=-1e9, maximum=1e9,
+    )  # fmt: skip
+    acceleration: float = input_(
+        "m/s2", 0.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
+    )
+    yarn_tension: float = input_(
+        "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
+        display="cN", minimum=-1e6, maximum=1e6,
+    )  # fmt: skip
+    length_factor: float = input_(
+        "1", 0.8, "Column length factor mu: the belt is a pinned one of stiffness EI / mu^2",
+        minimum=0.1, maximum=2.0, source="belt.length_factor",
+    )  # fmt: skip
+
+    free_length: float = output(
+        "m", "Length of the belt between guide and head; negative while inside the guide", display="mm"
+    )
+    compression: float = output(
+        "N", "Compression of the belt at the head, relieved by the head's lag", nominal=100.0
+    )
+    deflection: float = output("m", "Largest deflection along the belt", display="mm", nominal=5e-3)
+    deflection_rate: float = output("m/s", "Rate of the deflection where it is largest")
+    deflection_place: float = output(
+        "m", "Distance of the largest deflection from the guide", display="mm", nominal=0.1
+    )
+    largest_deflection: float = output(
+        "m", "Largest deflection so far", display="mm", nominal=5e-3, highest_of="deflection"
+    )
+    largest_at_risk: float = output(
+        "m", "Largest deflection so far while the head was pushed", display="mm", nominal=5e-3
+    )
+    margin: float = output("1", "Dynamic margin, 1 - deflection / allowed_deflection")
+    lowest_margin: float = output("1", "Lowest dynamic margin so far", lowest_of="margin")
+    growth_rate: float = output(
+        "1/s", "Rate at which the first mode alone would grow; 0 while it is stable", nominal=100.0
+    )
+    bending_strain: float = output("1", "Largest strain by bending, on the surface of the belt", nominal=1e-3)
+    steepness: float = output("1", "Sine of the largest slope of the belt", nominal=0.1)
+    shortening: float = output(
+        "m", "Way by which the head lags behind because the belt is bent", display="mm", nominal=1e-3
+    )
+    energy: float = output("J", "Energy of the deflection, against the belt held straight", nominal=0.1)
+    push_work: float = output("J", "Work of the compression on the shortening so far", nominal=0.1)
+    guide_work: float = output("J", "Work done on the deflection at the guide so far", nominal=0.1)
+    lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
+    energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1)
+    energy_residual: float = output("J", "Energy that all work so far does not explain", nominal=1e-9)
+    folded: bool = output(
+        "1",
+        "The belt has folded at least once, or its motion could not be followed",
+        start=False,
+        variability="discrete",
+    )
+
+    outside: bool = state("1", "The free length is above the shortest one", start=False)
+    held: bool = state("1", "The belt is held as it folded", start=False)
+    mode: tuple[float, ...] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
+    mode_rate: tuple[float, ...] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
+    sampled_travel: float = state("m", "Travel at the last sample of the inputs")
+    sampled_velocity: float = state("m/s", "Velocity at the last sample")
+    sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
+    sampled_tension: float = state("N", "Weft tension at the last sample")
+    path: tuple[float, ...] = array(
+        state("m", f"Free length over the step, {each} coefficient") for each in NUMBERS
+    )
+    path_step: float = state("s", "Duration of the step")
+    start_tension: float = state("N", "Weft tension at the start of the step")
+    stiffness: float = state("N.m2", "Bending stiffness of the pinned belt, EI / mu^2")
+    gauss_a: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode, first stage") for each in NUMBERS
+    )
+    gauss_b: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode, second stage") for each in NUMBERS
+    )
+    gauss_c: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode, third stage") for each in NUMBERS
+    )
+    found_a: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode found at the first stage") for each in NUMBERS
+    )
+    found_b: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode found at the second stage") for each in NUMBERS
+    )
+    found_c: tuple[float, ...] = array(
+        auxiliary("m/s2", f"Acceleration of the {each} mode found at the third stage") for each in NUMBERS
+    )
+    trial: tuple[float, ...] = array(
+        auxiliary("m", f"Amplitude of the {each} mode at a stage") for each in NUMBERS
+    )
+    trial_rate: tuple[float, ...] = array(
+        auxiliary("m/s", f"Rate of the {each} mode at a stage") for each in NUMBERS
+    )
+    step_push: float = auxiliary("J", "Work of the compression in the last step of the integration")
+    step_guide: float = auxiliary("J", "Work at the guide in the last step of the integration")
+    step_loss: float = auxiliary("J", "Work lost in the last step of the integration")
+    step_through: float = auxiliary("J", "Sum of all work in the last step of the integration")
+    sweeps: int = auxiliary("1", "Sweeps over the stages of the integration in the last step", start=0)
+    at_rest: bool = auxiliary("1", "An equilibrium was found where the belt came out", start=False)
+    mode_sum: float = auxiliary("m", "Sum of the sizes of all modes")
+    rate_sum: float = auxiliary("m/s", "Sum of the sizes of the rates of all modes")
+    push_before: float = auxiliary("N", "Compression after the last step of the integration")
+    last_deflection: float = auxiliary("m", "Deflection before the last step of the integration")
+    last_rate: float = auxiliary("m/s", "Its rate before the last step of the integration")

@@ -1,0 +1,94 @@
+"""What BeltDynamics knows of its belt at any instant of a step: its path, its load, what moves its modes."""
+
+from dataclasses import dataclass
+
+from ..physics.belt import weft_load
+from ..physics.belt_motion import accelerations
+from ..physics.numerics.motion import joined, joined_rate, joined_value
+from .belt_dynamics_variables import BeltDynamicsVariables
+
+
+@dataclass(slots=True)
+class BeltPath(BeltDynamicsVariables):
+    """Free length, velocity and load over a step, and the accelerations of the modes."""
+
+    def lay_path(self, duration: float) -> None:
+        """The free length over the step, from the last sample or with the acceleration of this one."""
+        guide = self.idle_travel + self.head_length
+        square = duration * duration
+        self.path_step = duration
+        self.stiffness = self.bending_stiffness / (self.length_factor * self.length_factor)
+        if self.inputs_at_step_end and duration > 0.0:
+            a0, a1, a2, a3 = joined(
+                self.sampled_travel, duration * self.sampled_velocity, square * self.sampled_acceleration,
+                self.travel, duration * self.velocity, square * self.acceleration,
+            )  # fmt: skip
+            start = self.sampled_travel - guide
+            self.path = (start, duration * self.sampled_velocity, a0, a1, a2, a3)
+            self.start_tension = self.sampled_tension
+        else:
+            start = self.travel - guide
+            self.path = (start, duration * self.velocity, square * self.acceleration, 0.0, 0.0, 0.0)
+            self.start_tension = self.yarn_tension
+
+    def joined_at(self, share: float) -> tuple[float, float]:
+        """Free length at a share of the step, negative inside the guide, and its second derivative by it."""
+        start, rate = self.path[0], self.path[1]
+        return joined_value(start, rate, self.path[2], self.path[3], self.path[4], self.path[5], share)
+
+    def length_at(self, share: float) -> float:
+        """Free length at a share of the step, at least half of the shortest one."""
+        length, _second = self.joined_at(share)
+        least = 0.5 * self.shortest_length
+        return length if length > least else least
+
+    def velocity_at(self, share: float) -> float:
+        """Velocity of the belt at a share of the step."""
+        if self.path_step <= 0.0:
+            return self.velocity
+        rate = joined_rate(self.path[1], self.path[2], self.path[3], self.path[4], self.path[5], share)
+        return rate / self.path_step
+
+    def acceleration_at(self, share: float) -> float:
+        """Acceleration of the belt at a share of the step."""
+        if self.path_step <= 0.0:
+            return self.acceleration
+        _length, second = self.joined_at(share)
+        return second / (self.path_step * self.path_step)
+
+    def tension_at(self, share: float) -> float:
+        """Compression by the weft at a share of the step."""
+        tension = self.start_tension + share * (self.yarn_tension - self.start_tension)
+        return weft_load(tension, self.velocity_at(share), self.taker)
+
+    def pushed_at(self, share: float) -> float:
+        """Compression of a straight belt in its middle at a share of the step."""
+        pushed = self.head_mass + 0.5 * self.belt_mass * self.length_at(share)
+        return pushed * self.acceleration_at(share) + self.tension_at(share)
+
+    def second_rates(
+        self, length: float, velocity: float, acceleration: float, tension: float
+    ) -> tuple[float, float, float, float, float, float]:
+        """Accelerations of the modes in their trial place; the compression is then that at the head."""
+        a1, a2, a3, a4, a5, a6, load = accelerations(  # type: ignore[call-arg]
+            *self.trial,  # type: ignore[arg-type]
+            *self.trial_rate, length, velocity, acceleration, tension, self.head_mass,
+            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
+            self.bow_length,
+        )  # fmt: skip
+        self.compression = load
+        return (
+            a1,
+            a2 if self.modes > 1 else 0.0,
+            a3 if self.modes > 2 else 0.0,
+            a4 if self.modes > 3 else 0.0,
+            a5 if self.modes > 4 else 0.0,
+            a6 if self.modes > 5 else 0.0,
+        )
+
+    def rates_at(self, share: float) -> tuple[float, float, float, float, float, float]:
+        """Accelerations of the modes in their trial place at a share of the step."""
+        return self.second_rates(
+            self.length_at(share), self.velocity_at(share), self.acceleration_at(share),
+            self.tension_at(share),
+        )  # fmt: skip

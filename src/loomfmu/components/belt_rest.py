@@ -1,0 +1,123 @@
+"""How BeltDynamics starts: the shape of its belt at rest, and whether it is at rest."""
+
+from dataclasses import dataclass
+from math import cos, fabs, pi, sin
+
+from ..physics.belt_modes import bow_at
+from .belt_integration import BeltIntegration
+
+REPEATS = 200  # until the belt is in equilibrium
+RESTED = 1e-9  # of the modes: what the last repeat may change
+AT_REST = 1e-11  # of the accelerations by bending: what rounding leaves of them in equilibrium
+
+
+@dataclass(slots=True)
+class BeltRest(BeltIntegration):
+    """The belt at rest, or as it only follows the growth of its length."""
+
+    def rest(self, length: float, speed: float, acceleration: float, tension: float) -> None:
+        """Look for the shape that only follows the growth of the free length."""
+        self.forget()
+        self.at_rest = False
+        pushed = (self.head_mass + 0.5 * self.belt_mass * length) * acceleration + tension
+        thrown = self.belt_mass * speed * speed
+        if pushed + thrown > 0.8 * pi * pi * self.stiffness / (length * length):
+            return
+        for _ in range(REPEATS):
+            if self.at_rest:
+                return
+            self.mode_rate = (
+                speed * self.lengthened(0, length) * self.mode[0],
+                speed * self.lengthened(1, length) * self.mode[1],
+                speed * self.lengthened(2, length) * self.mode[2],
+                speed * self.lengthened(3, length) * self.mode[3],
+                speed * self.lengthened(4, length) * self.mode[4],
+                speed * self.lengthened(5, length) * self.mode[5],
+            )
+            self.try_modes()
+            self.found_a = self.second_rates(length, speed, acceleration, tension)
+            self.sums()
+            before = self.mode_sum
+            self.mode = (
+                self.mode[0] + self.yielded(0, length, speed, acceleration, pushed),
+                self.mode[1] + self.yielded(1, length, speed, acceleration, pushed),
+                self.mode[2] + self.yielded(2, length, speed, acceleration, pushed),
+                self.mode[3] + self.yielded(3, length, speed, acceleration, pushed),
+                self.mode[4] + self.yielded(4, length, speed, acceleration, pushed),
+                self.mode[5] + self.yielded(5, length, speed, acceleration, pushed),
+            )
+            self.sums()
+            if not self.mode_sum < length:
+                self.forget()
+                return
+            self.at_rest = fabs(self.mode_sum - before) <= RESTED * before
+
+    def yielded(self, place: int, length: float, speed: float, acceleration: float, pushed: float) -> float:
+        """Change of a mode by which its acceleration, now `found_a`, would be that of the growing length."""
+        wave = (place + 1) * pi / length
+        stiff = wave * wave * (self.stiffness * wave * wave - pushed)
+        by_length = self.lengthened(place, length)
+        wanted = speed * speed * (by_length - 1.0 / length) + acceleration
+        return self.belt_mass * (self.found_a[place] - wanted * by_length * self.mode[place]) / stiff
+
+    def lengthened(self, place: int, length: float) -> float:
+        """Change of a mode at rest by the free length, over the mode."""
+        turned = pi * length / self.bow_length
+        moment, slope = bow_at(
+            place + 1, self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
+        )
+        if moment == 0.0:
+            return 0.0
+        return slope / moment + 3.0 / length
+
+    def rests(self, share: float) -> bool:
+        """Whether the belt is in equilibrium on a path that stands still."""
+        moves = fabs(self.path[1]) + fabs(self.path[2]) + fabs(self.path[3]) + fabs(self.path[4])
+        moves = moves + fabs(self.path[5]) + fabs(self.yarn_tension - self.start_tension)
+        self.sums()
+        if moves != 0.0 or self.rate_sum != 0.0:
+            return False
+        self.try_modes()
+        self.found_a = self.rates_at(share)
+        length = self.length_at(share)
+        wave = pi / length
+        bending = self.stiffness / self.belt_mass * wave * wave * wave * wave
+        found = fabs(self.found_a[0]) + fabs(self.found_a[1]) + fabs(self.found_a[2])
+        found = found + fabs(self.found_a[3]) + fabs(self.found_a[4]) + fabs(self.found_a[5])
+        return found <= AT_REST * bending * self.mode_sum
+
+    def forget(self) -> None:
+        """Straighten the belt."""
+        self.mode = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.settle()
+        self.deflection = 0.0
+        self.deflection_rate = 0.0
+        self.deflection_place = 0.0
+        self.bending_strain = 0.0
+        self.shortening = 0.0
+        self.growth_rate = 0.0
+        self.energy = 0.0
+        self.steepness = 0.0
+        self.last_deflection = 0.0
+        self.last_rate = 0.0
+        self.push_before = 0.0
+        self.sums()
+
+    def settle(self) -> None:
+        """Stop the motion of the modes, and forget what the last integration step tried."""
+        self.mode_rate = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.trial = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.trial_rate = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.gauss_a = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.gauss_b = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.gauss_c = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.found_a = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.found_b = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.found_c = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def remember(self) -> None:
+        """Keep the present inputs as the last sample."""
+        self.sampled_travel = self.travel
+        self.sampled_velocity = self.velocity
+        self.sampled_acceleration = self.acceleration
+        self.sampled_tension = self.yarn_tension

@@ -1,0 +1,243 @@
+"""Modes of a belt of growing length: what they integrate to, and the moment of its bow on them.
+
+With x from 0 at the head to 1 at the guide the deflection is the sum of `q_n sin(n pi x)`, n = 1 to 6. The
+sums below are exact.
+
+A belt with a bow of its own leaves the guide bent, but a sine is straight at its ends: their sum converges
+with the third power of their number only. The end shape has this bend, and the rest converges with the fifth
+power. It is `x^3 - x` less its first six sines; its amplitude follows from the bow.
+"""
+
+from math import fabs, pi
+
+
+def carried_along(
+    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+) -> tuple[float, float, float, float, float, float]:
+    """Modes of `x a'(x)`, half of them: the sum over n of `a_n n pi int x sin(m pi x) cos(n pi x) dx`.
+
+    Its terms are `-(-1)^(m + n) m n / (m^2 - n^2)`, and -1/4 for m = n.
+
+    >>> carried_along(0.0, 3.0, 0.0, 0.0, 0.0, 0.0)[:2]
+    (-2.0, -0.75)
+    """
+    return (
+        -a1 / 4.0 - a2 * 2.0 / 3.0 + a3 * 3.0 / 8.0 - a4 * 4.0 / 15.0 + a5 * 5.0 / 24.0 - a6 * 6.0 / 35.0,
+        a1 * 2.0 / 3.0 - a2 / 4.0 - a3 * 6.0 / 5.0 + a4 * 2.0 / 3.0 - a5 * 10.0 / 21.0 + a6 * 3.0 / 8.0,
+        -a1 * 3.0 / 8.0 + a2 * 6.0 / 5.0 - a3 / 4.0 - a4 * 12.0 / 7.0 + a5 * 15.0 / 16.0 - a6 * 2.0 / 3.0,
+        a1 * 4.0 / 15.0 - a2 * 2.0 / 3.0 + a3 * 12.0 / 7.0 - a4 / 4.0 - a5 * 20.0 / 9.0 + a6 * 6.0 / 5.0,
+        -a1 * 5.0 / 24.0
+        + a2 * 10.0 / 21.0
+        - a3 * 15.0 / 16.0
+        + a4 * 20.0 / 9.0
+        - a5 / 4.0
+        - a6 * 30.0 / 11.0,
+        a1 * 6.0 / 35.0 - a2 * 3.0 / 8.0 + a3 * 2.0 / 3.0 - a4 * 6.0 / 5.0 + a5 * 30.0 / 11.0 - a6 / 4.0,
+    )
+
+
+def weighed(
+    first: float, even: float, square: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+) -> tuple[float, float, float, float, float, float]:
+    """Sum over n of `a_n m n pi^2 int g cos(m pi x) cos(n pi x) dx` for a weight g = x or x^2.
+
+    Its terms are `(-1)^(m + n) 2 m n (m^2 + n^2) / (m^2 - n^2)^2`; for x those of even m + n are absent.
+
+    Args:
+        first: constant of the diagonal: 0 for x, 1/4 for x^2
+        even: share of the terms with even m + n: 0 for x, 1 for x^2
+        square: share of `m^2` in the diagonal: pi^2/4 for x, pi^2/6 for x^2
+        a1 .. a6: modes
+
+    >>> weighed(0.25, 1.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0)[:2]
+    (-20.0, 2.25)
+    """
+    return (
+        a1 * (first + square) - a2 * 20.0 / 9.0 + even * (a3 * 15.0 / 16.0 + a5 * 65.0 / 144.0)
+        - a4 * 136.0 / 225.0 - a6 * 444.0 / 1225.0,
+        a2 * (first + 4.0 * square) - a1 * 20.0 / 9.0 - a3 * 156.0 / 25.0 - a5 * 580.0 / 441.0
+        + even * (a4 * 20.0 / 9.0 + a6 * 15.0 / 16.0),
+        a3 * (first + 9.0 * square) - a2 * 156.0 / 25.0 - a4 * 600.0 / 49.0 - a6 * 20.0 / 9.0
+        + even * (a1 * 15.0 / 16.0 + a5 * 255.0 / 64.0),
+        a4 * (first + 16.0 * square) - a1 * 136.0 / 225.0 - a3 * 600.0 / 49.0 - a5 * 1640.0 / 81.0
+        + even * (a2 * 20.0 / 9.0 + a6 * 156.0 / 25.0),
+        a5 * (first + 25.0 * square) - a2 * 580.0 / 441.0 - a4 * 1640.0 / 81.0 - a6 * 3660.0 / 121.0
+        + even * (a1 * 65.0 / 144.0 + a3 * 255.0 / 64.0),
+        a6 * (first + 36.0 * square) - a1 * 444.0 / 1225.0 - a3 * 20.0 / 9.0 - a5 * 3660.0 / 121.0
+        + even * (a2 * 15.0 / 16.0 + a4 * 156.0 / 25.0),
+    )  # fmt: skip
+
+
+def dot(
+    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
+    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
+) -> float:  # fmt: skip
+    """Sum of the products of two sets of modes.
+
+    >>> dot(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+    21.0
+    """
+    return a1 * b1 + a2 * b2 + a3 * b3 + a4 * b4 + a5 * b5 + a6 * b6
+
+
+def summed(
+    by_a: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
+    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """`by_a` times modes a, and modes b.
+
+    >>> summed(-1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    """
+    return b1 + by_a * a1, b2 + by_a * a2, b3 + by_a * a3, b4 + by_a * a4, b5 + by_a * a5, b6 + by_a * a6
+
+
+def same(
+    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+) -> tuple[float, float, float, float, float, float]:
+    """The modes themselves, by which one array becomes a copy of another.
+
+    >>> same(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    """
+    return a1, a2, a3, a4, a5, a6
+
+
+def size(a1: float, a2: float, a3: float, a4: float, a5: float, a6: float) -> float:
+    """Sum of the sizes of all modes.
+
+    >>> size(1.0, -2.0, 3.0, -4.0, 5.0, -6.0)
+    21.0
+    """
+    return fabs(a1) + fabs(a2) + fabs(a3) + fabs(a4) + fabs(a5) + fabs(a6)
+
+
+def harmonics(
+    c1: float, s1: float
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """Cosine and sine of 2 to 6 times an angle, from its own: cosines first.
+
+    >>> [round(each, 12) for each in harmonics(0.0, 1.0)][:5]
+    [-1.0, -0.0, 1.0, 0.0, -1.0]
+    """
+    c2 = c1 * c1 - s1 * s1
+    s2 = 2.0 * c1 * s1
+    c3 = c2 * c1 - s2 * s1
+    s3 = s2 * c1 + c2 * s1
+    c4 = c2 * c2 - s2 * s2
+    s4 = 2.0 * c2 * s2
+    return (
+        c2, c3, c4, c3 * c2 - s3 * s2, c3 * c3 - s3 * s3,
+        s2, s3, s4, s3 * c2 + c3 * s2, 2.0 * c3 * s3,
+    )  # fmt: skip
+
+
+def end_shape(
+    amplitude: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+) -> tuple[float, float, float, float, float, float]:
+    """Modes that together with `amplitude (x^3 - x)` make the shape of modes and end shape.
+
+    The sines of `x^3 - x` are `12 (-1)^n / (n pi)^3`.
+
+    >>> round(end_shape(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)[0], 12)
+    0.387018413198
+    """
+    share = 12.0 * amplitude / (pi * pi * pi)
+    return (
+        a1 + share, a2 - share / 8.0, a3 + share / 27.0, a4 - share / 64.0, a5 + share / 125.0,
+        a6 - share / 216.0,
+    )  # fmt: skip
+
+
+def end_forces(
+    drifting: float, pushed: float, thrown: float
+) -> tuple[float, float, float, float, float, float]:
+    """Forces of the end shape f on the modes.
+
+    `drifting int x sin(m pi x) f' dx + m pi int (pushed x + thrown x^2) cos(m pi x) f' dx`. Neither its mass
+    nor its bending nor a constant push couples it to the modes.
+
+    >>> round(1e3 * end_forces(0.0, 0.0, 1.0)[5], 12)
+    64.346861254998
+    """
+    return (
+        -4.7089567642551875e-4 * drifting - 3.7459780768771716e-4 * pushed - 9.6859380879856009e-4 * thrown,
+        9.8414417326917609e-4 * drifting + 1.3724543680458386e-3 * pushed + 2.2062984750290385e-3 * thrown,
+        -1.5988989078060496e-3 * drifting - 1.5082121747237921e-3 * pushed - 4.1698697220745896e-3 * thrown,
+        2.4262042855303312e-3 * drifting + 5.3277178537743802e-3 * pushed + 8.0022473175899444e-3 * thrown,
+        -3.7496322717787359e-3 * drifting - 5.1008168187945264e-3 * pushed - 1.7878343284047494e-2 * thrown,
+        6.7764158189493683e-3 * drifting + 5.2530030899903327e-2 * pushed + 6.4346861254997988e-2 * thrown,
+    )
+
+
+def end_amplitude(
+    bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
+) -> tuple[float, float]:
+    """Amplitude of the end shape, and its rate by the free length: 0 for a bow of the span (2).
+
+    `bow''(L) L^2 / 6`, by which it is bent at the guide as the belt is without load.
+
+    >>> round(end_amplitude(1, 1.0, 2.0, 1.0, 0.0, 1.0)[0], 12), end_amplitude(2, 1.0, 2.0, 1.0, 0.0, 1.0)
+    (-0.411233516712, (0.0, 0.0))
+    """
+    if bow_of != 1:
+        return 0.0, 0.0
+    wave = pi / bow_length
+    bend = -bow * wave * wave * length / 6.0
+    return bend * length * sine, bend * (2.0 * sine + wave * length * cosine)
+
+
+def bow_mode(
+    number: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
+) -> tuple[float, float]:
+    """Moment of the belt's own bow on a mode, over its bending stiffness, and its rate by the free length.
+
+    `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `bow sin(pi X / bow_length)` from the
+    head on, and takes its bow along.
+
+    Args:
+        number: n of the mode
+        bow, bow_length: amplitude and half a wave of the belt's bow [m]
+        length: L of the free part [m]
+        cosine, sine: of `pi L / bow_length`
+
+    Returns:
+        moment [1/m2], its rate [1/m3]
+
+    >>> from math import pi
+    >>> round(bow_mode(1, 1.0, 1.0, 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)
+    0.0
+    """
+    angle = number * pi
+    wave = pi / bow_length
+    turned = wave * length
+    beyond = turned - angle
+    sign = 1.0 if number % 2 == 0 else -1.0
+    if fabs(beyond) < 1e-4:
+        sinc = 1.0 - beyond * beyond / 6.0
+        slope = -beyond / 3.0
+    else:
+        sinc = sign * sine / beyond
+        slope = (sign * cosine - sinc) / beyond
+    share = angle / (turned + angle)
+    part = share * sinc
+    by_turn = share * slope - part / (turned + angle)
+    scale = bow * wave * wave * angle * angle / length
+    return scale * part, scale * (wave * by_turn - part / length)
+
+
+def bow_at(
+    number: int, bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
+) -> tuple[float, float]:
+    """As `bow_mode`, of the belt's own bow (1), or of one that spans the free part, `bow sin(pi x / L)` (2).
+
+    >>> bow_at(2, 2, 1.0, 1.0, 1.0, -1.0, 0.0)
+    (0.0, 0.0)
+    """
+    if bow_of == 1:
+        return bow_mode(number, bow, bow_length, length, cosine, sine)
+    if number > 1:
+        return 0.0, 0.0
+    square = pi * pi / length
+    moment = 0.5 * bow * square * square / length
+    return moment, -3.0 * moment / length
