@@ -337,7 +337,7 @@ def test_a_travel_that_jumps_puts_the_belt_at_rest(belt_in_c):
     assert belt.deflection_rate == 0.0
 
 
-def test_the_claim_names_the_deflection_and_what_it_was_under_the_push(fmu_cache, tmp_path):
+def test_the_claim_names_the_deflection_and_what_it_was_under_the_push(tmp_path):
     scene = "sims/belt_motion.toml"
     loose = {"belt_motion.bow_of": "span", "steps_per_revolution": 360}
     result = run(scene, output=tmp_path / "run.h5", set=loose)

@@ -12,7 +12,7 @@ from loomfmu.components import COMPONENTS
 from loomfmu.fmi.source import flatten
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
-STEPS = 300
+STEPS = 120
 
 
 @pytest.fixture(scope="module")

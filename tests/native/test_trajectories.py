@@ -134,7 +134,7 @@ def test_long_runs(native, name):
     assert component.initialize(0.0) == 0
     rng = random.Random(1)
     time = 0.0
-    for _ in range(2000):
+    for _ in range(800):
         size = rng.choice([1e-4, 3e-4, 2e-3])
         values = {v.name: rng.uniform(*span(v)) for v in inputs(COMPONENTS[name])}
         assign(component, values)

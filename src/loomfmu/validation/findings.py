@@ -12,7 +12,7 @@ from ..design import loom
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics.belt import elastica_deflection
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM, rotor_law
-from . import belt, belt_motion, cam, loads, rotor
+from . import belt, belt_guide, belt_motion, cam, loads, rotor
 from .chain import RPM, carrier
 from .lock import limit as lock_limit
 from .sections import Chapter, Row, Section, number
@@ -33,6 +33,7 @@ def chapter() -> Chapter:
             belt_design(),
             over_speed(),
             *belt_motion.sections(),
+            belt_guide.section(),
             loads.weft(),
             shed(),
             limits(),

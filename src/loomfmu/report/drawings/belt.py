@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 FINER = FINEST  # a belt buckles within a degree
 POINTS = 33  # of a buckled belt
 SHAPES = 41  # between a straight belt and the one that is bent most
+MOVING = "BeltDynamics"  # the FMU of a belt whose deflection is integrated
 HEAD = 150.0  # mm: length drawn of the head, of which a trace knows only the length with its rigid section
 
 
@@ -81,16 +82,20 @@ class Belt:
     pressed: str  # empty if its compression is not recorded
     idle: float
     head: float
+    moving: bool  # its deflection is that of a motion, not of a load that lasts
 
 
 def tracked(tracks: Tracks, name: str) -> Belt:
     """The tracks of a belt that records its free length and its deflection."""
     trace, live = tracks.trace, tracks.subject.live
-    free, bent, force = (f"{name}.{each}" for each in ("free_length", "deflection", "axial_force"))
+    moving = trace.fmus[name] == MOVING
+    force = f"{name}.{'compression' if moving else 'axial_force'}"
+    free, bent = (f"{name}.{each}" for each in ("free_length", "deflection"))
     idle, head = (1000.0 * tracks.parameter(f"{name}.{each}") for each in ("idle_travel", "head_length"))
     slope, tail = "", mm(free)
     if live or tracks.values(["highest", bent]) > 0.0:
-        load: Rule = ["-", 1.0, f"{name}.margin"] if f"{name}.margin" in trace else 0.0
+        known = f"{name}.margin" in trace and not moving  # a margin of the load
+        load: Rule = ["-", 1.0, f"{name}.margin"] if known else 0.0
         slope = tracks.add(f"{name}.slope", half_slope(bent, free, load), 1e-4, FINER)
         grid = np.linspace(0.0, _steepest(tracks, slope), 100)
         chords = [round(float(elastica(sin(each))[0][-1]), 7) for each in grid]
@@ -105,7 +110,7 @@ def tracked(tracks: Tracks, name: str) -> Belt:
         tracks.add(f"{name}.tip", ["-", tail, -head], finer=finer),
         tracks.mm(bent, finer),
         tracks.add(f"{name}.travelled", ["-", mm(free), -idle - head]),
-        slope, pressed, idle, head,
+        slope, pressed, idle, head, moving,
     )  # fmt: skip
 
 
@@ -155,7 +160,7 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
     live = tracks.subject.live
     free, bent = (tracks.values(mm(f"{belt.name}.{each}")) for each in ("free_length", "deflection"))
     at_risk = np.asarray(bent > 0.0)
-    if not np.any(at_risk) and belt.pressed:
+    if belt.pressed and (belt.moving or not np.any(at_risk)):
         at_risk = tracks.values(belt.pressed) > 0.0
     longest = float(np.max(free[at_risk])) if np.any(at_risk) else 200.0
     right = max(200.0, 1.6 * longest)
@@ -172,7 +177,10 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
         if belt.slope
         else "The belt stays straight in this run."
     )
-    does = "." if live else f", which {'buckles' if belt.slope else 'stays straight'} in this run."
+    if belt.moving:
+        shape += " In motion it has other shapes of the same largest deflection, to either side."
+    does = f", which {'buckles' if belt.slope else 'stays straight'} in this run."
+    does = "." if live or belt.moving else does
     return sketch.figure(
         f"belt-{belt.name}", title("Belt between guide and head", belt.name, "belt"),
         f"The free section of the belt between its guide and the rapier head{does}",

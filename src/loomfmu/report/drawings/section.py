@@ -4,7 +4,7 @@ from math import degrees, floor, radians
 
 from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
-from .belt import between, shapes, tracked, width
+from .belt import MOVING, between, shapes, tracked, width
 from .drive import drive
 from .recorded import instances
 from .reed import beat_up
@@ -16,6 +16,7 @@ from .yarn import yarn
 DRAWN = {
     "WeftInsertion": ("travel",),
     "BeltMonitor": ("free_length", "deflection"),
+    MOVING: ("free_length", "deflection"),
     "WeftTension": ("length", "tension"),
     "HealdFrame": ("lift",),
     "ReedBeatUp": ("position",),
@@ -63,6 +64,8 @@ def _figures(tracks: Tracks) -> list[Figure]:
     drives = [drive(tracks, name) for name in weft]
     found = [tracked(tracks, name) for name in belts]
     ways = [figure for belt in found for figure in (width(tracks, belt), between(tracks, belt))]
+    moving = instances(tracks.trace, MOVING, *DRAWN[MOVING])
+    ways += [between(tracks, tracked(tracks, name)) for name in moving]
     warp = [shed(tracks, found[0].tip if found else ""), frames(tracks)]
     drawn = [yarn(tracks, name) for name in yarns]
     every = [*drives, *ways, *drawn, *warp, *(beat_up(tracks, name) for name in reeds)]

@@ -1,0 +1,75 @@
+"""The length factor of Zhu and Zhou as it comes out of a guide with free play: a finding of our own."""
+
+import math
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..machines import table
+from .sections import Row, Section, number
+
+GUIDES = (0.025, 0.05, 0.1)  # m: the length of the guide is not published
+LENGTHS = (0.414, 0.665)  # m, the shortest and the longest belt of Table 2
+ALLOWED = 2e-3  # m, section 5 of the source: at this deflection the belt counts as buckled
+CLAMPED = brentq(lambda turn: math.sin(turn) - turn * math.cos(turn), 4.0, 4.7)  # clamped at one end, pinned
+PLACES = np.linspace(0.0, 1.0, 1001)
+
+
+def deflection(turn: float, clearance: float, guide: float, length: float) -> float:
+    """Largest deflection of a belt that leans on both walls of its guide [m].
+
+    In the guide it lies across the clearance, so that it leaves it at half the clearance, with the slope
+    `clearance / guide`; the head is pinned. `EI w'' + P w` is linear along the belt. So with x from the head
+    and `k = sqrt(P / EI)`, `w = a sin(k x) + b x`, from place and slope at the guide.
+
+    Args:
+        turn: k times the free length, above pi [1]
+        clearance, guide: free play, and the length over which the guide holds the belt [m]
+        length: free length [m]
+    """
+    offset = 0.5 * clearance
+    a = (offset + clearance / guide * length) / (math.sin(turn) - turn * math.cos(turn))
+    return float(np.abs(a * np.sin(turn * PLACES) + (offset - a * math.sin(turn)) * PLACES).max())
+
+
+def length_factor(clearance: float, guide: float, length: float) -> float:
+    """Length factor of the load at which the deflection is `ALLOWED`: pi over the turn.
+
+    Up to Euler's load of pinned ends a straight belt stays straight within its free play.
+    """
+    if clearance == 0.0:
+        return math.pi / CLAMPED
+    if deflection(math.pi, clearance, guide, length) >= ALLOWED:
+        return 1.0
+    below = CLAMPED * (1.0 - 1e-12)
+    return math.pi / brentq(lambda turn: deflection(turn, clearance, guide, length) - ALLOWED, math.pi, below)
+
+
+def section() -> Section:
+    """The published factors beside those of free play."""
+    cases = [(guide, length) for guide in GUIDES for length in LENGTHS]
+    rows = []
+    for row in table("length_factor"):
+        clearance = 1e-3 * float(row["clearance_mm"])
+        found = (number(length_factor(clearance, *case), 3) for case in cases)
+        rows.append(Row((row["clearance_mm"], row["length_factor"], *found)))
+    return Section(
+        "The length factor as it comes out of a guide with free play",
+        (
+            "clearance, mm", "published",
+            *(f"{number(1e3 * length, 0)} mm, guide {number(1e3 * guide, 0)} mm" for guide, length in cases),
+        ),
+        tuple(rows),
+        intro="The belt lies across the clearance of a stiff guide: up to a slope of clearance over length of"
+        " the guide it turns freely, then not at all. It counts as buckled where it is deflected by"
+        f" {number(1e3 * ALLOWED, 0)} mm, which section 5 of the source allows. Head pinned; columns by free"
+        " length and length of the guide. The published factors are those of Table 3. The length of the guide"
+        " is not published; nothing is chosen to fit.",
+        remarks=(
+            "Both ends of the table come out. Without clearance the belt is clamped in the guide, which gives"
+            f" {number(math.pi / CLAMPED, 3)} for 0.70; with enough of it the belt buckles before it leans on"
+            " both walls, as if it were pinned, which gives 1.",
+            "In between the factor depends on the length of the guide and, unlike the published one, on that"
+            " of the belt: with free play there is no single factor for a clearance.",
+        ),
+    )  # fmt: skip
