@@ -4,6 +4,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import belt_motion
 import cost
 import guard
 import limits
@@ -27,6 +28,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     cost.NAME: ("Cost of a macro step", cost),
     scaling.NAME: ("Scaling", scaling),
     limits.NAME: ("How near to the limits", limits),
+    belt_motion.NAME: ("The belt in motion", belt_motion),
     pruning.NAME: ("Running only what is requested", pruning),
     sweep_runs.NAME: ("Sweeps", sweep_runs),
     start_up.NAME: ("Start-up", start_up),

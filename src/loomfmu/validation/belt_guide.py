@@ -11,7 +11,7 @@ from .sections import Row, Section, number
 GUIDES = (0.025, 0.05, 0.1)  # m: the length of the guide is not published
 LENGTHS = (0.414, 0.665)  # m, the shortest and the longest belt of Table 2
 ALLOWED = 2e-3  # m, section 5 of the source: at this deflection the belt counts as buckled
-CLAMPED = brentq(lambda turn: math.sin(turn) - turn * math.cos(turn), 4.0, 4.7)  # clamped at one end, pinned
+CLAMPED: float = brentq(lambda turn: math.sin(turn) - turn * math.cos(turn), 4.0, 4.7)  # one end, one pinned
 PLACES = np.linspace(0.0, 1.0, 1001)
 
 
@@ -42,7 +42,8 @@ def length_factor(clearance: float, guide: float, length: float) -> float:
     if deflection(math.pi, clearance, guide, length) >= ALLOWED:
         return 1.0
     below = CLAMPED * (1.0 - 1e-12)
-    return math.pi / brentq(lambda turn: deflection(turn, clearance, guide, length) - ALLOWED, math.pi, below)
+    turn: float = brentq(lambda u: deflection(u, clearance, guide, length) - ALLOWED, math.pi, below)
+    return math.pi / turn
 
 
 def section() -> Section:
