@@ -6,7 +6,15 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from matplotlib.patches import FancyBboxPatch
 
-from loomfmu.components import BeltMonitor, DobbyDrive, HealdDamper, HealdFrame, MainShaft, WeftInsertion
+from loomfmu.components import (
+    BeltDynamics,
+    BeltMonitor,
+    DobbyDrive,
+    HealdDamper,
+    HealdFrame,
+    MainShaft,
+    WeftInsertion,
+)
 from loomfmu.components.belt_wrap import BeltWrap
 from loomfmu.components.detaching_roller import DetachingRoller
 from loomfmu.components.driven_shaft import DrivenShaft
@@ -126,6 +134,10 @@ def main() -> None:
     rows = zip(time, critical, free, strict=True)
     window = [(at, force) for at, force, length in rows if length > 0.0 and force < max(load)]
     draw("belt_monitor", (*map(list, zip(*window, strict=True)), RED), (time, load, BLUE), levels=(0.0,))
+
+    chain = [WeftInsertion(), BeltDynamics(bow_of=2, inputs_at_step_end=True)]
+    time, deflection = trace(chain, 0.5, "deflection")
+    draw("belt_dynamics", (time[300:], deflection[300:], BLUE), levels=(0.0,))
 
     chain = [WeftInsertion(), WeftTension(inputs_at_step_end=True)]
     time, behind, tension = trace(chain, 1, "eye_tension", "tension")

@@ -216,6 +216,32 @@ def belt_monitor() -> Drawing:
     return d
 
 
+def belt_dynamics() -> Drawing:
+    """The belt that comes out of its guide, bows and pushes the head."""
+    d = Drawing(
+        600, 220, "Belt dynamics: the belt moves through its guide and pushes the head, bent by its bow"
+    )
+    for y in (84, 128):
+        d.box(20, y, 190, 22)
+    d.path((20, 117), (210, 117), (420, 117), colour=GREY, width=2, dash="6 4")
+    bow = [(210 + 210 * n / 30, 117 - 30 * sin(pi * n / 30) + 9 * sin(2 * pi * n / 30)) for n in range(31)]
+    d.path((20, 117), *bow, colour=BLUE, width=4)
+    d.joint((210, 117), (420, 117))
+    d.box(420, 97, 120, 40)
+    d.text((480, 122), "head, m")
+    d.arrow((40, 68), (100, 68), BLUE)
+    d.text((110, 72), "V, A", BLUE, "start")
+    d.arrow((335, 115), (335, 90), RED)
+    d.text((345, 108), "u(X, t)", RED, "start")
+    d.arrow((420, 60), (340, 60), GREY)
+    d.text((425, 64), "X", anchor="start")
+    d.arrow((590, 117), (545, 117))
+    d.text((570, 102), index("P0"), RED)
+    d.arrow((210, 172), (420, 172), GREY, both=True)
+    d.text((315, 192), "free length L(t)")
+    return d
+
+
 def weft_tension() -> Drawing:
     """The yarn from its package to the head."""
     d = Drawing(640, 240, "Weft tension: package, brake, guide eyes, the yarn on its way, the rapier head")
@@ -470,8 +496,9 @@ def detaching_roller() -> Drawing:
 def main() -> None:
     """Draw all of them."""
     for draw in (
-        main_shaft, driven_shaft, weft_insertion, belt_monitor, weft_tension, dobby_drive, heald_frame,
-        heald_damper, warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap, detaching_roller,
+        main_shaft, driven_shaft, weft_insertion, belt_monitor, belt_dynamics, weft_tension, dobby_drive,
+        heald_frame, heald_damper, warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap,
+        detaching_roller,
     ):  # fmt: skip
         draw().write(draw.__name__)
 

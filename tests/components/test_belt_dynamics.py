@@ -43,7 +43,7 @@ def test_a_light_belt_loses_its_stability_at_the_load_of_euler(belt_in_c, belt_m
     for n in range(16):
         assert belt.step(n * step, step) == 0
         growth = math.cosh(rate * step * (n + 1)) if excess > 0 else math.cos(rate * step * (n + 1))
-        # the difference of two loads is known to 1e-10 of itself, the sweeps settle to 1e-13 of the modes
+        # the difference of two loads is known to 1e-10 of itself, the sweeps settle to 1e-12 of the modes
         assert belt.mode_1 == pytest.approx(1e-12 * growth, rel=1e-6, abs=1e-18)
     assert belt.growth_rate == pytest.approx(rate if excess > 0 else 0.0, rel=1e-6)
 
@@ -266,7 +266,7 @@ def test_modes_and_steps_converge(belt_in_c, bow_of):
     usual = pushed()
     # samples at 0.5 and 1 deg, joined by quintics; the integration takes shorter steps as well
     assert pushed(steps=360) == pytest.approx(usual, rel=5e-6)
-    # the belt's own bow bends the ends, which modes do not: they converge with the second power alone
+    # the end shape of the belt's own bow makes up for the modes beyond six, not for those that are held at 0
     assert pushed(modes=5) == pytest.approx(usual, rel=1e-4 if bow_of == SPAN else 3e-3)
     assert pushed(modes=4) == pytest.approx(usual, rel=1e-3 if bow_of == SPAN else 3e-3)
 

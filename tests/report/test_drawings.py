@@ -202,6 +202,14 @@ def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path) -> No
     assert figures == ["shed", "frames"]
 
 
+def test_the_belt_in_motion_has_a_drawing_of_its_own(tmp_path: Path) -> None:
+    moving = loomfmu.run(SIMS / "belt_motion.toml", output=tmp_path / "run.h5").trace
+    html = made(moving).html
+    figures = re.findall(r'<figure id="motion-([^"]+)"', html)
+    assert "belt-belt_motion" in figures
+    assert "In motion it has other shapes of the same largest deflection" in html
+
+
 def test_a_linkage_that_does_not_give_the_recorded_travel_is_not_drawn(
     demo: Trace, monkeypatch: pytest.MonkeyPatch
 ) -> None:

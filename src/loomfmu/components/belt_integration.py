@@ -37,7 +37,7 @@ from ..physics.numerics.gauss import (
 from .belt_path import BeltPath
 
 MOST_REPEATS = 30  # of the sweep over the stages, until the accelerations of an integration step are settled
-SETTLED = 1e-13  # of the modes: what a sweep may still change
+SETTLED = 1e-12  # of the modes: what a sweep may still change
 
 
 @dataclass(slots=True)
