@@ -89,7 +89,7 @@ class BeltDynamicsVariables(Component):
     )
     yarn_tension: float = input_(
         "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
-        display="cN", minimum=-1e6, maximum=1e6,
+        display="cN", minimum=-1e6, maximum=1e6, source="yarn.tension",
     )  # fmt: skip
     length_factor: float = input_(
         "1", 0.8, "Column length factor mu: the belt is a pinned one of stiffness EI / mu^2",

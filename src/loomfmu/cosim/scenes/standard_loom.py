@@ -41,7 +41,8 @@ ALL = "*."  # in the place of an instance: the output of that name of every inst
 FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
 
 FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one for each frame
-LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock", "belt_motion": "belt_motion"}  # one for the loom
+# one for the loom
+LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock", "belt_motion": "belt_motion"}
 LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
 PICKS_IN_A_WORD = 16
 
