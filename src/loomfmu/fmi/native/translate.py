@@ -11,6 +11,7 @@ import tokenize
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
+from threading import Lock
 
 from ...errors import LoomfmuError
 from ...variables import Component, Variable, arrays_of, variables_of
@@ -70,6 +71,7 @@ class Translation:
 
 
 _done: dict[type[Component], Translation] = {}
+_one_at_a_time = Lock()  # Python 3.11 may fail with a SystemError where two threads parse
 
 
 def translate(component: type[Component]) -> Translation:
@@ -77,9 +79,10 @@ def translate(component: type[Component]) -> Translation:
 
     Raises TranslationError where it uses what does not translate; component, function and line are named.
     """
-    if component not in _done:
-        _done[component] = _translated(component)
-    return _done[component]
+    with _one_at_a_time:
+        if component not in _done:
+            _done[component] = _translated(component)
+        return _done[component]
 
 
 def _translated(component: type[Component]) -> Translation:
