@@ -161,6 +161,8 @@ def _run_here(options: argparse.Namespace) -> int:
         say(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
     else:
         say(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
+    if result.chosen:
+        say(result.chosen)
     if options.explain:
         say("skipped:", *(f"  {line}" for line in result.skipped))
     _print_verdicts(result.claims)
@@ -449,8 +451,9 @@ def _print_verdicts(verdicts: "Sequence[Verdict]") -> None:
 
     rows = [verdict.row for verdict in verdicts]
     entries = []
-    for word, claim, name, worst, bound, distance, place, note in rows:
+    for word, claim, name, worst, bound, distance, error, place, note in rows:
         away = f" ({distance})" if distance != "-" else ""
+        away += f", error {error}" if error != "-" else ""
         at = f", at {place}" if place != "-" else ""
         entry = f"{word}  {claim}", f"({name})", f"{worst}, bound {bound}{away}{at}"
         entries.append((*entry, f"({note})") if note else entry)

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from .printed import safe
 
-MARKS = {"holds": ("#009e73", "✓"), "FAILS": ("#d55e00", "✗")}  # colours that colour-blind readers tell apart
+# colours that colour-blind readers tell apart
+MARKS = {"holds": ("#009e73", "✓"), "FAILS": ("#d55e00", "✗"), "undecided": ("#e69f00", "?")}
 CELL = "text-align:left;padding:.15em .8em .15em 0;vertical-align:top"
 
 

@@ -11,6 +11,7 @@ from typing import TextIO
 
 from .errors import LoomfmuError
 
+COLOURS = {"FAILS": "bold red", "undecided": "bold yellow"}  # of verdicts
 INDENT = "  "  # of the lines of an entry but the first
 
 
@@ -102,14 +103,15 @@ def as_entry(parts: Sequence[str], width: int) -> list[str]:
 
 
 def _coloured(line: str, stream: TextIO) -> str:
-    """A line in which failing catches the eye, on a terminal."""
-    if not line.startswith("FAILS") or not stream.isatty():
+    """A line in which what does not hold catches the eye, on a terminal."""
+    word = next((each for each in COLOURS if line.startswith(f"{each} ")), "")
+    if not word or not stream.isatty():
         return line
     from rich.console import Console
     from rich.text import Text
 
     console = Console(file=stream)
-    text = Text.assemble(("FAILS", "bold red"), line.removeprefix("FAILS"))  # a Text is never read as markup
+    text = Text.assemble((word, COLOURS[word]), line.removeprefix(word))  # a Text is never read as markup
     with console.capture() as captured:
         console.print(text, soft_wrap=True, end="")
     return captured.get()

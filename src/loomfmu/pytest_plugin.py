@@ -131,12 +131,14 @@ class SceneFile(pytest.File):
             "worst": verdict.shown(verdict.worst),
             "bound": ("at least " if verdict.sense > 0 else "at most ") + verdict.shown(verdict.bound),
             "distance": verdict.shown(verdict.distance),
+            "error": verdict.shown_error,
             "at": verdict.place or "no place",
             "note": verdict.note,
             "to reproduce": self._command(),
         }
         lines = [f"{f'{name}:':13} {value}" for name, value in facts.items() if value]
-        return "\n".join([f"claim fails:  {verdict.claim}", *lines, *self.kept, *warnings])
+        outcome = "claim fails:" if verdict.decided else "undecided:"
+        return "\n".join([f"{outcome:13} {verdict.claim}", *lines, *self.kept, *warnings])
 
     def _command(self, *options: str) -> str:
         import shlex

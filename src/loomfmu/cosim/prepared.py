@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, Literal, get_args
 
-from ..errors import LoomfmuError, path_of, shown
+from ..errors import LoomfmuError, path_of, shown, suggestion
+from ..traces import Signals, Verdict
+from . import accuracy
+from .estimates import Coarser, Estimates, near
 from .importing import pool
 from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
@@ -20,9 +23,11 @@ from .planning.windows import window_grid
 from .reading import check_set, checked
 from .recorded import bar, finish, kept, target_of, writer_of
 from .results import Evaluation, Result
+from .scenes.instances import altered
 from .scenes.scene import WINDOWS, Scene
 from .scenes.values import Values
 
+Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error
 MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
 
 
@@ -36,6 +41,8 @@ class Pattern:
         wanted = with_rates(scene, [*shaft_angle(scene), *values])
         self.judged = tuple(dict.fromkeys([*wanted, *judged_by(scene)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
+        self._estimates = Estimates(scene, self.claims, self._on, len(self.judged))
+        self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """What runs the scene with only what these signals need."""
@@ -62,22 +69,53 @@ class Pattern:
     def _in_memory(self, scene: Scene, signals: Sequence[str], grid: Grid) -> InMemory:
         return self.stepping(signals).in_memory(scene, grid)
 
-    def evaluate(self, scene: Scene) -> Evaluation:
+    def _on(self, scene: Scene, grid: Grid) -> Signals:
+        return self._in_memory(scene, self.judged, grid).recording
+
+    def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
+        return tuple(claim.judge(trace) for claim in self.claims)
+
+    def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
-        found = self._in_memory(scene, self.judged, self.grid(scene, self.judged))
-        verdicts = tuple(claim.judge(found.recording) for claim in self.claims)
+        scene, known, chosen = self._with_steps(scene, errors)
+        grid = self.grid(scene, self.judged)
+        found = self._in_memory(scene, self.judged, grid)
+        verdicts = self._judged(found.recording)
+        if errors != "none":
+            coarser = known or self._estimates.coarser(scene, grid, _wanted(verdicts, errors))
+            verdicts = self._estimates.of(found.recording, verdicts, coarser)
         return Evaluation(
             scene, verdicts, (*scene.notes, *found.warnings), explained(found.plan), found.steps,
-            found.recording, ended=ended_text(found.ended),
+            found.recording, ended=ended_text(found.ended), chosen=chosen,
         )  # fmt: skip
+
+    def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
+        """The scene with steps that reach its accuracy, what coarser ones gave, and a line that says so.
+
+        Without errors the steps are those that were chosen last: a search compares runs on the same ones.
+        """
+        if scene.accuracy is None:
+            return scene, None, ""
+        if errors == "none" and self._steps:
+            return altered(scene, steps_per_period=self._steps), None, ""
+        choice = accuracy.chosen(scene, self._estimates, self._tried)
+        self._steps = int(choice.scene.steps_per_period)
+        return choice
+
+    def _tried(self, scene: Scene) -> tuple[Signals, Sequence[Verdict]]:
+        trace = self._on(scene, uniform(scene))
+        return trace, self._judged(trace)
 
     def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
         """Run the scene, record it to a file, and judge its claims."""
+        scene, known, chosen = self._with_steps(scene)
         signals = recorded(scene)
         stepping = self.stepping(signals)
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)
         target = target_of(plan, path, overwrite, progress)
+        # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
+        coarser = known or self._estimates.coarser(scene, plan.grid, range(len(self.claims)))
         with stepping.stepped(plan) as master:
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")
@@ -89,12 +127,20 @@ class Pattern:
                 if master.interrupted.value:
                     raise Interrupted
             # while the instances are still there: one that crashes when it is freed takes nothing with it
-            verdicts, trace = finish(self.claims, writer, path, ended_text(master.ended))
+            verdicts, trace = finish(
+                lambda trace: self._estimates.of(trace, self._judged(trace), coarser), writer, path,
+                ended_text(master.ended),
+            )  # fmt: skip
             warnings = (*scene.notes, *master.warnings())
         return Result(
             scene, verdicts, warnings, explained(plan), master.steps, path, trace,
-            ended=ended_text(master.ended), seconds=seconds,
+            ended=ended_text(master.ended), seconds=seconds, chosen=chosen,
         )  # fmt: skip
+
+
+def _wanted(verdicts: Sequence[Verdict], errors: Errors) -> Collection[int]:
+    """The verdicts, counted from 0, whose errors are to be estimated."""
+    return near(verdicts) if errors == "near" else range(len(verdicts))
 
 
 class Prepared:
@@ -124,12 +170,20 @@ class Prepared:
     def __repr__(self) -> str:
         return f"<Prepared {self.scene.name}: {len(self.scene.claims)} claims>"
 
-    def evaluate(self, set: dict[str, Any] | None = None) -> Evaluation:
-        """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`."""
+    def evaluate(self, set: dict[str, Any] | None = None, *, errors: Errors = "all") -> Evaluation:
+        """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`.
+
+        Estimating errors takes two more runs, on half and on a quarter of the steps: "near" estimates only
+        those of verdicts within 10 % of their bounds, and "none", for searches, does without.
+        """
+        if errors not in get_args(Errors):
+            raise LoomfmuError(
+                f"errors = {shown(errors)} is unknown{suggestion(str(errors), get_args(Errors))}"
+            )
         with self._turn:
             pattern, scene = self._ready(set)
             try:
-                return pattern.evaluate(scene)
+                return pattern.evaluate(scene, errors)
             except MemoryError:
                 too_many = f"{scene.steps + 1} samples do not fit in memory"
                 raise LoomfmuError(f"{scene.name}: {too_many}; take fewer revolutions or steps") from None

@@ -32,6 +32,7 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
             if scene.step is None
             else {"duration": f"{scene.periods!r} s", "step": f"{scene.step!r} s"}
         ),
+        **({} if scene.accuracy is None else {"accuracy": f"{scene.accuracy!r}"}),
         "grid": scene.grid,
         **({"notes": "\n".join(scene.notes)} if scene.notes else {}),
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},

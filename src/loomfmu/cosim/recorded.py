@@ -1,6 +1,6 @@
 """The trace of a run: where it may be written, its blocks, its verdicts and its final name."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,7 +10,6 @@ from ..files import cannot_write, check_target
 from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
-from .claims.claim import Claim
 from .master.master import Interrupted
 from .planning.plan import Plan
 from .planning.requested import output_port
@@ -38,14 +37,14 @@ def kept(writer: TraceWriter, path: Path) -> Iterator[None]:
 
 
 def finish(
-    claims: Iterable[Claim], writer: TraceWriter, path: Path, ended: str
+    judge: Callable[[Trace], tuple[Verdict, ...]], writer: TraceWriter, path: Path, ended: str
 ) -> tuple[tuple[Verdict, ...], Trace]:
     """Judge the trace, store the verdicts with it and give it its final name."""
     try:
         writer.seal()
         with Trace(writer.partial) as trace:
             trace.rows = writer.rows  # asking every signal of the file takes its time
-            verdicts = tuple(claim.judge(trace) for claim in claims)
+            verdicts = judge(trace)
         return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], ended)
     except OSError as error:
         raise cannot_write(path, error) from None

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from .. import notebook
 from ..traces import Recording, Trace, Verdict
-from ..traces.verdict import HEADINGS
+from ..traces.verdict import HEADINGS, outcome
 from .scenes.scene import Scene
 
 
@@ -14,7 +14,8 @@ class Judged:
     """A finished run: its verdicts, its warnings, and what it skipped. It is true if all claims hold.
 
     `skipped` lists what was not run or not read, and why; `steps` is the number of communication steps.
-    `ended` says which FMU ended the run early, and when; it is empty if none did.
+    `ended` says which FMU ended the run early, and when; it is empty if none did. `chosen` says which steps
+    were chosen for the scene's `accuracy`; it is empty if it has none.
     """
 
     scene: Scene
@@ -23,6 +24,7 @@ class Judged:
     skipped: tuple[str, ...]
     steps: int
     ended: str = field(default="", kw_only=True)
+    chosen: str = field(default="", kw_only=True)
 
     @property
     def holds(self) -> bool:
@@ -34,18 +36,18 @@ class Judged:
 
     def __repr__(self) -> str:
         failing = [verdict for verdict in self.claims if not verdict]
-        summary = f"{len(failing)} of {len(self.claims)} claims fail:" if failing else "all claims hold"
+        summary = f"{outcome(self.claims)}:" if failing else "all claims hold"
         if not self.claims:
             summary = "no claims"
         listed = "".join(f"\n  {verdict}" for verdict in failing)
         return f"<{type(self).__name__} {self.scene.name}: {summary}{listed}>"
 
     def _repr_html_(self) -> str:
-        failing = sum(not verdict for verdict in self.claims)
-        outcome = f"{failing} of {len(self.claims)} claims fail" if failing else "all claims hold"
-        notes = [f"ended by {self.ended}"] * bool(self.ended) + [f"warning: {each}" for each in self.warnings]
+        summary = (outcome(self.claims) or "all claims hold") if self.claims else "no claims"
+        notes = [f"ended by {self.ended}"] * bool(self.ended) + [self.chosen] * bool(self.chosen)
+        notes += [f"warning: {each}" for each in self.warnings]
         return notebook.block(
-            f"{self.scene.title}: {outcome if self.claims else 'no claims'}",
+            f"{self.scene.title}: {summary}",
             *([notebook.table(HEADINGS, [each.row for each in self.claims])] if self.claims else []),
             *map(notebook.line, notes),
         )  # fmt: skip

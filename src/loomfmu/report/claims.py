@@ -3,6 +3,8 @@
 from typing import Any
 
 from ..traces import Verdict
+from ..traces.verdict import FAILS, UNDECIDED
+from ..traces.verdict import outcome as counted
 from .section import Section, Subject
 from .templates import template
 
@@ -11,13 +13,13 @@ def section(subject: Subject) -> Section:
     """The claims of the first trace."""
     trace = subject.trace
     verdicts = trace.verdicts
-    failing = sum(not verdict for verdict in verdicts)
+    words = {verdict.word for verdict in verdicts} if trace.judged else set()
     return Section(
         "claims", "Claims",
         template("claims.html.j2").render(
             judged=trace.judged,
             outcome=outcome(verdicts, trace.judged),
-            word="unknown" if not (trace.judged and verdicts) else "fails" if failing else "holds",
+            word="fails" if FAILS in words else "unknown" if UNDECIDED in words or not words else "holds",
             rows=[_row(subject, verdict) for verdict in verdicts],
         ),
         ("claims.js",),
@@ -30,21 +32,21 @@ def outcome(verdicts: list[Verdict], judged: bool) -> str:
         return "Not judged: the run did not get to its end"
     if not verdicts:
         return "No claims"
-    failing = sum(not verdict for verdict in verdicts)
-    if failing:
-        return f"{failing} of {len(verdicts)} claims fail{'s' * (failing == 1)}"
+    if not all(verdicts):
+        return counted(verdicts)
     return "The claim holds" if len(verdicts) == 1 else f"All {len(verdicts)} claims hold"
 
 
 def _row(subject: Subject, verdict: Verdict) -> dict[str, Any]:
     return {
         "word": verdict.word,
-        "holds": verdict.holds,
+        "mark": "fails" if verdict.word == FAILS else verdict.word,
         "claim": verdict.claim,
         "signal": verdict.signal,
         "worst": verdict.shown(verdict.worst),
         "bound": verdict.shown(verdict.bound),
         "distance": _distance(verdict),
+        "error": verdict.shown_error,
         "place": verdict.place,
         "position": subject.position(verdict),
         "note": verdict.note,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..cosim.prepared import Prepared
+from ..cosim.prepared import Errors, Prepared
 from ..errors import LoomfmuError
 from ..traces import Verdict
 from .span import Span
@@ -28,14 +28,21 @@ class Evaluations:
     def at(self, *values: float) -> tuple[Verdict, ...]:
         """The verdicts at values in SI, one for each span. Raises LoomfmuError that names them."""
         if values not in self._verdicts:
-            settings = dict(self._fixed)
-            for span, value in zip(self._spans, values, strict=True):
-                settings |= span.setting(value)
-            try:
-                self._verdicts[values] = self._loom.evaluate(settings).claims
-            except LoomfmuError as error:
-                raise self._named(values, str(error)) from None
+            self._verdicts[values] = self._evaluated(values, "none")
         return self._verdicts[values]
+
+    def estimated(self, *values: float) -> tuple[Verdict, ...]:
+        """The same with their numerical errors, which takes further runs."""
+        return self._evaluated(values, "all")
+
+    def _evaluated(self, values: Sequence[float], errors: Errors) -> tuple[Verdict, ...]:
+        settings = dict(self._fixed)
+        for span, value in zip(self._spans, values, strict=True):
+            settings |= span.setting(value)
+        try:
+            return self._loom.evaluate(settings, errors=errors).claims
+        except LoomfmuError as error:
+            raise self._named(values, str(error)) from None
 
     def _named(self, values: Sequence[float], error: str) -> LoomfmuError:
         shown = zip(self._spans, values, strict=True)

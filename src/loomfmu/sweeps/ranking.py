@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .tables import claim_columns, labels_of
+from .tables import claim_columns, decided_column, labels_of
 
 DIGITS = 6  # that distinguish rows
 
@@ -54,6 +54,18 @@ def distance(table: Any, number: int) -> NDArray[np.float64]:
     scaled = away / scale if scale > 0.0 else np.where(np.isnan(away), np.nan, 0.0)
     signed = np.where(fails, scaled, -scaled)
     return np.where(judged & np.isnan(signed), np.where(fails, np.inf, -np.inf), signed)
+
+
+def undecided(table: Any) -> int:
+    """In how many rows no claim fails, but one is undecided."""
+    open_ones, failing = (np.zeros(table.num_rows, dtype=bool) for _ in range(2))
+    for number in range(len(labels_of(table))):
+        holds, decided = (
+            table[name].to_numpy() for name in (claim_columns(number)[0], decided_column(number))
+        )
+        open_ones |= decided == np.False_  # rows without result are None
+        failing |= (holds == np.False_) & (decided != np.False_)
+    return int(np.sum(open_ones & ~failing))
 
 
 def _largest(values: NDArray[np.float64]) -> float:

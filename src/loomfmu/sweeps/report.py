@@ -5,11 +5,12 @@ from typing import Any
 
 from .. import printed, units
 from ..printed import say
+from ..traces.verdict import FAILS, HOLDS, UNDECIDED
 from .ranking import beyond, worst_rows
 from .run import Sweep
 from .sensitivity import WORDS, Influences
 from .store import INDICES_FILE
-from .tables import claim_columns, labels_of, note_column
+from .tables import claim_columns, decided_column, labels_of, note_column
 
 SHOWN = 5  # rows of a kind
 
@@ -18,7 +19,9 @@ def show(sweep: Sweep) -> None:
     """Print how many rows hold, the worst of them, and where the results are."""
     before = sweep.rows - sweep.ran
     again = f" ({before} of them run before)" if before else ""
-    counts = [f"{sweep.holding} hold", f"{sweep.failing} fail", f"{sweep.errors} could not be run"]
+    counts = [f"{sweep.holding} hold", f"{sweep.failing} fail"]
+    counts += [f"{sweep.undecided} are undecided"] * bool(sweep.undecided)
+    counts.append(f"{sweep.errors} could not be run")
     say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {', '.join(counts)}")
     if sweep.sensitivity is None:
         _show_worst(sweep)
@@ -58,9 +61,9 @@ def _show_worst(sweep: Sweep) -> None:
     claims, labels = beyond(sweep.table).claim, labels_of(sweep.table)
     for row in rows:
         number = int(claims[row])
-        names = (*claim_columns(number), note_column(number))
-        holds, worst, bound, note = (sweep.table[name][row].as_py() for name in names)
-        word, claim = "holds" if holds else "FAILS", labels[number].claim
+        names = (*claim_columns(number), decided_column(number), note_column(number))
+        holds, worst, bound, decided, note = (sweep.table[name][row].as_py() for name in names)
+        word, claim = HOLDS if holds else FAILS if decided else UNDECIDED, labels[number].claim
         shown = [
             "-" if value is None else units.show(value, labels[number].display_unit)
             for value in (worst, bound)

@@ -61,12 +61,19 @@ class Sweep:
     @property
     def failing(self) -> int:
         """Number of rows in which a claim fails."""
-        return self._count(False)
+        return self._count(False) - self.undecided
+
+    @property
+    def undecided(self) -> int:
+        """Number of rows in which no claim fails, but one is within its numerical error of its bound."""
+        from .ranking import undecided
+
+        return undecided(self.table)
 
     @property
     def errors(self) -> int:
         """Number of rows that could not be run."""
-        return self.rows - self.holding - self.failing
+        return self.rows - self.holding - self.failing - self.undecided
 
     @property
     def holds(self) -> bool:

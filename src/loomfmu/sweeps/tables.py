@@ -1,9 +1,10 @@
 """The table of a sweep: its columns, and what they and the whole say of themselves.
 
 One row for each combination: its number, the value on each axis, final values of signals, of each claim
-whether it holds, its worst value, its bound, the signed distance between them and the verdict's note, whether
-all hold, the first one that fails, warnings, and why a row could not be run. All in SI; a column's metadata
-has `unit`, `display_unit` and `description`, the table's the texts of sweep and scene.
+whether it holds, whether it is decided, its worst value, its bound, the signed distance between them, its
+numerical error and the verdict's note, whether all hold, the first one that does not, warnings, and why a row
+could not be run. All in SI; a column's metadata has `unit`, `display_unit` and `description`, the table's the
+texts of sweep and scene.
 """
 
 import json
@@ -30,6 +31,16 @@ def claim_columns(number: int) -> tuple[str, str, str]:
 def distance_column(number: int) -> str:
     """Name of the column of the distances of a claim, counted from 0, from its bound: below 0 it fails."""
     return f"claim_{number + 1}.distance"
+
+
+def decided_column(number: int) -> str:
+    """Name of the column that says whether a claim, counted from 0, is decided beyond its numerical error."""
+    return f"claim_{number + 1}.decided"
+
+
+def error_column(number: int) -> str:
+    """Name of the column of the numerical errors of a claim, counted from 0: none far from its bound."""
+    return f"claim_{number + 1}.error"
 
 
 def note_column(number: int) -> str:
@@ -127,9 +138,11 @@ def _claim(number: int, label: Label | None) -> list[Any]:
     holds, worst, bound = claim_columns(number)
     return [
         pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
+        pa.field(decided_column(number), pa.bool_(), metadata={"description": "Whether it is decided"}),
         pa.field(worst, pa.float64(), metadata=about),
         pa.field(bound, pa.float64(), metadata=about),
         pa.field(distance_column(number), pa.float64(), metadata=about),
+        pa.field(error_column(number), pa.float64(), metadata=about),
         pa.field(note_column(number), pa.string(), metadata={"description": "What limits the verdict"}),
     ]
 

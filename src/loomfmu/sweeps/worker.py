@@ -51,8 +51,9 @@ class Label:
 
 @dataclass(frozen=True)
 class Batch:
-    """Results of some rows, each: final values, then whether it holds, worst value, bound and note of each
-    claim, whether all hold, the first claim that fails, warnings, and what went wrong.
+    """Results of some rows, each: final values, then of each claim whether it holds, whether it is decided,
+    worst value, bound, distance, error and note, whether all hold, the first claim that does not, warnings,
+    and what went wrong.
 
     None stands for what there is not.
 
@@ -144,7 +145,7 @@ def _prepared(job: Job) -> Prepared:
 def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
     """The result of one row and the verdicts on it."""
     try:
-        found = loom.evaluate(settings)
+        found = loom.evaluate(settings, errors="near")
         values = [found.trace[signal][-1].item() for signal in job.values]
     except (OSError, MemoryError):  # of the machine, not of the row
         raise
@@ -156,8 +157,8 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         return failed(job, loom.scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
-        numbers = verdict.worst, verdict.bound, verdict.distance
-        values += [verdict.holds, *map(_finite, numbers), verdict.note or None]
+        numbers = verdict.worst, verdict.bound, verdict.distance, verdict.error
+        values += [verdict.holds, verdict.decided, *map(_finite, numbers), verdict.note or None]
         if not verdict.holds and first is None:
             first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
@@ -165,7 +166,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * (len(job.values) + 5 * len(scene.claims) + 3) + [reason]
+    return [None] * (len(job.values) + 7 * len(scene.claims) + 3) + [reason]
 
 
 def _finite(value: float) -> float | None:

@@ -196,7 +196,7 @@ def _alike(a: Verdict, b: Verdict, tolerance: Tolerance) -> bool:
     allowed = tolerance.of(a.signal, a.unit, scale)
     pairs = ((a.worst, b.worst), (a.bound, b.bound))
     near = all(x == y or abs(x - y) <= allowed or (math.isnan(x) and math.isnan(y)) for x, y in pairs)
-    return near and (a.holds, a.unit) == (b.holds, b.unit)
+    return near and (a.word, a.unit) == (b.word, b.unit)
 
 
 def _outcome(verdict: Verdict) -> str:

@@ -1,14 +1,17 @@
 """The outcome of a claim: as text for people, and as a trace stores it."""
 
 import math
-from dataclasses import MISSING, dataclass, fields
+from collections.abc import Iterable
+from dataclasses import MISSING, dataclass, fields, replace
 from types import NoneType
 from typing import Any, Self
 
 from .. import notebook, units
 from ..errors import shown
 
-HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "at", "note")
+HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "error", "at", "note")
+HOLDS, FAILS, UNDECIDED = "holds", "FAILS", "undecided"
+MET = 1e-12  # of worst value or bound: a bound met by construction is met to rounding
 
 # what JSON makes of the types of the fields
 JSON: dict[Any, tuple[type, ...]] = {
@@ -22,13 +25,15 @@ JSON: dict[Any, tuple[type, ...]] = {
 
 @dataclass(frozen=True, repr=False)
 class Verdict:
-    """The outcome of a claim; true if the claim holds.
+    """The outcome of a claim; true if the claim holds, false if it fails or is undecided.
 
     `worst` is the value nearest to the bound or furthest beyond it, at `time` [s] and at the shaft angle
     `angle` [rad] of the `revolution`, counted from 1; without a shaft these two are NaN and None. `worst`
     and `bound` are in `unit`, which is SI unless a third-party FMU has its own; texts show them in
     `display_unit`, where "1" means `unit`. `sense` is 1 if the worst value must be at least the bound,
-    -1 if at most, and 0 if the trace does not say.
+    -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
+    alone, in the same unit; NaN where nothing was estimated. Where the bound is that near, the claim is not
+    `decided`, and does not hold.
     """
 
     claim: str
@@ -43,6 +48,8 @@ class Verdict:
     revolution: int | None
     note: str = ""
     sense: int = 0
+    error: float = math.nan
+    decided: bool = True
 
     def __bool__(self) -> bool:
         return self.holds
@@ -55,8 +62,27 @@ class Verdict:
         note = f" ({self.note})" if self.note else ""
         return (
             f"{self.word}: {self.claim}: {self.signal}, {self.shown(self.worst)}{place},"
-            f" bound {self.shown(self.bound)}{note}"
+            f" bound {self.shown(self.bound)}{self.reason}{note}"
         )
+
+    def estimated(self, error: float, spread: float) -> Self:
+        """The verdict with an estimate of its error, of which `spread` is what differs between resolutions.
+
+        Within the error of its bound it is undecided. A bound that all resolutions meet to rounding is met:
+        that is how a count, a value at rest or a limited one meets it.
+        """
+        distance = self.distance
+        met = abs(distance) <= MET * max(abs(self.bound), abs(self.worst)) and spread <= MET * abs(self.worst)
+        decided = met or not abs(distance) <= error
+        return replace(self, error=error, decided=decided, holds=self.holds and decided)
+
+    @property
+    def reason(self) -> str:
+        """Why it is undecided, as the end of a sentence."""
+        if self.decided:
+            return ""
+        known = math.isfinite(self.error)
+        return f", numerical error {self.shown_error}" if known else ", numerical error unknown"
 
     @property
     def distance(self) -> float:
@@ -68,7 +94,7 @@ class Verdict:
         samples passes the bound, by no more than it may be off, the claim holds with a negative distance.
         """
         distance = self.sense * (self.worst - self.bound) + 0.0  # not -0
-        return distance if self.sense and (self.holds or distance < 0.0) else math.nan
+        return distance if self.sense and (self.holds or not self.decided or distance < 0.0) else math.nan
 
     @property
     def relative_distance(self) -> float:
@@ -78,13 +104,14 @@ class Verdict:
     @property
     def word(self) -> str:
         """The outcome in one word."""
-        return "holds" if self.holds else "FAILS"
+        return HOLDS if self.holds else FAILS if self.decided else UNDECIDED
 
     @property
     def row(self) -> tuple[str, ...]:
         """The verdict as a row of a table below `HEADINGS`."""
         worst, bound, distance = self.shown(self.worst), self.shown(self.bound), self.shown_distance
-        return self.word, self.claim, self.signal, worst, bound, distance, self.place or "-", self.note
+        place, error = self.place or "-", self.shown_error
+        return self.word, self.claim, self.signal, worst, bound, distance, error, place, self.note
 
     @property
     def shown_distance(self) -> str:
@@ -94,6 +121,13 @@ class Verdict:
         if not math.isfinite(self.distance):
             return "-"
         return f"{self.displayed(self.distance):+.4g}" + ("" if self.label == "1" else f" {self.label}")
+
+    @property
+    def shown_error(self) -> str:
+        """The numerical error in short, in the unit that people read; "-" where none was estimated."""
+        if not math.isfinite(self.error):
+            return "-"
+        return f"{self.displayed(self.error):.1g}" + ("" if self.label == "1" else f" {self.label}")
 
     def _repr_html_(self) -> str:
         return notebook.table(HEADINGS, [self.row])
@@ -129,7 +163,7 @@ class Verdict:
         known = {field.name: getattr(self, field.name) for field in fields(self)}
         del known["display_unit"]
         known |= {"distance": self.distance, "relative_distance": self.relative_distance}
-        display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance")}
+        display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance", "error")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}
 
     @classmethod
@@ -143,8 +177,9 @@ class Verdict:
                 raise ValueError(f"{field.name} is missing")
             if field.name in known and not isinstance(known[field.name], JSON[field.type]):
                 raise ValueError(f"{field.name} = {shown(known[field.name])}")
-        for name in ("bound", "worst", "time", "angle"):
-            known[name] = math.nan if known[name] is None else float(known[name])
+        for name in ("bound", "worst", "time", "angle", "error"):
+            if name in known:  # a trace of an earlier version has no errors
+                known[name] = math.nan if known[name] is None else float(known[name])
         if "display" in stored:
             return cls(**known, display_unit=stored["display"]["unit"])
         # as version 0.1.0 stored them: SI values beside the unit that people read them in
@@ -156,3 +191,14 @@ def _finite(values: dict[str, Any]) -> dict[str, Any]:
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in values.items()
     }
+
+
+def outcome(verdicts: Iterable[Verdict]) -> str:
+    """What came of all claims in a few words, such as "1 of 6 claims fails, 1 is undecided"."""
+    words = [verdict.word for verdict in verdicts]
+    failing, undecided = words.count(FAILS), words.count(UNDECIDED)
+    parts = [f"{failing} of {len(words)} claims fail{'s' * (failing == 1)}"] * bool(failing)
+    if undecided:
+        of_all = "" if failing else f" of {len(words)} claims"
+        parts.append(f"{undecided}{of_all} {'is' if undecided == 1 else 'are'} undecided")
+    return ", ".join(parts)

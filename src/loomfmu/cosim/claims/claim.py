@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple, dataclass_transform
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import COARSE_NOTE
+from .curves import COARSE_NOTE, motion_of
 
 AT_LEAST, AT_MOST = 1, -1
 
@@ -43,7 +43,8 @@ class Claim(ABC):
     `name` is what its verdict calls it. A kind states which signals it `needs` as "argument.variable", the
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
-    it needs of the window `grid`, which is every step unless it says otherwise.
+    it needs of the window `grid`, which is every step unless it says otherwise. An accuracy is a share of the
+    bound, but of no less than its `scale`.
     """
 
     name: str = argument(Name(), "")
@@ -54,6 +55,7 @@ class Claim(ABC):
     sense: ClassVar[int] = AT_LEAST
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
+    scale: ClassVar[float] = 0.0
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)
@@ -83,6 +85,13 @@ class Claim(ABC):
     @abstractmethod
     def judge(self, trace: Signals) -> Verdict:
         """Whether it holds."""
+
+    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
+        """What a verdict on a trace may be off by and runs on other steps may not show."""
+        signal = verdict.signal  # it may only name where to look
+        if signal not in trace or verdict.unit != trace.unit(signal) or not math.isfinite(verdict.time):
+            return 0.0
+        return motion_of(trace, signal).gap_at(verdict.time)
 
     def landings(self, trace: Signals) -> Landings:
         """Where steps of the window grid must land, as far as a coarse run of its signals tells."""

@@ -174,6 +174,18 @@ class Motion:
             return rounding
         return rounding + float(self.doubt(self.interval(np.array([time])))[0])
 
+    def gap_at(self, time: float) -> float:
+        """How far a motion that is known only at the samples may go on beyond one of them.
+
+        A parabola through three samples has its vertex beyond the middle one by up to an eighth of their
+        second difference, the corner of two straight lines by up to a half.
+        """
+        if not self.finite or not self.note or len(self.time) < 3:
+            return 0.0
+        place = min(max(int(self.time.searchsorted(time)), 1), len(self.time) - 2)
+        before, here, after = self.values[0][place - 1 : place + 2].tolist()
+        return 0.5 * float(abs(before - 2.0 * here + after))
+
     @cached_property
     def _bends(self) -> Floats:
         """Second rates at the samples."""

@@ -51,7 +51,7 @@ def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pr
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
     requested = {signal.split(".")[0] for signal in signals} - set(shafts)
     third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}
-    needed = _upstream(requested | third_party, wires)
+    needed = upstream(requested | third_party, wires)
     wires = [wire for wire in wires if wire.sink[0] in needed]
     like = {wire.sink[0]: wire.source[0] for wire in scene.wires if wire.source[0] in shafts}
     instances = {
@@ -121,7 +121,7 @@ def _read(scene: Scene) -> set[str]:
     return {name for claim in claims_of(scene) for name in claim.parameter_owners()}
 
 
-def _upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
+def upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
     """Instances, and all that feed them, directly or through others."""
     needed, waiting = set(wanted), list(wanted)
     while waiting:

@@ -18,8 +18,9 @@ from . import standard_loom
 from .graph import Wire
 
 COARSE = "coarse_steps_per_revolution"
+ACCURACY = "accuracy"  # which chooses the steps
 # keys of the scene itself that can be set beside its times
-WHOLE = ("grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
+WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
 KEYS = (
     "title",
     "description",

@@ -14,16 +14,17 @@ from ..importing.ports import Port
 from ..importing.process import AVAILABLE
 from . import notes, standard_loom
 from .drives import Drive
-from .graph import Wire
-from .instances import COARSE, KEYS, Instance, instance, instance_tables, own_texts, truth
+from .graph import Wire, step_order
+from .instances import ACCURACY, COARSE, KEYS, Instance, instance, instance_tables, own_texts, truth
 from .overrides import override, override_weave
 from .tables import choice, number, toml
 from .tables import text as text_of
-from .times import check_times, seconds, times_of
+from .times import Times, check_times, seconds, times_of
 from .wiring import drives_of, wires_of
 
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
+CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
 
 
 @dataclass(repr=False)
@@ -32,7 +33,8 @@ class Scene:
 
     A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a `step`:
     the run takes `periods` of them. `coupling` is how loops are closed, `grid` where the steps are, with
-    `coarse_steps_per_revolution` outside of the windows that the claims look into. `file` or the system
+    `coarse_steps_per_revolution` outside of the windows that the claims look into. With an `accuracy` a run
+    chooses its steps. `file` or the system
     package `package` is what it was read from, `package_sha256` is the package's, `texts` are those of the
     other files that its text names, `overrides` the values that differ from it, `notes` what the user is to
     be warned of. `tolerances` are the ends between which values may lie, as the scene states them. `isolated`
@@ -57,6 +59,7 @@ class Scene:
     coupling: str = LAGGED
     grid: str = UNIFORM
     coarse_steps_per_revolution: int = 24
+    accuracy: float | None = None
     isolated: bool | None = None
     step_timeout: float = 60.0
     run_timeout: float = 86400.0
@@ -124,6 +127,9 @@ def parse(
     rest = override_weave(tables, overrides or {})
     texts = standard_loom.resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
+    if ACCURACY in rest or any(key in rest for key in CHOSEN):  # the one that is set replaces the other
+        for key in CHOSEN if ACCURACY in rest else (ACCURACY,):
+            tables.pop(key, None)
     for key, value in rest.items():
         override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
@@ -184,11 +190,12 @@ def assemble(
         claims=_claims(tables.get("claims", [])),
         tolerances=_tolerances(tables.get("tolerances", {})),
         step=times.step,
-        coupling=choice(tables, "coupling", COUPLINGS),
+        coupling=_coupling(tables, instances, wires),
         grid=choice(tables, "grid", GRIDS),
         coarse_steps_per_revolution=int(
             number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
+        accuracy=_accuracy(tables, times),
         isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
         step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
         run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
@@ -197,6 +204,36 @@ def assemble(
     _check_single(scene)
     check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
     return scene
+
+
+def _accuracy(tables: dict[str, Any], times: Times) -> float | None:
+    """The accuracy that chooses the steps. Raises LoomfmuError beside what it chooses, or without claims."""
+    if ACCURACY not in tables:
+        return None
+    for key in CHOSEN:
+        if key in tables:
+            raise LoomfmuError(
+                f"{ACCURACY} and {key} are both given: {ACCURACY} chooses the steps; remove one"
+            )
+    if times.step is not None:
+        raise LoomfmuError(
+            f"{ACCURACY} chooses the steps in a revolution, but the scene runs by seconds; remove it"
+        )
+    if not tables.get("claims"):
+        raise LoomfmuError(
+            f"{ACCURACY} is that of the claims, but the scene has none:"
+            " add [[claims]] or set steps_per_revolution"
+        )
+    return number(tables[ACCURACY], ACCURACY, 1e-12, 1.0)
+
+
+def _coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire]) -> str:
+    """How loops are closed: with an accuracy they are iterated, since a delay costs far more steps."""
+    if ACCURACY in tables and "coupling" not in tables:
+        _order, lagged = step_order(instances, wires)
+        if lagged and all(each.fmu.ours for each in instances.values()):
+            return ITERATED
+    return choice(tables, "coupling", COUPLINGS)
 
 
 def _shaft_ports(instances: dict[str, Instance]) -> dict[str, Port]:

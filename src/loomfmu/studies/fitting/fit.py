@@ -207,7 +207,7 @@ class _Search:
     def _at(self, shares: Floats) -> list[Compared]:
         """What is measured and what is computed with these parameters."""
         self._runs += 1
-        return compared(self._data, self._loom.evaluate(self._setting(shares)).trace)
+        return compared(self._data, self._loom.evaluate(self._setting(shares), errors="none").trace)
 
     def _residuals(self, shares: Floats) -> Floats:
         pairs = zip(self._at(shares), self._weights, strict=True)

@@ -214,7 +214,7 @@ class _Box:
         ranked = sorted(points, key=distance)
         alike = distance(ranked[-1]) - distance(ranked[0]) <= SAME * abs(self._at(points[0])[number].bound)
         worst = points[0] if alike else _descended(distance, ranked[0])
-        own, verdict = self._at(points[0])[number], self._at(worst)[number]
+        own, verdict = (self._runs.estimated(*self._values(place))[number] for place in (points[0], worst))
         costs = []
         for place, span in enumerate(self._spans):
             restored = (*worst[:place], points[0][place], *worst[place + 1 :])
@@ -226,7 +226,10 @@ class _Box:
 
     def _at(self, point: Shares) -> tuple[Verdict, ...]:
         """The verdicts at a place. Raises LoomfmuError that names it."""
-        return self._runs.at(*(span.at(share) for span, share in zip(self._spans, point, strict=True)))
+        return self._runs.at(*self._values(point))
+
+    def _values(self, point: Shares) -> list[float]:
+        return [span.at(share) for span, share in zip(self._spans, point, strict=True)]
 
 
 def _descended(distance: Callable[[Shares], float], point: Shares) -> Shares:

@@ -1,0 +1,74 @@
+"""The number of steps that an accuracy takes: few at first, then twice as many until all errors are below."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from ..errors import LoomfmuError
+from ..traces import Signals, Verdict
+from .claims.claims import called
+from .estimates import Coarser, Estimates
+from .scenes.instances import altered
+from .scenes.scene import Scene
+from .scenes.times import ROUNDING
+
+FEWEST, DOUBLED = 24, 9  # steps in a revolution, each 15 deg, and how often they may be doubled
+MOST_STEPS = 10_000_000  # in a run
+
+
+class Choice(NamedTuple):
+    """A scene with the steps that were chosen, what coarser ones gave, and a line that says so."""
+
+    scene: Scene
+    coarser: Coarser
+    text: str
+
+
+def chosen(
+    scene: Scene, estimates: Estimates, judge: Callable[[Scene], tuple[Signals, Sequence[Verdict]]]
+) -> Choice:
+    """The fewest steps with which the error of every claim of a scene is below its `accuracy`.
+
+    An error counts as a share of the claim's bound, or of its worst value where the bound is 0. Raises
+    LoomfmuError where the accuracy is not reached.
+    """
+    wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
+    before: list[tuple[float, ...]] = []
+    reached = "no number of steps that was tried fits its revolutions"
+    for steps in (FEWEST << doubled for doubled in range(DOUBLED + 1)):
+        total = scene.periods * steps
+        if total > MOST_STEPS or abs(total - round(total)) > ROUNDING * total:
+            continue
+        tried = altered(scene, steps_per_period=steps)
+        trace, verdicts = judge(tried)
+        if before:
+            quarter = before[1] if len(before) > 1 else (math.nan,) * len(verdicts)
+            coarser = Coarser(everything, before[0], quarter)
+            errors = [
+                _share(verdict, claim.scale)
+                for verdict, claim in zip(
+                    estimates.of(trace, verdicts, coarser), estimates.claims, strict=True
+                )
+            ]
+            number, error = max(enumerate(errors), key=lambda each: each[1])
+            if error <= wanted:
+                text = (
+                    f"chose {steps} steps in a revolution: estimated error {error:.1g}, accuracy {wanted:g}"
+                )
+                return Choice(tried, coarser, text)
+            name = called(scene.claims[number], verdicts[number])
+            reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
+        before = [tuple(verdict.worst for verdict in verdicts), *before[:1]]
+    raise LoomfmuError(
+        f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
+    )
+
+
+def _share(verdict: Verdict, least: float) -> float:
+    """The error of a verdict as a share of its bound; none where there is no value to be off."""
+    if not math.isfinite(verdict.worst):
+        return 0.0
+    if not math.isfinite(verdict.error):
+        return math.inf
+    scale = max(abs(verdict.bound), least) or abs(verdict.worst)
+    return verdict.error / scale if scale else float(verdict.error > 0.0)
