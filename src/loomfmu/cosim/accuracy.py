@@ -45,7 +45,7 @@ def chosen(
             quarter = before[1] if len(before) > 1 else (math.nan,) * len(verdicts)
             coarser = Coarser(everything, before[0], quarter)
             errors = [
-                _share(verdict, claim.scale)
+                _share(verdict, claim.noise)
                 for verdict, claim in zip(
                     estimates.of(trace, verdicts, coarser), estimates.claims, strict=True
                 )
@@ -64,11 +64,11 @@ def chosen(
     )
 
 
-def _share(verdict: Verdict, least: float) -> float:
-    """The error of a verdict as a share of its bound; none where there is no value to be off."""
-    if not math.isfinite(verdict.worst):
+def _share(verdict: Verdict, noise: float) -> float:
+    """The error of a verdict as a share of its bound; none where steps do not count."""
+    if not math.isfinite(verdict.worst) or verdict.error <= noise:
         return 0.0
     if not math.isfinite(verdict.error):
         return math.inf
-    scale = max(abs(verdict.bound), least) or abs(verdict.worst)
-    return verdict.error / scale if scale else float(verdict.error > 0.0)
+    scale = abs(verdict.bound) or abs(verdict.worst)
+    return verdict.error / scale if scale else math.inf

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
-from ..variables import MOTION
+from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
 from .master.grid import Grid, chosen
 from .planning.pruning import upstream
@@ -43,6 +43,8 @@ class Method(NamedTuple):
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
 # and two where they are not: differences are 3 times the error or more.
 PRESENT = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-12)
+# An extreme that a component holds is found beyond what it takes for noise of its samples.
+HELD = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack, and to one where a
 # loop carries values of the step before.
 MEMORY = Method(halved=2.0, quartered=1.0 / 4.0, floor=1e-9)
@@ -81,18 +83,17 @@ class Estimates:
         found = []
         for claim in self.claims:
             owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
-            components = [
-                scene.instances[name].fmu.component
-                for name in (*upstream(owners, scene.wires), *claim.parameter_owners())
-            ]
-            remembers = any(each is None or each.keeps == MOTION for each in components)
-            found.append(MEMORY if remembers or delayed else PRESENT)
+            components = [scene.instances[name].fmu.component for name in upstream(owners, scene.wires)]
+            kept = {MOTION if each is None else each.keeps for each in components}
+            found.append(MEMORY if MOTION in kept or delayed else HELD if EXTREMES in kept else PRESENT)
         return found
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """What some claims, counted from 0, give on coarser steps than those of a grid."""
         if not wanted:
             return Coarser(wanted)
+        if scene.unprotected:  # one that crashes when it is freed must not take the run with it
+            return Coarser(wanted, why=f"{scene.unprotected[0]} runs in this process; set isolated = true")
         values = []
         for part in ("half", "a quarter"):
             found = _thinned(scene, grid)
@@ -124,9 +125,10 @@ class Estimates:
             if coarser.why:
                 found[number] = _noted(found[number], f"numerical error not estimated: {coarser.why}")
                 continue
-            unresolved = self.claims[number].unresolved(trace, found[number])
-            half, quarter = coarser.half[number], coarser.quarter[number]
-            found[number] = _estimated(found[number], self._methods[number], half, quarter, unresolved)
+            found[number] = _estimated(
+                found[number], self.claims[number], trace, self._methods[number],
+                coarser.half[number], coarser.quarter[number],
+            )  # fmt: skip
         return tuple(found)
 
 
@@ -139,7 +141,9 @@ def near(verdicts: Sequence[Verdict]) -> set[int]:
     }
 
 
-def _estimated(verdict: Verdict, method: Method, half: float, quarter: float, unresolved: float) -> Verdict:
+def _estimated(
+    verdict: Verdict, claim: Claim, trace: Signals, method: Method, half: float, quarter: float
+) -> Verdict:
     worst = verdict.worst
     if not math.isfinite(worst):
         return verdict
@@ -150,8 +154,8 @@ def _estimated(verdict: Verdict, method: Method, half: float, quarter: float, un
         return replace(_noted(verdict, note), decided=False, holds=False)
     changes = [method.halved * abs(worst - half), method.quartered * abs(half - quarter)]
     spread = max(change for change in changes if math.isfinite(change))
-    floor = method.floor * max(abs(worst), abs(verdict.bound))
-    return verdict.estimated(max(spread, unresolved, floor), spread)
+    floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
+    return verdict.estimated(max(spread, claim.unresolved(trace, verdict), floor), spread)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:

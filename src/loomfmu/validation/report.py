@@ -16,6 +16,7 @@ from . import (
     errata_laws,
     errata_others,
     errata_weft,
+    errors,
     findings,
     loads,
     lock,
@@ -99,7 +100,8 @@ def text() -> str:
     parts += [
         chapter.markdown()
         for chapter in (
-            *of_sources, errata(), findings.chapter(), design.chapter(), accuracy.chapter(), attack.chapter()
+            *of_sources, errata(), findings.chapter(), design.chapter(), accuracy.chapter(),
+            errors.chapter(), attack.chapter(),
         )
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"

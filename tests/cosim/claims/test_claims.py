@@ -673,9 +673,10 @@ at_most = "1 N"
         assert {"weft.velocity", "weft.acceleration", "heald_2.lift", "heald_2.acceleration"} <= set(trace)
         assert "damper_1.peak_load" in trace
         assert "weft.travel" not in trace and "heald_1.lift" not in trace
-        # judging the file anew gives the same
+        # judging the file anew gives the same, without the error, which takes other runs
         again = judge(trace, kind="dwell", heald="heald_2", at_least="90 deg")
-        assert again == trace.verdicts[1]
+        assert math.isnan(again.error)
+        assert again == replace(trace.verdicts[1], error=again.error)
 
 
 @pytest.mark.parametrize(

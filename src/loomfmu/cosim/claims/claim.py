@@ -43,8 +43,8 @@ class Claim(ABC):
     `name` is what its verdict calls it. A kind states which signals it `needs` as "argument.variable", the
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
-    it needs of the window `grid`, which is every step unless it says otherwise. An accuracy is a share of the
-    bound, but of no less than its `scale`.
+    it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
+    may be off by with any steps, in its unit.
     """
 
     name: str = argument(Name(), "")
@@ -55,7 +55,7 @@ class Claim(ABC):
     sense: ClassVar[int] = AT_LEAST
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
-    scale: ClassVar[float] = 0.0
+    noise: ClassVar[float] = 0.0
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)

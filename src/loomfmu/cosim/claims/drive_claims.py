@@ -13,7 +13,7 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Name, Quantity, argument
 from .claim import AT_MOST, ONE, PERCENT, POWER, Claim
-from .curves import ROUNDING, Floats, Motion, Stretch
+from .curves import Floats, Motion, Stretch
 
 # what a mechanism calls the work that it has taken from the shaft, its torque, and the part of it whose work
 # it does not know
@@ -90,7 +90,7 @@ class EnergyBalance(Claim):
 
     needs = ()
     sense, unit = AT_MOST, ONE
-    scale = 1.0  # the work that the shaft exchanges
+    noise = 1e-12  # of the work that the shaft exchanges: rounding of sums
 
     def signals(self, instances: Iterable[str]) -> list[str]:
         books = ("velocity", "acceleration", "motor_work", "load_work", "other_work", "kinetic_energy")
@@ -123,9 +123,6 @@ class EnergyBalance(Claim):
             notes = ["the shaft does no work in this run"]
         share = most / through if through > 0.0 and not unwired else math.nan
         return self.verdict(trace, "energy missing", signal, self.at_most, share, time, *notes)
-
-    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
-        return ROUNDING
 
 
 def _loads(trace: Signals) -> list[Load]:

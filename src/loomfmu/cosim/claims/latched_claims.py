@@ -22,6 +22,7 @@ class LowestMargin(Claim):
 
     needs = ("belt.margin", "belt.lowest_margin")
     grid = LANDINGS
+    noise = 3e-9  # of the critical force: what the monitor takes for noise of its samples
 
     def judge(self, trace: Signals) -> Verdict:
         latch = f"{self.belt}.lowest_margin"
