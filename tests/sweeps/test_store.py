@@ -39,19 +39,23 @@ def plan(tmp_path: Path) -> SweepPlan:
 def batch(rows: range) -> Batch:
     """Made-up results; every fifth row could not be run."""
     results = [
-        [None] * 14 + [f"row {row}"]
+        [None] * 18 + [f"row {row}"]
         if row % 5 == 4
         else [
             70.0 + row,
             True,
+            True,
             0.1 * row,
             0.0,
             0.1 * row,
+            1e-9,
             None,
             row < 20,
+            True,
             70.0 + row,
             60.0,
             10.0 + row,
+            None,
             None,
             row < 20,
             None if row < 20 else "second",

@@ -34,7 +34,7 @@ def chosen(
     """
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
     before: list[tuple[float, ...]] = []
-    reached = "no number of steps that was tried fits its revolutions"
+    reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in (FEWEST << doubled for doubled in range(DOUBLED + 1)):
         total = scene.periods * steps
         if total > MOST_STEPS or abs(total - round(total)) > ROUNDING * total:

@@ -1,0 +1,100 @@
+"""Steps that are chosen for an accuracy: reached, the fewest of those tried, refused where it cannot be."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from loomfmu import LoomfmuError, Trace, evaluate, limit, prepare
+from loomfmu.cli import main
+from loomfmu.cosim.scenes.scene import parse
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+ONE = {"revolutions": 1}
+EXACT = 0.22556868  # the demonstration's lowest margin in closed form, see results/validation.md
+LIGHT = DEMO.with_name("light_shaft.toml")
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+def test_the_accuracy_is_reached_with_the_fewest_steps_tried(accuracy: float) -> None:
+    found = evaluate(DEMO, set=ONE | {"accuracy": accuracy})
+    assert all(each.error <= accuracy * abs(each.bound) for each in found.claims)
+    assert abs(found.claims[0].worst - EXACT) <= accuracy * 0.1 + 1e-8  # digits of the exact value
+    steps = found.scene.steps_per_period
+    assert re.fullmatch(
+        rf"chose {steps} steps in a revolution: estimated error \S+, accuracy {accuracy:g}", found.chosen
+    )
+    fewer = evaluate(DEMO, set=ONE | {"steps_per_revolution": int(steps) // 2})
+    if steps > 48:
+        assert any(each.error > accuracy * abs(each.bound) for each in fewer.claims)
+
+
+def test_the_run_says_and_stores_what_it_chose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "chosen.h5"
+    command = ["run", str(DEMO), "--set", "accuracy=1e-4", "--set", "revolutions=1", "--output", str(path)]
+    assert main(command) == 0
+    printed = capsys.readouterr().out
+    assert "chose 192 steps in a revolution: estimated error" in printed
+    trace = Trace(path)
+    assert trace.attributes["accuracy"] == "0.0001" and trace.attributes["steps_per_revolution"] == "192"
+    assert trace.verdicts == list(evaluate(DEMO, set=ONE | {"accuracy": 1e-4}).claims)
+
+
+def test_each_row_chooses_its_own_steps_and_a_search_keeps_them() -> None:
+    with prepare(DEMO, set=ONE | {"accuracy": 1e-5}) as loom:
+        slow, fast = (loom.evaluate({"shaft.speed": f"{speed} rpm"}) for speed in (200, 600))
+        assert slow.chosen and fast.chosen
+        searched = loom.evaluate({"shaft.speed": "200 rpm"}, errors="none")
+        assert searched.scene.steps_per_period == fast.scene.steps_per_period
+    found = limit(DEMO, vary="shaft.speed=600rpm..700rpm", set=ONE | {"accuracy": 1e-6})
+    speed = found.claims[0].limits[0].value / found.span.value * 600.0
+    assert speed == pytest.approx(681.80440 * 0.9**0.5, rel=1e-6)
+
+
+def test_a_loop_is_iterated_unless_the_scene_says_otherwise() -> None:
+    text = LIGHT.read_text()
+    assert (
+        parse(text.replace('coupling = "iterated"', ""), overrides={"accuracy": 1e-3}).coupling == "iterated"
+    )
+    lagged = parse(text, overrides={"accuracy": 1e-3, "coupling": "lagged"})
+    assert lagged.coupling == "lagged"
+    assert parse(DEMO.read_text(), overrides={"accuracy": 1e-3}).coupling == "lagged"  # it has no loop
+
+
+def test_setting_one_replaces_the_other() -> None:
+    text = DEMO.read_text().replace("steps_per_revolution = 1440", "accuracy = 1e-3")
+    assert parse(text).accuracy == 1e-3
+    assert parse(text, overrides={"steps_per_revolution": 90}).accuracy is None
+    windows = DEMO.with_name("belt_alone.toml").read_text()
+    assert parse(windows, overrides={"accuracy": 1e-3}).grid == "uniform"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"accuracy": 1e-6, "steps_per_revolution": 90}, "accuracy and steps_per_revolution are both given"),
+        ({"accuracy": 1e-6, "grid": "windows"}, "accuracy and grid are both given"),
+        ({"accuracy": 2.0}, r"accuracy = 2 is outside \[1e-12, 1\]"),
+        ({"accuracy": "good"}, "accuracy = 'good' is not a number"),
+        (
+            {"accuracy": 1e-12, "revolutions": 1},
+            "accuracy = 1e-12 is not reached: with 12288 steps in a revol",
+        ),
+        ({"accuracy": 1e-3, "revolutions": 0.1}, "no number of steps that was tried fits revolutions = 0.1"),
+    ],
+)
+def test_what_cannot_be_chosen_is_refused_in_one_line(given: dict[str, object], message: str) -> None:
+    with pytest.raises(LoomfmuError, match=message) as refused:
+        evaluate(DEMO, set=given)
+    assert "\n" not in str(refused.value)
+
+
+def test_an_accuracy_needs_claims_and_revolutions() -> None:
+    with pytest.raises(LoomfmuError, match="the scene has none: add"):
+        parse('accuracy = 1e-6\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"')
+    seconds = (
+        'accuracy = 1e-6\nduration = "1 s"\nstep = "1 ms"\n[loom]\nmachine = "WL680-3600"\n'
+        'head = "G6300 left"\n[[claims]]\nkind = "lowest_margin"\nbound = 0'
+    )
+    with pytest.raises(LoomfmuError, match="the scene runs by seconds"):
+        parse(seconds)

@@ -1,0 +1,165 @@
+"""The numerical error of verdicts: against closed forms, undecided within it, honest where there is none."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from loomfmu import LoomfmuError, Trace, Verdict, evaluate, prepare, run
+from loomfmu.components import COMPONENTS
+from loomfmu.cosim.estimates import MEMORY, PRESENT
+from loomfmu.cosim.scenes.scene import parse
+from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, dwell_angle
+from loomfmu.validation import belt
+from loomfmu.validation.errors import drawn, found
+
+DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
+STEPS = (24, 45, 60, 90, 144, 180, 360, 720, 1440)
+LOOM = """
+revolutions = 1
+steps_per_revolution = {steps}
+record = []
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[shaft]
+speed = "600 rev/min"
+[[claims]]
+kind = "lowest_margin"
+bound = {bound}
+"""
+
+
+def exact() -> dict[int, float]:
+    """Values of the demonstration's claims, by their numbers, in closed form."""
+    limit = belt.rpm(belt.safe("WL680-3600", "G6300 left", 0.8))
+    return {
+        0: 1.0 - (600.0 / limit) ** 2,
+        1: limit * math.pi / 30.0,
+        2: dwell_angle(SLOPED_SINE, 0.5, 0.015),
+    }
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_the_error_covers_the_true_one_of_closed_forms(steps: int) -> None:
+    verdicts = evaluate(DEMO, set={"steps_per_revolution": steps, "revolutions": 1}).claims
+    for number, value in exact().items():
+        true = abs(verdicts[number].worst - value)
+        assert true <= verdicts[number].error
+        if true > 1e-8 * abs(value) and steps > 24:  # 12 and 6 steps show nothing of a belt's window
+            assert verdicts[number].error <= 200.0 * true
+
+
+def test_random_scenes_are_covered() -> None:
+    every = [each for scene in drawn(seed=3, scenes=10) for each in found(scene)]
+    assert len(every) > 40
+    assert all(each.error >= each.true or each.true <= 1e-11 * each.scale for each in every)
+
+
+def test_within_its_error_of_the_bound_a_verdict_is_undecided_and_does_not_hold(tmp_path: Path) -> None:
+    worst = evaluate(parse(LOOM.format(steps=90, bound=0.1))).claims[0]
+    assert worst.word == "holds" and 1e-9 < worst.error < 1e-3
+    for side in (-0.5, 0.5):
+        result = run(
+            parse(LOOM.format(steps=90, bound=repr(worst.worst + side * worst.error)), "near"),
+            output=tmp_path / "near.h5", overwrite=True,
+        )  # fmt: skip
+        (verdict,) = result.claims
+        assert not result and not verdict and not verdict.holds and not verdict.decided
+        assert verdict.word == "undecided" and "1 of 1 claims is undecided" in repr(result)
+        assert verdict.distance == pytest.approx(-side * worst.error)  # continuous across the bound
+        assert f"numerical error {verdict.shown_error}" in str(verdict)
+        stored = Trace(tmp_path / "near.h5").verdicts
+        assert stored == [verdict]
+    for side in (-2.0, 2.0):
+        decided = evaluate(parse(LOOM.format(steps=90, bound=repr(worst.worst + side * worst.error)))).claims[
+            0
+        ]
+        assert decided.decided and decided.holds == (side < 0.0)
+
+
+def verdict(**given: Any) -> Verdict:
+    usual = Verdict("a claim", "a.b", True, 1.0, 1.0, "1", "1", 0.0, math.nan, None, sense=1)
+    return replace(usual, **given)
+
+
+def test_a_bound_that_all_resolutions_meet_is_met() -> None:
+    assert verdict().estimated(error=1e-9, spread=0.0).word == "holds"
+    assert verdict(bound=0.0, worst=0.0).estimated(error=0.0, spread=0.0).word == "holds"
+    assert verdict().estimated(error=1e-9, spread=1e-10).word == "undecided"
+    assert verdict(worst=1.0 + 1e-10).estimated(error=1e-9, spread=0.0).word == "undecided"
+    assert verdict(bound=3.0, worst=3.0).estimated(error=1.0, spread=1.0).word == "undecided"  # a count
+
+
+def test_what_fails_without_a_distance_is_decided() -> None:
+    failing = verdict(holds=False, worst=2.0, note="the samples are too far apart")
+    assert failing.estimated(error=5.0, spread=5.0).word == "FAILS"
+
+
+def test_verdicts_of_earlier_traces_have_no_error() -> None:
+    stored = json.loads(json.dumps(verdict(error=0.1).as_dict()))
+    assert Verdict.of(stored) == verdict(error=0.1)
+    assert stored["display"]["error"] == 0.1
+    del stored["error"], stored["decided"]
+    read = Verdict.of(stored)
+    assert math.isnan(read.error) and read.decided and read.shown_error == "-"
+
+
+def test_live_and_native_fmus_and_prepared_scenes_give_the_same_errors(tmp_path: Path) -> None:
+    scene = parse(LOOM.format(steps=60, bound=0.1), "same")
+    recorded = run(scene, output=tmp_path / "same.h5").claims
+    assert recorded == evaluate(scene).claims == evaluate(scene, flavour="live").claims
+    with prepare(scene) as loom:
+        assert loom.evaluate().claims == recorded
+        plain = loom.evaluate(errors="none").claims[0]
+        assert math.isnan(plain.error) and plain.worst == recorded[0].worst
+        assert math.isnan(loom.evaluate(errors="near").claims[0].error)  # its bound is far away
+        bound = repr(0.99 * plain.worst)
+        near = prepare(parse(LOOM.format(steps=60, bound=bound))).evaluate(errors="near").claims[0]
+        assert near.error == recorded[0].error
+        with pytest.raises(LoomfmuError, match="errors = 'some' is unknown"):
+            loom.evaluate(errors="some")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("steps", [61, 62])
+def test_an_odd_number_of_steps_is_halved_with_a_shorter_one_at_the_end(steps: int) -> None:
+    found = evaluate(parse(LOOM.format(steps=steps, bound=0.1))).claims[0]
+    assert abs(found.worst - exact()[0]) <= found.error <= 1e-2
+
+
+def test_a_run_that_cannot_be_repeated_on_fewer_steps_says_so() -> None:
+    text = LOOM.format(steps=1440, bound=0.1).replace("revolutions = 1", "revolutions = 0.00069444444444444")
+    found = evaluate(parse(text)).claims[0]
+    assert (
+        math.isnan(found.error) and "numerical error not estimated: its steps cannot be halved" in found.note
+    )
+
+
+def test_a_coarser_run_that_fails_gives_no_error() -> None:
+    light = (DEMO.with_name("light_shaft.toml")).read_text().replace('coupling = "iterated"', "")
+    heavy = {"shaft.inertia": "0.24 kg.m2", "steps_per_revolution": 1440, "revolutions": 0.25}
+    try:
+        verdicts = evaluate(parse(light, "light", heavy)).claims
+    except LoomfmuError:
+        pytest.skip("unstable with all steps")
+    assert all(each.error > 0.0 or "not estimated" in each.note for each in verdicts)
+
+
+def test_the_method_follows_from_what_a_claim_depends_on() -> None:
+    with prepare(DEMO) as loom:
+        methods = loom._base._estimates._methods
+    assert methods[2] is PRESENT and methods[5] is MEMORY  # a dwell of the drive, the load of a carrier
+    assert COMPONENTS["HealdDamper"].keeps == "motion"
+
+
+def test_a_value_known_only_at_the_samples_counts_with_its_gaps() -> None:
+    claim = '[[claims]]\nkind = "below"\nsignal = "heald_1.inertia_force"\nbound = 1000\n'
+    text = LOOM.format(steps=90, bound=0.1).replace('"G6300 left"', '"G6300 left"\nweave = "10/01"') + claim
+    text = text.replace("revolutions = 1", "revolutions = 2")
+    loaded = parse(text)
+    own = evaluate(loaded).claims[1]
+    true = evaluate(parse(text, overrides={"steps_per_revolution": 90 * 64})).claims[1]
+    assert abs(own.worst - true.worst) <= own.error <= 0.05 * own.worst
