@@ -124,7 +124,7 @@ class Judged(Ours):
 
     def run(self, scene: Scene, kept: tuple[str, ...] = ()) -> Any:
         """Run a scene and keep some signals; its result."""
-        return loomfmu.evaluate(scene, flavour=self.flavour, values=kept)
+        return loomfmu.evaluate(scene, flavour=self.flavour, values=kept, errors="none")
 
     def time(self, steps: int, turns: float) -> Timing:
         """Seconds to set up, and for a revolution with its judging: from a run of so many and one of one."""

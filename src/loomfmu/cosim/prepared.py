@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, get_args
@@ -75,6 +76,9 @@ class Pattern:
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
         return tuple(claim.judge(trace) for claim in self.claims)
 
+    def _estimated(self, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
+        return self._estimates.of(trace, self._judged(trace), coarser)
+
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
         scene, known, chosen = self._with_steps(scene, errors)
@@ -114,8 +118,11 @@ class Pattern:
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)
         target = target_of(plan, path, overwrite, progress)
-        # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
-        coarser = known or self._estimates.coarser(scene, plan.grid, range(len(self.claims)))
+        everything = range(len(self.claims))
+        coarser = known
+        if not all(instance.fmu.ours for instance in scene.instances.values()):
+            # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
+            coarser = known or self._estimates.coarser(scene, plan.grid, everything)
         with stepping.stepped(plan) as master:
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")
@@ -126,15 +133,20 @@ class Pattern:
                 seconds = perf_counter() - begun
                 if master.interrupted.value:
                     raise Interrupted
+            ended, warnings = ended_text(master.ended), (*scene.notes, *master.warnings())
             # while the instances are still there: one that crashes when it is freed takes nothing with it
-            verdicts, trace = finish(
-                lambda trace: self._estimates.of(trace, self._judged(trace), coarser), writer, path,
-                ended_text(master.ended),
-            )  # fmt: skip
-            warnings = (*scene.notes, *master.warnings())
+            if coarser is not None:
+                verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
+        if coarser is None:
+            with kept(writer, path):
+                try:
+                    coarser = self._estimates.coarser(scene, plan.grid, everything)
+                except KeyboardInterrupt:
+                    raise Interrupted from None
+            verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
         return Result(
             scene, verdicts, warnings, explained(plan), master.steps, path, trace,
-            ended=ended_text(master.ended), seconds=seconds, chosen=chosen,
+            ended=ended, seconds=seconds, chosen=chosen,
         )  # fmt: skip
 
 

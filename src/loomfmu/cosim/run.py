@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from .importing.fmus import Flavour
-from .prepared import Prepared
+from .prepared import Errors, Prepared
 from .results import Evaluation, Result
 from .scenes.scene import Scene
 
@@ -44,18 +44,21 @@ def evaluate(
     set: dict[str, Any] | None = None,
     flavour: Flavour = "native",
     values: Sequence[str] = (),
+    errors: Errors = "all",
 ) -> Evaluation:
     """Co-simulate what the claims of a scene need, and judge them; nothing is written.
 
     Args:
         scene, set, flavour: as for `run`; what the scene would record is left out
         values: further signals to keep
+        errors: which verdicts get an estimate of their numerical error, which takes further runs: "all",
+            those "near" their bounds, or "none"
 
     Raises:
         LoomfmuError: bad input, or an FMU that failed; one line that names what and where
         KeyboardInterrupt: Ctrl-C
     """
-    return prepare(scene, set=set, flavour=flavour, values=values).evaluate()
+    return prepare(scene, set=set, flavour=flavour, values=values).evaluate(errors=errors)
 
 
 def prepare(
