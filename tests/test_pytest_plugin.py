@@ -25,6 +25,7 @@ signal = "belt.lowest_speed_limit"
 bound = "300 rpm"
 """
 FAST, SLOW = SCENE.replace("SPEED", "720"), SCENE.replace("SPEED", "600")
+NEAR = SCENE.replace("SPEED", "681.805").replace("= 360", "= 90")  # the equations give 681.804
 
 
 def write(pytester: pytest.Pytester, name: str, text: str) -> Path:
@@ -45,6 +46,13 @@ def test_each_claim_is_a_test_and_nothing_is_written(pytester: pytest.Pytester) 
     result.assert_outcomes(passed=2)
     result.stdout.fnmatch_lines(["slow.toml::the belt does not buckle PASSED*", "slow.toml::above PASSED*"])
     assert not [*pytester.path.rglob("*.h5"), *pytester.path.rglob("results")]
+
+
+def test_an_undecided_claim_fails_with_its_error(pytester: pytest.Pytester) -> None:
+    write(pytester, "near.toml", NEAR)
+    result = pytester.runpytest_subprocess("near.toml")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["undecided: *lowest margin", "distance:*", "error: *e-0*"])
 
 
 def test_a_failure_says_where_and_how_to_repeat_it(pytester: pytest.Pytester) -> None:

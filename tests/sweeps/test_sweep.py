@@ -22,6 +22,7 @@ from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.design import loom
 from loomfmu.sweeps import plan as plans
+from loomfmu.sweeps import report
 from loomfmu.sweeps import run as sweeps_run
 from loomfmu.sweeps.ranking import beyond, traced_rows, worst_rows
 from loomfmu.sweeps.worker import Job, identity
@@ -573,3 +574,19 @@ def test_a_trace_that_cannot_be_written_is_a_line_of_the_report(
     monkeypatch.setattr(sweeps_run, "run_trace", traced)
     found = loomfmu.sweep(path, processes=1, output=tmp_path / "out")
     assert found.untraced == {} and target in found.traces
+
+
+def test_a_row_within_its_error_of_a_bound_is_undecided(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = f'[grid]\n"shaft.speed" = ["400 rpm", "681.805 rpm", "720 rpm"]\n{NO_TRACES}'
+    found = loomfmu.sweep(written(tmp_path, text), output=tmp_path / "out", processes=1)
+    assert (found.holding, found.failing, found.undecided, found.errors) == (1, 1, 1, 0)
+    far, near, _beyond = rows_of(found.table)
+    assert near["claim_2.decided"] is False and near["claim_2.holds"] is False and near["holds"] is False
+    assert near["claim_2.error"] >= abs(near["claim_2.distance"])
+    assert far["claim_2.error"] is None and far["claim_2.decided"] is True  # too far away to matter
+    report.show(found)
+    printed = capsys.readouterr().out
+    assert "3 combinations: 1 hold, 1 fail, 1 are undecided, 0 could not be run" in printed
+    assert "undecided  row 1" in printed

@@ -116,7 +116,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """What the script judges: the kind and the arguments of each claim, and how its values are shown.
 
     `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
-    the page holds: the script leaves out a claim that it would judge otherwise.
+    the page holds, without its numerical error: the script leaves out a claim that it would judge otherwise.
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
@@ -134,6 +134,6 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
             "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
             "lifts": {frame: lift_of(frame, lifted_by, trace) for frame in frames},
             "shown": {"factor": verdict.displayed(1.0), "unit": unit},
-            "native": {"holds": verdict.holds, "worst": verdict.worst},
+            "native": {"holds": verdict.holds or verdict.distance >= 0.0, "worst": verdict.worst},
         })  # fmt: skip
     return found
