@@ -51,7 +51,7 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     assert lines[place + 1].startswith("  0.6558")
     away = {0.1: "+555.8 %", 0.9: "-27.13 %"}[bound]
     assert f", bound {bound} ({away}), error 2e-05, at 0.0" in lines[place + 1]
-    assert lines[place + 1].endswith(" deg, rev. 1")
+    assert lines[place + 1].endswith(" deg,") and lines[place + 2] == "  rev. 1"
     assert "To be read after the run." in lines
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
     assert main(["run", "scene.toml", "--set", "shaft.speed=300rpm", "--output", "other.h5"]) == status
