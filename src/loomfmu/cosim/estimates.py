@@ -92,8 +92,10 @@ class Estimates:
         """What some claims, counted from 0, give on coarser steps than those of a grid."""
         if not wanted:
             return Coarser(wanted)
-        if scene.unprotected:  # one that crashes when it is freed must not take the run with it
-            return Coarser(wanted, why=f"{scene.unprotected[0]} runs in this process; set isolated = true")
+        for name, instance in scene.instances.items():
+            # one that crashes when it is freed must not take the run with it
+            if not (instance.fmu.ours or scene.isolates(name)):
+                return Coarser(wanted, why=f"{name} runs in this process; set isolated = true")
         values = []
         for part in ("half", "a quarter"):
             found = _thinned(scene, grid)
