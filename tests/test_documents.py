@@ -118,11 +118,9 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
 
 
-<<<<<<< HEAD
-FOLLOWED = ("tour", "report", "scenes", "traces", "testing", "limits", "tolerances", "optimizing", "fitting")
-=======
-FOLLOWED = ("tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "fitting")
->>>>>>> 40ce7f4 (The examples of docs/how_sure.md are followed by a test)
+FOLLOWED = (
+    "tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "optimizing", "fitting",
+)  # fmt: skip
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",
