@@ -119,7 +119,8 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 FOLLOWED = (
-    "tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "optimizing", "fitting",
+    "tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "optimizing",
+    "fitting",
 )  # fmt: skip
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",

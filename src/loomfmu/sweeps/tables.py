@@ -138,12 +138,12 @@ def _claim(number: int, label: Label | None) -> list[Any]:
     holds, worst, bound = claim_columns(number)
     return [
         pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
-        pa.field(decided_column(number), pa.bool_(), metadata={"description": "Whether it is decided"}),
         pa.field(worst, pa.float64(), metadata=about),
         pa.field(bound, pa.float64(), metadata=about),
         pa.field(distance_column(number), pa.float64(), metadata=about),
-        pa.field(error_column(number), pa.float64(), metadata=about),
         pa.field(note_column(number), pa.string(), metadata={"description": "What limits the verdict"}),
+        pa.field(decided_column(number), pa.bool_(), metadata={"description": "Whether it is decided"}),
+        pa.field(error_column(number), pa.float64(), metadata=about),
     ]
 
 

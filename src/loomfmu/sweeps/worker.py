@@ -17,7 +17,7 @@ from .. import machines
 from ..cosim.claims.claims import called
 from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
-from ..cosim.prepared import Prepared
+from ..cosim.prepared import Errors, Prepared
 from ..cosim.run import prepare
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
@@ -37,6 +37,7 @@ class Job:
     flavour: Flavour
     values: tuple[str, ...]
     identity: str
+    errors: Errors = "near"
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,9 @@ class Label:
 
 @dataclass(frozen=True)
 class Batch:
-    """Results of some rows, each: final values, then of each claim whether it holds, whether it is decided,
-    worst value, bound, distance, error and note, whether all hold, the first claim that does not, warnings,
-    and what went wrong.
+    """Results of some rows, each: final values, then of each claim whether it holds, worst value, bound,
+    distance, note, whether it is decided and error, whether all hold, the first claim that does not,
+    warnings, and what went wrong.
 
     None stands for what there is not.
 
@@ -145,7 +146,7 @@ def _prepared(job: Job) -> Prepared:
 def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
     """The result of one row and the verdicts on it."""
     try:
-        found = loom.evaluate(settings, errors="near")
+        found = loom.evaluate(settings, errors=job.errors)
         values = [found.trace[signal][-1].item() for signal in job.values]
     except (OSError, MemoryError):  # of the machine, not of the row
         raise
@@ -157,8 +158,8 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         return failed(job, loom.scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
-        numbers = verdict.worst, verdict.bound, verdict.distance, verdict.error
-        values += [verdict.holds, verdict.decided, *map(_finite, numbers), verdict.note or None]
+        numbers = map(_finite, (verdict.worst, verdict.bound, verdict.distance))
+        values += [verdict.holds, *numbers, verdict.note or None, verdict.decided, _finite(verdict.error)]
         if not verdict.holds and first is None:
             first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims

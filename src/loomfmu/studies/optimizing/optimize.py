@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from pathlib import Path
 
 from ...cosim.run import evaluate
@@ -53,7 +54,7 @@ def optimize(
     check_packages(path, {"filelock": True, "tomlkit": True, "distributed": bool(scheduler)})
     from ...sweeps.directory import owned
 
-    job = job_of(study)
+    job = replace(job_of(study), errors="none")  # a search goes up to the bounds
     files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
     fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
     try:

@@ -21,7 +21,7 @@ from .study import Study
 
 Point = tuple[float, ...]  # a number for each variable, see `Variable.value`
 Floats = NDArray[np.float64]
-OF_CLAIM = 5  # columns of a claim in a result: holds, worst, bound, distance, note
+OF_CLAIM = 7  # columns of a claim in a result: holds, worst, bound, distance, note, decided, error
 
 
 @dataclass(frozen=True)
