@@ -62,7 +62,7 @@ def optimize(
             own = own_point(study)
             try:  # what could not be run or written is refused now, not after the search
                 files.check(study, own)
-                verdicts = evaluate(study.scene, flavour=study.flavour).claims
+                verdicts = evaluate(study.scene, flavour=study.flavour, errors="none").claims
             except LoomfmuError as error:
                 raise LoomfmuError(f"{path}: {error}") from None
             limits = limits_of(study, verdicts, path)
