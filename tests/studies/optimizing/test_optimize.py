@@ -69,7 +69,7 @@ head = ["GS900 right", "G6300 left", "G6300 right", "GS900 left"]"""
     assert found.goal == pytest.approx(speeds[best], rel=1e-8)
     assert found.binding == (MARGIN, "belt.guide_clearance")
     assert found.scene is not None
-    again = evaluate(found.scene)  # the scene that was written
+    again = evaluate(found.scene, errors="none")  # the scene that was written; it lies on its bound
     assert again and again.claims == found.verdicts
 
 
