@@ -204,6 +204,45 @@ def test_drawings_and_plots_follow_the_run(written: Path, opened: Open, tmp_path
     assert page.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
 
 
+def test_what_is_out_of_sight_shows_the_same_place_and_run(
+    written: Path, opened: Open, tmp_path: Path
+) -> None:
+    """A picture of the whole page, taken without scrolling: caption, drawings and plots agree."""
+    page = running(opened(written))
+    travel = page.locator("#motion-drive-weft [data-value]").first
+    place = page.locator("#motion-place")
+    assert (place.inner_text(), travel.inner_text()) == ("rev. 1, 0.0°, 0.00000 s", "0.0")
+    turned(page, 700.0)
+    page.evaluate("loomfmu.seek(Math.PI)")
+    trace = loomfmu.run(DEMO, set={"shaft.speed": "700 rpm"}, output=tmp_path / "run.h5").trace
+    innermost = 1000.0 * float(np.interp(math.pi, trace.shaft_angle, trace["weft.travel"]))
+    assert place.inner_text().startswith("rev. 1, 180.0°")
+    assert travel.inner_text() == f"{innermost:.1f}"
+    values = page.locator("#plots figcaption output")
+    lowest = float(np.interp(math.pi, trace.shaft_angle, trace["belt.lowest_margin"]))
+    until(page, lambda: values.first.inner_text().startswith(f"{lowest:.4g}"[:6]))
+    until(page, lambda: all("| –" not in each and each[0] != "–" for each in values.all_inner_texts()))
+    assert page.evaluate("scrollY") == 0
+
+
+def test_before_its_first_run_the_page_shows_the_run_that_it_holds(written: Path, opened: Open) -> None:
+    """A browser without WebAssembly: the drawings stay where their caption says, and no plot is empty."""
+    page = opened(written)
+    page.add_init_script("delete window.WebAssembly")
+    page.reload()
+    until(page, lambda: "cannot run here" in page.inner_text("#live-problem"))
+    assert page.inner_text("#motion-place").startswith("rev. 1, 137.0°")
+    assert page.locator("#motion-drive-weft [data-value]").first.inner_text() != "0.0"
+    assert page.locator("#motion.stale").count() == 0
+    assert page.locator("#plots-drawn").is_hidden()
+
+
+def test_the_run_that_it_was_written_with_is_named_so(written: Path, opened: Open) -> None:
+    page = running(opened(written))
+    assert page.inner_text("#provenance h2") == "The scene’s own run"
+    assert "The sliders do not change this section" in page.inner_text("#provenance")
+
+
 def test_drawings_do_not_show_dimensions_that_differ(tmp_path: Path, opened: Open) -> None:
     path = live_page.write(DEMO, ["belt.head_length"], tmp_path / "head.html")
     page = running(opened(path))

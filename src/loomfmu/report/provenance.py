@@ -28,8 +28,9 @@ def section(subject: Subject) -> Section:
     ]
     facts.insert(1, ("Samples", f"{subject.trace.rows}"))
     return Section(
-        "provenance", "The run",
+        "provenance", "The scene’s own run" if subject.live else "The run",
         template("provenance.html.j2").render(
+            live=subject.live,
             facts=facts,
             changed=sorted(_json(attributes.get("set", "{}")).items()),
             notes=str(attributes.get("notes", "")).splitlines(),

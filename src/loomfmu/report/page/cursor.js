@@ -103,7 +103,8 @@ const loomfmu = (() => {
     seek(position);
   }
 
-  /* Makes a function that draws an element: at once while it is in sight, else as soon as it is, or on paper. */
+  /* Makes a function that draws an element: at once while it is in sight, else as soon as it is, or the browser has
+   * nothing else to do, or on paper. */
   const drawn = new Map(), paper = matchMedia("print");
   const sight = new IntersectionObserver(found => {
     for (const { target, isIntersecting } of found) {
@@ -116,10 +117,25 @@ const loomfmu = (() => {
     const each = { seen: true, late: false, draw: () => { each.late = false; draw(); } };
     drawn.set(element, each);
     sight.observe(element);
-    return () => { if (each.seen || paper.matches) each.draw(); else each.late = true; };
+    return () => {
+      if (each.seen || paper.matches) each.draw();
+      else { each.late = true; rest(); }
+    };
   }
-  const catchUp = () => { for (const each of drawn.values()) if (each.late) each.draw(); };
-  addEventListener("beforeprint", catchUp);
+  const late = () => [...drawn.values()].filter(each => each.late);
+  const catchUp = () => { for (const each of late()) each.draw(); };
+  const idle = window.requestIdleCallback || (work => setTimeout(work, 50)); // Safari has none
+  let resting = false;
+  function rest() { // one element at a time, so that a slider does not wait
+    if (resting) return;
+    resting = true;
+    idle(() => {
+      resting = false;
+      const [each] = late();
+      if (each) { each.draw(); rest(); }
+    });
+  }
+  for (const event of ["beforeprint", "resize"]) addEventListener(event, catchUp);
   paper.addEventListener("change", catchUp);
 
   slider.min = first;

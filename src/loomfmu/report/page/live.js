@@ -129,7 +129,7 @@ loomfmu.live = (() => {
       wasm = (await WebAssembly.instantiate(bytes)).instance.exports;
     } catch (error) {
       problem.hidden = false;
-      problem.textContent = `The FMUs cannot run here: ${error.message}. The page shows the run of the scene’s own values.`;
+      problem.textContent = `The FMUs cannot run here: ${error.message}. The page shows the run of the scene’s own values, without plots.`;
       return;
     }
     wasm._initialize();

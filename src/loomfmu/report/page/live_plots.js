@@ -2,7 +2,9 @@
 (() => {
   const { traces, signals, show } = loomfmu.plots, { plan } = loomfmu.live, choice = document.getElementById("plots-choice");
   const rows = choice.querySelectorAll("tr[data-name]")
+  const drawn = document.getElementById("plots-drawn");
   let run = null, own = null;
+  drawn.hidden = true; // there is nothing to draw before the first run
 
   function curve(of, name) {
     const { factor } = plan.signals[name];
@@ -30,6 +32,7 @@
   loomfmu.live.follow("plots", found => {
     run = found;
     if (run && !own) own = kept(run);
+    drawn.hidden = !own;
     [run || own, own].forEach((each, number) => {
       if (each) [traces[number].positions, traces[number].times] = [each.positions, each.time];
     });

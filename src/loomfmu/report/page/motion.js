@@ -5,7 +5,7 @@
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
   const windows = live ? Infinity : Math.max(...Object.values(tracks).map(track => track.shown.length));
-  let known = false, window_ = 0, share = 0, sample = null; // share of the window that is past; place and share among the samples
+  let ran = false, known = false, window_ = 0, share = 0, sample = null; // share of the window that is past; place and share among the samples
 
   const between = (values, place, part) => {
     const next = values[Math.min(place + 1, values.length - 1)];
@@ -41,12 +41,6 @@
     ...followers("bow", (element, at) => element.setAttribute("points", bow(...at))),
     ...followers("value", (element, [amount]) => { element.textContent = amount.toFixed(Number(element.dataset.digits)); }),
   ];
-  const figures = Array.from(root.querySelectorAll("figure"), figure => {
-    const its = moves.filter(({ element }) => figure.contains(element));
-    const draw = () => { if (known) for (const { move } of its) move(); };
-    return live ? loomfmu.whenSeen(figure, draw) : draw; // a run redraws what is in sight
-  });
-
   function draw(position) {
     const turns = (position - first) / span;
     window_ = Math.min(Math.max(Math.floor(turns + 1e-9), 0), windows - 1);
@@ -54,10 +48,12 @@
     if (live && live.current) sample = loomfmu.locate(live.current.positions, position);
     known = live ? live.current && !varied().length
       : turns < windows + 1e-9 && Object.values(tracks).every(track => track.shown[window_] !== null);
+    if (live && !ran) return; // the drawings show the run that the page was written with
     missing.hidden = known || Boolean(live && !live.current);
     if (live) missing.textContent = `The drawings have the scene’s own ${varied().join(", ")}, so they do not show this run.`;
     root.classList.toggle("stale", !known);
-    for (const figure of figures) figure();
+    if (!known) return; // drawings and caption stay as they were, together
+    for (const { move } of moves) move();
     document.getElementById("motion-place").textContent = loomfmu.label(position);
   }
 
@@ -66,6 +62,7 @@
 
   if (live)
     live.follow("motion", run => {
+      ran = true;
       const rule = run && loomfmu.rules(run, tracks);
       for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
     });
