@@ -32,6 +32,7 @@ pytestmark = [
     pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: nothing is compiled"),
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="native FMUs are tested on Linux alone"),
 ]
+NOT_THERE = "\u2013"  # as a value at the cursor
 VALUES = """name => loomfmu.live.current.has(name) ? Array.from(loomfmu.live.current.signal(name)) : null"""
 
 
@@ -221,7 +222,7 @@ def test_what_is_out_of_sight_shows_the_same_place_and_run(
     values = page.locator("#plots figcaption output")
     lowest = float(np.interp(math.pi, trace.shaft_angle, trace["belt.lowest_margin"]))
     until(page, lambda: values.first.inner_text().startswith(f"{lowest:.4g}"[:6]))
-    until(page, lambda: all("| –" not in each and each[0] != "–" for each in values.all_inner_texts()))
+    until(page, lambda: all(NOT_THERE not in each for each in values.all_inner_texts()))
     assert page.evaluate("scrollY") == 0
 
 
@@ -239,7 +240,7 @@ def test_before_its_first_run_the_page_shows_the_run_that_it_holds(written: Path
 
 def test_the_run_that_it_was_written_with_is_named_so(written: Path, opened: Open) -> None:
     page = running(opened(written))
-    assert page.inner_text("#provenance h2") == "The scene’s own run"
+    assert page.inner_text("#provenance h2") == "The scene\u2019s own run"
     assert "The sliders do not change this section" in page.inner_text("#provenance")
 
 
@@ -292,7 +293,12 @@ def test_a_page_narrower_than_a_hand_shows_all(written: Path, opened: Open) -> N
     ("vary", "reason"),
     [
         ("shaft.speed=400rpm..", "not a range; write --vary INSTANCE.VARIABLE=LOW..HIGH"),
-        ("shaft.speed=40..80", "40 has no unit; write the unit of both ends, such as 40rev/min"),
+        (
+            "shaft.speed=700rpm..800rpm",
+            "the scene's own value, 600 rev/min, is outside 700 rev/min to 800 rev/min",
+        ),
+        ("shaft.speed=400..800", "is outside 3819.719 rev/min to 7639.437 rev/min; widen the range"),
+        ("weft.speed", "--vary weft.speed: weft.speed has no effect: set weft.follow_shaft = false"),
         ("shaft.speed=400rpm..400rpm", "the range is empty; both ends are equal"),
         ("belt.travel=0m..1m", "belt.travel gets its values from weft.travel; to vary it, cut the wire"),
         ("shaft.speed=400rpm", "not a range; write --vary INSTANCE.VARIABLE=LOW..HIGH"),
@@ -314,6 +320,16 @@ def test_what_cannot_be_varied_is_said_in_one_line(
     message = capsys.readouterr().err.strip()
     assert reason in message and message.count("\n") == 0, message
     assert not output.exists()
+
+
+def test_numbers_without_unit_are_si_as_everywhere_and_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = str(tmp_path / "page.html")
+    assert main(["page", str(DEMO), "--vary", "shaft.speed=40..80", "--output", output]) == 0
+    low, high = capsys.readouterr().err.splitlines()
+    assert low == "warning: --vary shaft.speed = 40 is read as 40 rad/s = 381.9719 rev/min"
+    assert high == "warning: --vary shaft.speed = 80 is read as 80 rad/s = 763.9437 rev/min"
 
 
 def test_the_same_is_not_varied_twice() -> None:

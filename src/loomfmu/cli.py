@@ -349,7 +349,11 @@ def _report(options: argparse.Namespace) -> int:
 def _page(options: argparse.Namespace) -> int:
     from .live_page import write
 
-    say(write(options.scene, options.vary, options.output, _pairs(options.overrides), options.force))
+    def warn(warning: str) -> None:
+        complain(f"warning: {warning}")
+
+    given = _pairs(options.overrides)
+    say(write(options.scene, options.vary, options.output, given, options.force, warn))
     return 0
 
 

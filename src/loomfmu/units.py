@@ -201,6 +201,18 @@ class Si(float):
     """A number that is known to be in SI: it never causes a warning about its unit."""
 
 
+def is_plain(quantity: Any) -> bool:
+    """Whether a quantity is a number without a unit, as people write it: read as SI.
+
+    >>> is_plain("400"), is_plain(400), is_plain("400 rpm"), is_plain(None)
+    (True, True, False, False)
+    """
+    if isinstance(quantity, str):
+        match = _QUANTITY.fullmatch(quantity)
+        return match is not None and not match.group(2)
+    return isinstance(quantity, int | float) and not isinstance(quantity, Si | bool)
+
+
 def doubt(quantity: Any, target: str, display: str, usual: float) -> str:
     """A warning about a number without unit that was probably meant in `display`, or an empty text.
 
@@ -212,11 +224,7 @@ def doubt(quantity: Any, target: str, display: str, usual: float) -> str:
     >>> doubt("480 rpm", "rad/s", "rev/min", 42.0), doubt(50.0, "rad/s", "rev/min", 42.0)
     ('', '')
     """
-    if isinstance(quantity, str):
-        match = _QUANTITY.fullmatch(quantity)
-        if match is None or match.group(2):
-            return ""
-    elif isinstance(quantity, Si):
+    if not is_plain(quantity):
         return ""
     value = parse(quantity, target)
     share = abs(value / usual) if usual else 0.0

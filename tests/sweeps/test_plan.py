@@ -326,6 +326,17 @@ def test_a_machine_for_the_whole_loom_goes_by_both_its_names(tmp_path: Path) -> 
         assert found.settings(range(1, 2)) == [{"weft.machine": "WL800-3600", "belt.machine": "WL800-3600"}]
 
 
+def test_values_without_effect_are_refused_unless_another_axis_switches_them_on(tmp_path: Path) -> None:
+    factor = '"belt.prescribed_length_factor" = [0.8, 0.9]\n'
+    with pytest.raises(
+        LoomfmuError, match=r"grid: belt\.prescribed_length_factor has no effect: set belt\.prescribe"
+    ):
+        plan(tmp_path, f"[grid]\n{factor}")
+    switch = '"belt.prescribe_length_factor" = [true, false]\n'
+    assert plan(tmp_path, f"[grid]\n{factor}{switch}").rows == 4
+    assert plan(tmp_path, f"[set]\n{switch.replace('[true, false]', 'true')}[grid]\n{factor}").rows == 2
+
+
 def test_numbers_without_unit_are_doubted_once_and_converted_ones_never(tmp_path: Path) -> None:
     doubt = 'shaft.speed = 480 is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is meant'
     assert plan(tmp_path, '[grid]\n"shaft.speed" = [50.0, 480, "600 rpm"]\n').notes == (doubt,)

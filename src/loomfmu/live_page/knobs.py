@@ -1,11 +1,13 @@
 """What can be varied on a page: parameters of a scene, each over a range or over its choices."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from .. import units
 from ..cosim.importing.fmus import Port, Value
 from ..cosim.reading import read
+from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..cosim.whole import system
@@ -22,6 +24,7 @@ class Knob:
     """A parameter that a page varies: all of `targets` at once, values in SI, shown as multiples of `factor`.
 
     `choices` are (value, name); without them it lies between `low` and `high`, in whole numbers if `whole`.
+    `doubts` warn of ends that were probably meant in another unit.
     """
 
     key: str
@@ -34,6 +37,7 @@ class Knob:
     factor: float = 1.0
     whole: bool = False
     choices: tuple[tuple[int, str], ...] = ()
+    doubts: tuple[str, ...] = ()
 
 
 def knobs(scene: Scene, parameters: Iterable[str], vary: Sequence[str]) -> list[Knob]:
@@ -56,11 +60,9 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
         raise LoomfmuError(f"{where}: {FORM}")
     port, targets = _port(scene, known, key, where)
     name, _, variable = targets[0].partition(".")
-    started = scene.instances[name].effective().get(variable)
-    if started is None:
-        raise LoomfmuError(f"{where}: {key} has no effect in this scene")
+    started = scene.instances[name].effective()[variable]
     choices = _choices(port)
-    low, high = (0, 1) if choices else _range(port, key, wanted, float(started), where)
+    low, high, doubts = (0, 1, ()) if choices else _range(port, key, wanted, float(started), where)
     _check_alone(scene, key, targets, choices[started == choices[0][0]][0] if choices else low, where)
     if choices:
         if wanted:
@@ -69,7 +71,7 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
     shown = "" if port.display == "1" else port.display
     return Knob(
         key, port.description, targets, float(started), float(low), float(high), shown,
-        units.unit(port.display).factor, port.kind == "Integer",
+        units.unit(port.display).factor, port.kind == "Integer", doubts=doubts,
     )  # fmt: skip
 
 
@@ -88,6 +90,7 @@ def _port(scene: Scene, known: set[str], key: str, where: str) -> tuple[Port, tu
             cut = f'to vary it, cut the wire: [wires] "{".".join(pair)}" = false'
             raise LoomfmuError(f"{where}: {key} gets its values from {sources[pair]}; {cut}")
     targets = tuple(f"{name}.{each}" for name, each in pairs if f"{name}.{each}" in known)
+    check_effect(scene.instances, [".".join(pairs[0])], where=f"{where}: ")
     if not targets:
         raise LoomfmuError(f"{where}: {key} has no effect on what this scene records")
     return ports[0], targets
@@ -114,16 +117,11 @@ def _choices(port: Port) -> tuple[tuple[int, str], ...]:
     return tuple(zip(port.numbers, port.choices, strict=True))
 
 
-def _has_no_unit(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _range(port: Port, key: str, wanted: str, start: float, where: str) -> tuple[Value, Value]:
-    """Both ends, in SI and within the limits of the variable."""
+def _range(
+    port: Port, key: str, wanted: str, start: float, where: str
+) -> tuple[Value, Value, tuple[str, ...]]:
+    """Both ends, in SI and within the limits of the variable, and what is odd about them."""
+    doubts: list[str] = []
     if not wanted:
         if not start:
             raise LoomfmuError(f"{where}: {key} is 0, so there is no range around it; {FORM}")
@@ -137,12 +135,24 @@ def _range(port: Port, key: str, wanted: str, start: float, where: str) -> tuple
         first, _, last = (end.strip() for end in wanted.partition(".."))
         if not (first and last):
             raise LoomfmuError(f"{where}={wanted}: not a range; {FORM}")
-        for end in (first, last):
-            if port.display != "1" and _has_no_unit(end):
-                unit = f"write the unit of both ends, such as {end}{port.display}"
-                raise LoomfmuError(f"{where}={wanted}: {end} has no unit; {unit}")
         low, high = (port.value(end, where) for end in (first, last))
+        doubts = [_read_as(port, end, where) for end in (first, last) if units.is_plain(end)]
     if not low < high:
         order = "the lower end comes first" if low > high else "both ends are equal"
         raise LoomfmuError(f"{where}={wanted}: the range is empty; {order}")
-    return low, high
+    if not (low <= start <= high or any(math.isclose(start, end) for end in (low, high))):
+        own, *limits = (units.show(each, port.display) for each in (start, float(low), float(high)))
+        raise LoomfmuError(
+            f"{where}={wanted}: the scene's own value, {own}, is outside {' to '.join(limits)};"
+            f" widen the range, or start inside it with --set {key}={first}"
+        )
+    return low, high, tuple(filter(None, doubts))
+
+
+def _read_as(port: Port, end: str, where: str) -> str:
+    """What a number without unit is read as, or an empty text where there is nothing to mistake."""
+    if port.display in ("1", port.unit):
+        return ""
+    value = float(end)
+    read_as = f"is read as {units.show(value, port.unit)} = {units.show(value, port.display)}"
+    return port.doubt(end, where) or f"{where} = {end} {read_as}"

@@ -5,7 +5,7 @@ Beside them it holds a run of the scene, which can be read and printed before an
 
 import tempfile
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -41,6 +41,7 @@ def write(
     output: str | Path | None = None,
     set: dict[str, Any] | None = None,
     overwrite: bool = False,
+    warn: Callable[[str], object] = lambda _warning: None,
 ) -> Path:
     """Write the page of a scene and return its path.
 
@@ -51,6 +52,7 @@ def write(
         output: the file; `results/<scene>_page.html` below the current directory by default
         set: values that differ from the scene's
         overwrite: also replace a file that is not such a page
+        warn: called with each warning of the scene and of the ranges
 
     Raises:
         LoomfmuError: bad input, what cannot be compiled or varied, or the file cannot be written
@@ -72,6 +74,8 @@ def write(
             controls = template("live.html.j2").render(knobs=varied)
             live = Section("live", "Values", controls, SCRIPTS, data)
             content = assembled(subject, [live, *sections(subject)], MARK, POLICY)
+    for warning in dict.fromkeys((*(doubt for knob in varied for doubt in knob.doubts), *started.warnings)):
+        warn(warning)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 
 

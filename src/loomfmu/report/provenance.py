@@ -28,7 +28,7 @@ def section(subject: Subject) -> Section:
     ]
     facts.insert(1, ("Samples", f"{subject.trace.rows}"))
     return Section(
-        "provenance", "The scene’s own run" if subject.live else "The run",
+        "provenance", "The scene\u2019s own run" if subject.live else "The run",
         template("provenance.html.j2").render(
             live=subject.live,
             facts=facts,

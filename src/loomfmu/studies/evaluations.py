@@ -14,12 +14,13 @@ from .span import Span
 class Evaluations:
     """The verdicts of a prepared scene at values of its `spans`, each place run once.
 
-    `fixed` are values that stay, as `Prepared.evaluate` takes them.
+    `fixed` are values that stay, as `Prepared.evaluate` takes them; `warnings` are those of the first run.
     """
 
     def __init__(self, loom: Prepared, spans: Sequence[Span], fixed: Mapping[str, Any] | None = None):
         self._loom, self._spans, self._fixed = loom, tuple(spans), dict(fixed or {})
         self._verdicts: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
+        self.warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """How many runs it took."""
@@ -40,9 +41,12 @@ class Evaluations:
         for span, value in zip(self._spans, values, strict=True):
             settings |= span.setting(value)
         try:
-            return self._loom.evaluate(settings, errors=errors).claims
+            found = self._loom.evaluate(settings, errors=errors)
         except LoomfmuError as error:
             raise self._named(values, str(error)) from None
+        if not self._verdicts:
+            self.warnings = found.warnings
+        return found.claims
 
     def _named(self, values: Sequence[float], error: str) -> LoomfmuError:
         shown = zip(self._spans, values, strict=True)

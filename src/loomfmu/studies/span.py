@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import units
 from ..cosim.importing.fmus import Port
+from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, shown
 from ..sweeps.varied import Varied, varied
@@ -90,14 +91,22 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
         from_, to = first, last
     variable = varied(scene, key)
     port, value = _port(scene, variable)
+    check_effect(scene.instances, variable.targets)
     given = [None if each is None else float(variable.read(each)) for each in (from_, to)]
     usual, source = _usual(variable, port, value, given)
+    if any(units.is_plain(each) for each in (from_, to)) and variable.unit not in ("1", variable.display):
+        source += f"; plain numbers are {variable.unit}"
     low, high = (each if each is not None else other for each, other in zip(given, usual, strict=True))
     doubts = tuple(filter(None, (variable.doubt(each) for each in (from_, to) if each is not None)))
     span = Span(variable, low, high, value, source, doubts)
     if not low < high:
         raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty")
     return span
+
+
+def warnings_of(spans: Sequence[Span], of_run: Sequence[str]) -> tuple[str, ...]:
+    """What a study warns of: ends of ranges, then what a run of its scene warns of; each once."""
+    return tuple(dict.fromkeys((*(doubt for span in spans for doubt in span.doubts), *of_run)))
 
 
 def set_twice(spans: Sequence[Span]) -> tuple[Span, Span, str] | None:

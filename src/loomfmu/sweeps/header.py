@@ -10,6 +10,7 @@ import numpy as np
 from ..cosim.importing.fmus import FLAVOURS, Flavour
 from ..cosim.planning.requested import checked_claims
 from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.tables import text as text_in
 from ..cosim.ssp import read as ssp_read
@@ -70,6 +71,8 @@ def variables(head: Header, tables: Mapping[str, Mapping[str, Any]]) -> dict[str
                 if target in taken:
                     raise LoomfmuError(f"{where}.{key} sets {target}, which {taken[target]} already sets")
                 taken[target] = f"{where}.{key}"
+    for where, each in found.items():
+        check_effect(head.scene.instances, each.targets, taken, f"{where.partition('.')[0]}: ")
     return found
 
 

@@ -1,8 +1,10 @@
 """Claims on shed and dwell follow what lifts the warp: the carrier where a frame has a damper."""
 
+import re
+
 import pytest
 
-from loomfmu import LoomfmuError, evaluate
+from loomfmu import LoomfmuError, evaluate, prepare
 from loomfmu.cosim.claims.lifted import lift_of
 
 LOOM = """
@@ -96,8 +98,19 @@ def test_no_energy_is_lost_where_carriers_and_warp_load_a_driven_shaft(tmp_path)
 
 
 @pytest.mark.usefixtures("fmu_cache")
-def test_an_unknown_choice_is_rejected(tmp_path) -> None:
+@pytest.mark.parametrize(
+    ("claim", "named"),
+    [
+        (ROOM + 'lifted_by = "carrier"\n', "lifted_by = 'carrier' must be \"frame\" or be left out; then"),
+        (ROOM + 'lifted_by = "damper_1"\n', "lifted_by = 'damper_1' must be \"frame\" or be left out; then"),
+        (
+            '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "80 deg"\nlifted_by = "carrier"\n',
+            "lifted_by = 'carrier' must be \"frame\", the name of a damper such as damper_1, or be left out;",
+        ),
+    ],
+)
+def test_an_unknown_choice_is_rejected_before_the_run(claim: str, named: str, tmp_path) -> None:
     path = tmp_path / "loom.toml"
-    path.write_text(LOOM + ROOM + 'lifted_by = "carrier"\n')
-    with pytest.raises(LoomfmuError, match="carrier"):
-        evaluate(path)
+    path.write_text(LOOM + claim)
+    with pytest.raises(LoomfmuError, match=re.escape(named)):
+        prepare(path)

@@ -135,6 +135,16 @@ def test_the_scene_with_the_fitted_values_runs_and_keeps_its_comments(tmp_path: 
     assert scene.read_text() == BELT.replace("[belt]", "[belt] # the new one")
 
 
+def test_warnings_of_the_scene_and_of_ranges_are_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene, data = written(tmp_path, [(0.1 * k, BENT / (0.1 * k) ** 2) for k in range(1, 9)])
+    with scene.open("a") as file:
+        file.write('[drive]\ncomponent = "WeftInsertion"\nfollow_shaft = true\nspeed = "300 rpm"\n')
+    assert main(["fit", str(scene), str(data), "--vary", "belt.prescribed_length_factor=0.5..2"]) == 0
+    assert "warning: drive.speed has no effect: set drive.follow_shaft = false" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("vary", "said"),
     [

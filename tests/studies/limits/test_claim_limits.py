@@ -185,9 +185,9 @@ def test_a_claim_jumps_where_it_has_no_value_any_more() -> None:
 
 
 def test_a_variable_that_changes_nothing_is_named() -> None:
-    found = limit(belt_scene("WL680-3600"), vary="belt.prescribed_length_factor=0.5..1", points=5)
+    found = limit(belt_scene("WL680-3600"), vary="weft.belt_length=1m..4m", points=5)
     assert found and not found.depends
-    assert str(found).startswith("No claim depends on belt.prescribed_length_factor between 0.5 and 1. All ")
+    assert str(found).startswith("No claim depends on weft.belt_length between 1 and 4 m. All ")
     assert all(not each.limits for each in found.claims)
 
 

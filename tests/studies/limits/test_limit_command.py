@@ -40,6 +40,30 @@ def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     )
 
 
+def test_the_range_says_what_plain_numbers_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["limit", DEMO, "--vary", "shaft.speed=40..80", *QUICK]) == 0
+    heading = capsys.readouterr().out.splitlines()[0]
+    assert heading.endswith("from 381.9719 to 763.9437 rev/min (given; plain numbers are rad/s)")
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--vary", "weft.speed=300rpm..900rpm"], "weft.speed has no effect: set weft.follow_shaft = false"),
+        (
+            ["--vary", "shaft.speed", "--rows", "4"],
+            "rows = 4 is how many values of a second variable are taken",
+        ),
+    ],
+)
+def test_what_would_have_no_effect_is_refused(
+    options: list[str], reason: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["limit", DEMO, *options]) == 2
+    message = capsys.readouterr().err
+    assert reason in message and message.count("\n") == 1
+
+
 def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["limit", "--help"])

@@ -74,6 +74,35 @@ def test_what_cannot_be_searched_is_refused(vary: list[str], said: str) -> None:
         tolerances(DEMO, vary=vary, set=FAST)
 
 
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (
+            '"belt.guide_clearence" = ["0.2 mm", "0.5 mm"]',
+            "guide_clearence is unknown; did you mean 'guide_clearance'",
+        ),
+        ('"belt.guide_clearance" = ["0.2 mm", "0.5 kg"]', "'0.5 kg' is in kg, which does not fit m"),
+        ('"belt.guide_clearance" = ["0.2 mm", "0.5 m"]', "belt.guide_clearance = 500 mm is outside"),
+        ('"belt.travel" = [0, 1]', "belt.travel cannot be set, it is wired to weft.travel"),
+        ('"bolt.guide_clearance" = [0, 1]', "the scene has no instance 'bolt'; did you mean 'belt'?"),
+        ('"revolutions" = [1, 2]', "revolutions cannot have a tolerance"),
+    ],
+)
+def test_a_scene_is_read_with_tolerances_that_can_be_set(table: str, said: str, tmp_path: Path) -> None:
+    scene = tmp_path / "loom.toml"
+    scene.write_text(f"{DEMO.read_text()}\n[tolerances]\n{table}\n")
+    with pytest.raises(LoomfmuError, match=f"loom.toml: tolerances: .*{said}"):
+        prepare(scene)
+
+
+def test_warnings_of_the_scene_are_those_of_a_run(capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--set", "revolutions=1", "--set", "weft.speed=400rpm"]
+    assert main(["tolerances", str(DEMO), "--vary", "belt.guide_clearance=0.2mm..0.35mm", *options]) == 0
+    assert (
+        capsys.readouterr().err.strip() == "warning: weft.speed has no effect: set weft.follow_shaft = false"
+    )
+
+
 @pytest.mark.parametrize("table", ["tolerances = 3", '[tolerances]\n"belt.guide_clearance" = "0.2 mm"'])
 def test_a_table_that_is_none_is_refused(table: str, tmp_path: Path) -> None:
     scene = tmp_path / "loom.toml"

@@ -16,7 +16,7 @@ from . import shaft
 from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
 from .curves import Floats, Motion, Stretch, first_lowest, motion_of
-from .lifted import lift_of, lifts
+from .lifted import check_lifted_by, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
@@ -31,6 +31,7 @@ class _Lifted(Claim, kind=False):
     lifted_by: str = argument(Name(), "")
 
     def signals(self, instances: Iterable[str]) -> list[str]:
+        check_lifted_by(self.lifted_by, list(instances))
         return list(
             dict.fromkeys((lift_of(self.heald, self.lifted_by, instances), *super().signals(instances)))
         )

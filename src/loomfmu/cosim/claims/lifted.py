@@ -1,10 +1,21 @@
 """What lifts the warp of a heald frame: the carrier on springs in it, or the frame itself."""
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
+from ...errors import LoomfmuError, shown
 from ...traces import Signals
 
 FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
+
+
+def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:
+    """Refuse what names neither the frame nor one of the dampers that it may name."""
+    if lifted_by not in ("", FRAME) and lifted_by not in dampers:
+        named = ", the name of a damper such as damper_1," if dampers else ""
+        raise LoomfmuError(
+            f'lifted_by = {shown(lifted_by)} must be "frame"{named} or be left out; then the carrier of each'
+            " frame with a damper is judged"
+        )
 
 
 def lift_of(frame: str, lifted_by: str, names: Iterable[str]) -> str:

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import units
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Names, Quantity, argument
 from .claim import AT_LEAST, AT_MOST, LENGTH, ONE, SPEED, Claim
 from .curves import SAME, Motion, Stretch, motion_of
-from .lifted import FRAME, lift_of
+from .lifted import check_lifted_by, lift_of
 
 NEVER = "the head never enters the shed in this run"
 
@@ -47,6 +47,7 @@ class RapierInOpenShed(_InShed):
     lifted_by: str = argument(Name(), "")
 
     def signals(self, instances: Iterable[str]) -> list[str]:
+        check_lifted_by(self.lifted_by, ())  # it judges several frames, and a damper belongs to one
         frames = self.healds or [name for name in instances if name.startswith("heald_")]
         wanted = [f"{frame}.{variable}" for frame in frames for variable in ("lift", "warp_height")]
         carriers = [lift_of(frame, self.lifted_by, instances) for frame in frames]
@@ -56,10 +57,7 @@ class RapierInOpenShed(_InShed):
         frames = self.healds or sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
-        if self.lifted_by not in ("", FRAME):
-            raise LoomfmuError(
-                f'rapier_in_open_shed: lifted_by = {shown(self.lifted_by)} must be "frame" or left out'
-            )
+        check_lifted_by(self.lifted_by, ())
         text, limit, travel = "the shed is open for the rapier head", self.head_height, self._travel(trace)
         in_shed = travel.beyond(self._idle(trace), 1.0)
         warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}

@@ -1,7 +1,8 @@
 """What the user of a scene is to be warned of."""
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Sequence
 
+from ...errors import LoomfmuError
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
@@ -50,7 +51,25 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
 
 def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:
     """Warnings about values that a scene gives, but that another value switches off."""
+    return (note for _, note in _switched_off(instances, keys))
+
+
+def check_effect(
+    instances: dict[str, Instance], targets: Sequence[str], others: Container[str] = (), where: str = ""
+) -> None:
+    """Refuse to vary what another value switches off; `others` vary as well, and may switch it on."""
+    pairs = [(owner, key) for owner, _, key in (each.partition(".") for each in targets) if key]
+    off = [note for switch, note in _switched_off(instances, pairs) if switch not in others]
+    if off and len(off) == len(targets):
+        raise LoomfmuError(where + off[0])
+
+
+def _switched_off(
+    instances: dict[str, Instance], keys: Iterable[tuple[str, str]]
+) -> Iterable[tuple[str, str]]:
+    """The switches of values without effect, each with what to do."""
     for owner, key in keys:
         switch, wanted = instances[owner].switched_off(instances[owner].fmu.name_of(key))
         if switch:
-            yield f"{owner}.{key} has no effect: set {owner}.{switch} = {str(wanted).lower()}"
+            name = f"{owner}.{switch}"
+            yield name, f"{owner}.{key} has no effect: set {name} = {str(wanted).lower()}"

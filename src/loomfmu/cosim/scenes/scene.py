@@ -16,7 +16,7 @@ from . import notes, standard_loom
 from .drives import Drive
 from .graph import Wire, step_order
 from .instances import ACCURACY, COARSE, KEYS, Instance, instance, instance_tables, own_texts, truth
-from .overrides import override, override_weave
+from .overrides import components, overridden, override, override_weave
 from .tables import choice, number, toml
 from .tables import text as text_of
 from .times import Times, check_times, seconds, times_of
@@ -202,6 +202,7 @@ def assemble(
         notes=tuple(notes.of_scene(instances, wires, drives, times.periods)),
     )
     _check_single(scene)
+    _check_tolerances(scene)
     check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
     return scene
 
@@ -287,6 +288,22 @@ def _outputs(instances: Iterable[Instance]) -> Iterable[str]:
                 yield f"{each.name}.{port.name}"
 
 
+def _check_tolerances(scene: Scene) -> None:
+    """Refuse tolerances of what cannot be set, as `--set` does, and ends that are no values of it."""
+    for key, ends in scene.tolerances.items():
+        try:
+            pairs = overridden(scene.instances, key, components(scene.instances))
+            if not pairs[0][0]:
+                raise LoomfmuError(f"{key} cannot have a tolerance, only parameters and inputs can")
+            check_free(scene, pairs)
+            for owner, variable in pairs:
+                probe = Instance(owner, scene.instances[owner].fmu)
+                for end in ends:
+                    probe.set(variable, end)
+        except LoomfmuError as error:
+            raise LoomfmuError(f"tolerances: {error}") from None
+
+
 def _claims(tables: Any) -> list[dict[str, Any]]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise LoomfmuError("claims are written as [[claims]] tables")
@@ -294,7 +311,7 @@ def _claims(tables: Any) -> list[dict[str, Any]]:
 
 
 def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
-    """The ends between which values may lie, by their keys; what they name is checked where they are used."""
+    """The ends between which values may lie, by their keys."""
     if not isinstance(table, dict):
         raise LoomfmuError(
             'tolerances are a table, such as [tolerances] "belt.guide_clearance" = ["0.2 mm", "0.5 mm"]'

@@ -19,7 +19,7 @@ from ...cosim.run import prepare
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError
 from .. import rewritten
-from ..span import Span, set_twice, span_of
+from ..span import Span, set_twice, span_of, warnings_of
 from . import measured
 from .curves import Compared, compared
 from .measured import Measured
@@ -63,6 +63,7 @@ class Fit:
     curves: tuple[Compared, ...]
     runs: int
     notes: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
     @property
     def values(self) -> dict[str, Any]:
@@ -175,7 +176,10 @@ class _Search:
         curves = self._at(found.x)
         parameters, correlations = self._sure(found)
         notes = tuple(note for each in curves if (note := each.note))
-        return Fit(self._loom.scene, self._data, parameters, correlations, tuple(curves), self._runs, notes)
+        warnings = warnings_of(self._spans, self._loom.evaluate().warnings)
+        return Fit(
+            self._loom.scene, self._data, parameters, correlations, tuple(curves), self._runs, notes, warnings
+        )
 
     def _noise(self, found: Any) -> Floats:
         """The standard error of each signal, from what remains of it.

@@ -21,14 +21,14 @@ ROWS = 11  # values of the second variable
 @overload
 def limit(
     scene: str | Path | Scene, *, vary: str, from_: Any = None, to: Any = None,
-    set: dict[str, Any] | None = None, points: int = POINTS, rows: int = ROWS, progress: bool = False,
+    set: dict[str, Any] | None = None, points: int = POINTS, rows: None = None, progress: bool = False,
 ) -> Limits: ...  # fmt: skip
 
 
 @overload
 def limit(
     scene: str | Path | Scene, *, vary: Sequence[str], from_: Any = None, to: Any = None,
-    set: dict[str, Any] | None = None, points: int = POINTS, rows: int = ROWS, progress: bool = False,
+    set: dict[str, Any] | None = None, points: int = POINTS, rows: int | None = None, progress: bool = False,
 ) -> Limits | Boundary: ...  # fmt: skip
 
 
@@ -40,7 +40,7 @@ def limit(
     to: Any = None,
     set: dict[str, Any] | None = None,  # the command's own word
     points: int = POINTS,
-    rows: int = ROWS,
+    rows: int | None = None,
     progress: bool = False,
 ) -> Limits | Boundary:
     """Find the values of a variable at which each claim of a scene begins to fail or to hold.
@@ -56,7 +56,7 @@ def limit(
             near, else from half to twice the scene's value
         set: values that differ from the scene's
         points: how many equally spaced values are tried first
-        rows: how many values of the second variable there are
+        rows: how many values of the second variable there are, 11 by default
         progress: show a progress bar on a terminal or in a notebook
 
     Returns:
@@ -70,7 +70,12 @@ def limit(
         raise LoomfmuError(
             f"vary = {shown(vary)} must be one variable such as 'shaft.speed', or a list of two"
         )
-    points, rows = whole_points(points), whole_points(rows, "rows", 2)
+    if rows is not None and len(keys) == 1:
+        raise LoomfmuError(
+            f"rows = {shown(rows)} is how many values of a second variable are taken, but only {keys[0]} is"
+            " varied; vary a second one or leave rows out"
+        )
+    points, rows = whole_points(points), whole_points(ROWS if rows is None else rows, "rows", 2)
     with prepare(scene, set=set) as loom:
         first = span_of(loom.scene, keys[0], from_, to)
         if len(keys) == 1:

@@ -12,7 +12,7 @@ from ...cosim.prepared import Prepared
 from ...errors import LoomfmuError, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
-from ..span import Span
+from ..span import Span, warnings_of
 from .results import ClaimLimits, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
 
@@ -44,8 +44,7 @@ def limits_of(
         for number, (verdict, depends) in enumerate(zip(own.claims, dependent, strict=True))
     ]
     resolution = (span.high - span.low) / (points - 1)
-    warnings = tuple(dict.fromkeys((*span.doubts, *own.warnings)))
-    ranges = _common(found, span)
+    ranges, warnings = _common(found, span), warnings_of([span], own.warnings)
     return Limits(loom.scene.title, span, resolution, tuple(found), ranges, len(runs) + 1, warnings)
 
 

@@ -18,7 +18,7 @@ from ...errors import LoomfmuError
 from ...progress import progress as progress_bar
 from ...traces import Verdict
 from ..evaluations import Evaluations
-from ..span import Span, set_twice, span_of
+from ..span import Span, set_twice, span_of, warnings_of
 
 Shares = tuple[float, ...]  # of the ranges, 0 to 1
 CORNERS = 6  # tolerances of which all corners are tried: 2 to that power
@@ -202,9 +202,8 @@ class _Box:
         for number in range(len(self._loom.scene.claims)):
             found.append(self._worst_case(number, points))
             advance(1)
-        doubts = tuple(doubt for span in self._spans for doubt in span.doubts)
-        scene = self._loom.scene
-        return Tolerances(scene.title, self._spans, tuple(found), len(self._runs), (*scene.notes, *doubts))
+        title, warnings = self._loom.scene.title, warnings_of(self._spans, self._runs.warnings)
+        return Tolerances(title, self._spans, tuple(found), len(self._runs), warnings)
 
     def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:
         def distance(point: Shares) -> float:
