@@ -86,8 +86,62 @@ def test_signals_claims_values_and_lengths_that_changed(tmp_path: Path) -> None:
     changes = {change.what: change for change in loomfmu.compare(a, b).changes}
     assert changes["signal"].row == ("signal", "belt.y", "missing", "recorded")
     assert changes["claim"].row == ("claim", "x stays", "holds, 0.5 m, bound 0 m", "FAILS, -0.5 m, bound 0 m")
-    assert changes["value"].row == ("value", "belt.guide_clearance", "0.0003 m", "0.0005 m")
+    assert changes["value"].row == ("value", "belt.guide_clearance", "0.3 mm", "0.5 mm")
     assert changes["run"].row == ("run", "shaft angle", "0 to 720 deg", "0 to 540 deg")
+
+
+def test_causes_are_listed_first_and_few_signals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The value that was set, before those that follow from it; then claims; then the ten worst signals."""
+    paths = []
+    for number, stretch in enumerate((1.0, 1.1)):
+        channels = [Channel("weft", f"x{each}", "m", "m", "X", each) for each in range(12)]
+        about = {
+            name: {"fmu": fmu, "speed": SPEED * stretch, "parameter_units": '{"speed": "rad/s"}'}
+            for name, fmu in (("belt", "BeltMonitor"), ("shaft", "MainShaft"), ("weft", "WeftInsertion"))
+        }
+        paths.append(tmp_path / f"{number}.h5")
+        attributes = {"title": "made", "set": '{"shaft.speed": "660rpm"}' if number else "{}"}
+        writer = TraceWriter(paths[-1], attributes, channels, about)
+        angle = np.linspace(0.0, 2.0 * math.pi, 721)
+        columns = np.sin(angle)[:, None] * (1.0 + number * 0.01 * np.arange(1.0, 13.0))
+        writer.append(angle / SPEED, angle, columns, np.zeros((721, 0), dtype="i4"))
+        verdict = Verdict("x stays", "weft.x1", True, 0.0, stretch, "m", "m", 0.1, 1.0, 1, sense=1)
+        writer.complete([verdict.as_dict()])
+    found = loomfmu.compare(*paths)
+    assert [each.name for each in found.changes] == ["shaft.speed", "belt.speed", "weft.speed", "x stays"]
+    assert found.changes[0].row == ("value", "shaft.speed", "600 rev/min", "660 rev/min")
+    assert found.summary.endswith("3 values, 1 claim and 12 of 12 signals")
+    assert [each.signal for each in found.differences] == [f"weft.x{each}" for each in range(11, -1, -1)]
+    assert cli.main(["compare", *map(str, paths)]) == 1
+    few = capsys.readouterr().out
+    assert few.index("value shaft.speed") < few.index("claim x stays") < few.index("weft.x11")
+    assert "weft.x2 " in few and "weft.x1 " not in few.replace("at weft.x1 ", "")
+    assert "2 more signals with smaller relative differences; --all lists all" in few
+    assert cli.main(["compare", *map(str, paths), "--all"]) == 1
+    assert "weft.x0 " in capsys.readouterr().out
+
+
+def test_a_whole_number_may_jump_at_a_sample_in_one_trace_and_before_the_next_in_the_other(
+    tmp_path: Path,
+) -> None:
+    def counted(path: Path, begins: int, ends: int) -> Path:
+        writer = TraceWriter(
+            path, {"title": "count"}, [Channel("dobby", "pick", "1", "1", "Pick", 0, real=False)], {}
+        )
+        angle = np.linspace(0.0, 2.0 * math.pi, 21)
+        rows = np.arange(21)
+        picks = ((rows >= begins) & (rows < ends)).astype("i4")
+        writer.append(angle / SPEED, angle, np.zeros((21, 0)), picks[:, None])
+        writer.complete([])
+        return path
+
+    a, b = counted(tmp_path / "a.h5", 10, 99), counted(tmp_path / "b.h5", 11, 99)
+    assert loomfmu.compare(a, b) and loomfmu.compare(b, a)
+    assert not loomfmu.compare(a, b, tolerance=0.0)
+    later = counted(tmp_path / "later.h5", 12, 99)
+    assert not loomfmu.compare(a, later) and not loomfmu.compare(later, a)
+    pulse, never = counted(tmp_path / "pulse.h5", 10, 11), counted(tmp_path / "never.h5", 99, 99)
+    assert not loomfmu.compare(pulse, never) and not loomfmu.compare(never, pulse)
 
 
 def test_units_are_converted_or_do_not_fit(tmp_path: Path) -> None:

@@ -156,6 +156,9 @@ def _compare(commands: Any) -> None:
         "--over", choices=("angle", "time"),
         help="compare at equal shaft angles or at equal times; shaft angles by default if the shafts turn",
     )  # fmt: skip
+    compare.add_argument(
+        "--all", action="store_true", help="list all signals that differ, not only those that do so most"
+    )
     compare.add_argument("--report", metavar="FILE.html", help="also write a page that shows B over A")
     _add_force(compare, "FILE.html even if it is not a report")
 

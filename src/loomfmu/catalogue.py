@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .components import COMPONENTS
-from .errors import LoomfmuError, suggestion
+from .errors import LoomfmuError, listed, suggestion
 from .fmi.description.documentation import limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .own import load
@@ -44,7 +44,7 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
     """
     if directory.is_file() or directory.suffix in KINDS:
         raise LoomfmuError(
-            f"{directory} is not a folder; init takes one and writes {' and '.join(STARTERS)} into it"
+            f"{directory} is not a folder; init takes one and writes {listed(STARTERS)} into it"
         )
     source = examples()
     found = sorted(path for path in source.rglob("*") if path.suffix in KINDS)

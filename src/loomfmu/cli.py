@@ -408,7 +408,10 @@ def _compare(options: argparse.Namespace) -> int:
         tolerance=units.parse(shares[0], "1") if shares else TOLERANCE,
         absolute=_pairs(amounts, "--tolerance"),
     )  # fmt: skip
-    found.show()
+    if options.all:
+        found.show(most=None)
+    else:
+        found.show()
     if options.report:
         say(f"report: {report.write([options.first, options.second], options.report, options.force)}")
     return 0 if found else 1

@@ -115,6 +115,16 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     return f"; known: {shown}" if known else ""
 
 
+def listed(words: Iterable[object], last: str = "and") -> str:
+    """Words as a list in a sentence.
+
+    >>> listed(["a"]), listed(["a", "b"]), listed(["a", "b", "c"], "or")
+    ('a', 'a and b', 'a, b or c')
+    """
+    *first, end = map(str, words)
+    return f"{', '.join(first)} {last} {end}" if first else end
+
+
 def signal_name(number: int) -> str:
     """What a signal is called.
 

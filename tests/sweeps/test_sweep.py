@@ -171,7 +171,7 @@ def test_a_sweep_in_which_nothing_runs_is_still_a_table(
     status = main(["sweep", str(path), "--output", str(tmp_path / "out"), "--processes", "1"])
     assert status == 1
     printed = capsys.readouterr().out
-    assert "2 combinations: 0 hold, 0 fail, 2 could not be run" in printed
+    assert "2 combinations: 0 hold, 0 fail and 2 could not be run" in printed
     assert "row 0 could not be run (weft.coupler_length = 500 mm): weft: the planar four-bar" in printed
     assert "no map: no row has a value of belt.lowest_speed_limit there" in printed
     assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
@@ -456,7 +456,7 @@ def test_the_command_says_how_many_hold_which_are_worst_and_where_all_is(
     monkeypatch.setenv("COLUMNS", "200")
     assert main(["sweep", "swept.toml", "--processes", "1"]) == 1
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "Swept: 3 combinations: 1 hold, 2 fail, 0 could not be run"
+    assert lines[0] == "Swept: 3 combinations: 1 hold, 2 fail and 0 could not be run"
     table = [line.split() for line in lines if "rev/min" in line]
     assert [row[:4] for row in table] == [
         ["FAILS", "1", "750", "rev/min"], ["FAILS", "2", "700", "rev/min"], ["holds", "0", "500", "rev/min"],

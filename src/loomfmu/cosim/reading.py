@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, path_of, shown, suggestion
+from ..errors import LoomfmuError, listed, path_of, shown, suggestion
 from .importing.fmus import FLAVOURS
 from .planning.requested import checked_claims
 from .scenes import scene as scenes
@@ -83,9 +83,7 @@ def _fallbacks(scene: Scene) -> list[str]:
     for instance in scene.instances.values():
         if reason := instance.fmu.no_native:
             found.setdefault(reason, {})[instance.fmu.name] = None
-    return [
-        f"running live FMUs of {', '.join(names)}, not native ones: {why}" for why, names in found.items()
-    ]
+    return [f"running live FMUs of {listed(names)}, not native ones: {why}" for why, names in found.items()]
 
 
 def check_set(overrides: Any) -> None:

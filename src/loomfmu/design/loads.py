@@ -11,7 +11,7 @@ from math import pi
 
 from ..components.dobby.drive import DobbyDrive
 from ..components.heald_frame import HealdFrame
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, listed
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..physics.warp import eye_pull
 from ..variables import variables_of
@@ -134,7 +134,7 @@ def _weave(
 ) -> Weave:  # fmt: skip
     """A dobby with its slow point at the shaft angle 0, and frames in plain weave."""
     if law not in LAWS:
-        raise LoomfmuError(f"law = {law!r} must be one of {', '.join(LAWS)}")
+        raise LoomfmuError(f"law = {law!r} must be one of {listed(LAWS, 'or')}")
     dobby = DobbyDrive(
         law=LAWS.index(law) + 1, speed_reduction=reduction, slow_point=0.0, speed=speed, rotor_inertia=inertia
     )
@@ -193,7 +193,7 @@ def least_loaded(
 
     names = tuple(Loads.__dataclass_fields__)
     if load not in names:
-        raise LoomfmuError(f"load = {load!r} must be one of {', '.join(names)}")
+        raise LoomfmuError(f"load = {load!r} must be one of {listed(names, 'or')}")
     low, high = read("speed_reduction", lowest), read("speed_reduction", highest)
 
     def peak(reduction: float) -> float:

@@ -1,6 +1,5 @@
 """What the run was: enough to judge what it is worth, and to repeat it."""
 
-import json
 from typing import Any
 
 from .section import Section, Subject
@@ -32,17 +31,12 @@ def section(subject: Subject) -> Section:
         template("provenance.html.j2").render(
             live=subject.live,
             facts=facts,
-            changed=sorted(_json(attributes.get("set", "{}")).items()),
+            changed=sorted(subject.trace.overrides.items()),
             notes=str(attributes.get("notes", "")).splitlines(),
             fmus=_fmus(attributes),
             scene=str(attributes.get("scene", "")),
         ),
     )  # fmt: skip
-
-
-def _json(text: str) -> dict[str, Any]:
-    found = json.loads(text)
-    return found if isinstance(found, dict) else {}
 
 
 def _fmus(attributes: dict[str, Any]) -> list[tuple[str, str, str]]:

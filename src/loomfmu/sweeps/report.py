@@ -4,6 +4,7 @@ import sys
 from typing import Any
 
 from .. import printed, units
+from ..errors import listed
 from ..printed import say
 from ..traces.verdict import FAILS, HOLDS, UNDECIDED
 from .ranking import beyond, worst_rows
@@ -22,7 +23,7 @@ def show(sweep: Sweep) -> None:
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail"]
     counts += [f"{sweep.undecided} are undecided"] * bool(sweep.undecided)
     counts.append(f"{sweep.errors} could not be run")
-    say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {', '.join(counts)}")
+    say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {listed(counts)}")
     if sweep.sensitivity is None:
         _show_worst(sweep)
     _show_texts(sweep, "error", "could not be run", sys.stdout)

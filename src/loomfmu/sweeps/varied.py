@@ -10,7 +10,7 @@ from ..cosim.importing.fmus import Port
 from ..cosim.scenes.instances import COARSE, TIMES, Instance, truth
 from ..cosim.scenes.overrides import components, overridden, unit_of
 from ..cosim.scenes.scene import Scene, check_free
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, listed
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
 
@@ -56,7 +56,7 @@ def varied(scene: Scene, key: str) -> Varied:
         return _of_scene(key)
     found = [_variable(scene, key, instance, variable) for instance, variable in pairs]
     if any((each.kind, each.unit) != (found[0].kind, found[0].unit) for each in found):
-        raise LoomfmuError(f"{key} differs in type or unit between {', '.join(name for name, _ in pairs)}")
+        raise LoomfmuError(f"{key} differs in type or unit between {listed(name for name, _ in pairs)}")
     targets = tuple(f"{instance}.{variable}" for instance, variable in pairs)
     first = found[0]
     return replace(first, targets=targets)

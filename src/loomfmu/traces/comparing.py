@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import units
-from ..errors import LoomfmuError, shown
+from ..errors import LoomfmuError, listed, shown
 from ..variables import SHARED
 from .comparison import Change, Comparison, Difference
 from .meeting import Meeting, meet
@@ -83,13 +83,13 @@ def compare(
     common = [name for name in kept[0] if name in traces[1] and name in kept[1]]
     found = [_difference(meeting, name, allowed) for name in (*SHARED, *common)]
     differences = sorted(
-        (each for each in found if isinstance(each, Difference)), key=lambda each: each.first.time
+        (each for each in found if isinstance(each, Difference)), key=lambda each: -each.relative
     )
-    changes = (
+    changes = (  # causes before effects
+        *_values(one, two, values[0], values[1], allowed), *_claims(one, two, allowed), *_status(one, two),
         *meeting.extent(), *(each for each in found if isinstance(each, Change)),
         *(Change("signal", name, "recorded", "missing") for name in kept[0] if name not in kept[1]),
         *(Change("signal", name, "missing", "recorded") for name in kept[1] if name not in kept[0]),
-        *_claims(one, two, allowed), *_values(one, two, values[0], values[1], allowed), *_status(one, two),
     )  # fmt: skip
     notes = [*_notes(one, two)]
     if unclear := [each for each in found if isinstance(each, _Unclear)]:
@@ -144,7 +144,7 @@ def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Differen
         if known[0] is None or known[1] is None or known[0].dimension != known[1].dimension:
             return Change("unit", signal, unit, theirs)
         factor = known[1].factor / known[0].factor
-    a, b, doubt = meeting.columns(signal)
+    a, b, doubt = meeting.columns(signal, exact=tolerance.share == 0.0)
     b = factor * b if factor != 1.0 else b
     with np.errstate(invalid="ignore"):
         gap = np.abs(a - b)
@@ -207,7 +207,9 @@ def _values(
     first: Trace, second: Trace, mine: Sequence[str], others: Sequence[str], tolerance: Tolerance
 ) -> Iterator[Change]:
     """Values of instances that differ, or that only one run has."""
-    for name in dict.fromkeys([*mine, *others]):
+    given = {*first.overrides, *second.overrides}
+    names = sorted(dict.fromkeys([*mine, *others]), key=lambda name: name not in given)  # causes first
+    for name in names:
         a, b = (trace.parameters.get(name) for trace in (first, second))
         if isinstance(a, float) and isinstance(b, float):
             unit = first.parameter_unit(name)
@@ -222,8 +224,9 @@ def _set(trace: Trace, name: str) -> str:
     value = trace.parameters.get(name)
     if not isinstance(value, float):
         return "missing" if value is None else str(value)
-    unit = trace.parameter_unit(name)
-    return f"{value:.9g}" + ("" if unit == "1" else f" {unit}")
+    display = trace.parameter_display(name)
+    factor = units.unit(display).factor if display in units.UNITS else 1.0
+    return f"{value / factor:.9g}" + ("" if display == "1" else f" {display}")
 
 
 def _status(first: Trace, second: Trace) -> Iterator[Change]:
@@ -246,4 +249,4 @@ def _notes(first: Trace, second: Trace) -> Iterator[str]:
     hashes = [name for name in mine if name.startswith("fmu_") and name.endswith("_sha256")]
     changed = [name[4:-7] for name in hashes if name in others and mine[name] != others[name]]
     if changed:
-        yield f"the files of these FMUs differ: {', '.join(sorted(changed))}"
+        yield f"the files of these FMUs differ: {listed(sorted(changed))}"

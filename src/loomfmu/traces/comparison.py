@@ -5,9 +5,18 @@ from collections import Counter
 from dataclasses import dataclass
 
 from .. import notebook, printed, units
+from ..errors import listed
 
 SIGNAL_HEADINGS = ("signal", "first at", "", "", "largest difference", "relative", "at")
 CHANGE_HEADINGS = ("what", "name", "", "")
+KINDS = {
+    "value": ("value",),
+    "claim": ("claim",),
+    "run": ("difference", " of the run"),
+    "unit": ("unit",),
+    "signal": ("signal", " in one trace only"),
+}  # of changes, as the summary counts them
+MOST = 10  # signals that are shown, unless all are wanted
 
 
 @dataclass(frozen=True)
@@ -53,7 +62,7 @@ class Difference:
         known = self.display != "1" and self.unit in units.UNITS and self.display in units.UNITS
         factor = units.unit(self.unit).factor / units.unit(self.display).factor if known else 1.0
         label = self.display if known else self.unit
-        return f"{value * factor:.7g}" + ("" if label == "1" else f" {label}")
+        return f"{value * factor + 0.0:.7g}" + ("" if label == "1" else f" {label}")
 
     @property
     def row(self) -> tuple[str, ...]:
@@ -84,9 +93,10 @@ class Change:
 class Comparison:
     """Two traces, compared; true if they are equal within the tolerance.
 
-    `differences` are the signals that differ, `changes` what else does: signals that only one trace has,
-    claims, values that were set, the length of the run. `how` says at which samples they were compared,
-    `notes` what may explain a difference, such as another version of an FMU, and counts as none.
+    `differences` are the signals that differ, the relatively largest difference first; `changes` what else
+    does: values, claims, the length of the run, signals that only one trace has. `how` says at which samples
+    they were compared, `notes` what may explain a difference, such as another version of an FMU, and counts
+    as none.
     """
 
     names: tuple[str, str]
@@ -114,40 +124,46 @@ class Comparison:
             equal = f"equal within {limit}" if self.tolerance else "exactly equal"
             return f"{first} and {second}: {_counted(self.compared, 'signal')}, {equal}"
         counts = Counter(change.what for change in self.changes)
-        parts = [f"{len(self.differences)} of {_counted(self.compared, 'signal')}"] * bool(self.differences)
-        parts += [f"{kind} ({count})" for kind, count in counts.items()]
+        parts = [_counted(count, *KINDS[kind]) for kind, count in counts.items()]
+        parts += [f"{len(self.differences)} of {_counted(self.compared, 'signal')}"] * bool(self.differences)
         beyond = f" by more than {limit}" if self.tolerance else ""
-        return f"{first} and {second} differ{beyond}: {', '.join(parts)}"
+        return f"{first} and {second} differ{beyond}: {listed(parts)}"
 
     def __repr__(self) -> str:
-        lines = [" | ".join(each.row) for each in self._listed]
-        return "\n  ".join([f"<Comparison {self.summary}", *lines]) + ">"
-
-    @property
-    def _listed(self) -> tuple[Difference | Change, ...]:
-        return (*self.differences, *self.changes)
+        lines = [" | ".join(row) for _headings, rows in self._tables(MOST) for row in rows]
+        return "\n  ".join([f"<Comparison {self.summary}", *lines, *self._ends(MOST)]) + ">"
 
     def _repr_html_(self) -> str:
-        tables = [notebook.table(headings, rows) for headings, rows in self._tables()]
-        return notebook.block(self.summary, *tables, *map(notebook.line, (self.how, *self.notes)))
+        tables = [notebook.table(headings, rows) for headings, rows in self._tables(MOST)]
+        lines = (self.how, *self._ends(MOST), *self.notes)
+        return notebook.block(self.summary, *tables, *map(notebook.line, lines))
 
-    def _tables(self) -> list[tuple[tuple[str, ...], list[tuple[str, ...]]]]:
-        """Headings and rows of the tables that are not empty."""
+    def _tables(self, most: int | None) -> list[tuple[tuple[str, ...], list[tuple[str, ...]]]]:
+        """Headings and rows of the tables that are not empty, causes first; at most so many signals."""
         listed: list[tuple[tuple[str, ...], int, list[tuple[str, ...]]]] = [
-            (SIGNAL_HEADINGS, 2, [each.row for each in self.differences]),
             (CHANGE_HEADINGS, 2, [each.row for each in self.changes]),
+            (SIGNAL_HEADINGS, 2, [each.row for each in self.differences[:most]]),
         ]
         return [((*head[:at], *self.names, *head[at + 2 :]), rows) for head, at, rows in listed if rows]
 
-    def show(self) -> None:
-        """Print it."""
+    def _ends(self, most: int | None) -> list[str]:
+        """Where the traces begin to differ, and how many signals the table leaves out."""
+        if not self.differences:
+            return []
+        earliest = min(self.differences, key=lambda each: each.first.time)
+        more = len(self.differences[most:]) if most is not None else 0
+        left_out = f"{_counted(more, 'more signal')} with smaller relative differences; --all lists all"
+        return [f"first to differ: {earliest.signal} at {earliest.first}", *[left_out] * bool(more)]
+
+    def show(self, most: int | None = MOST) -> None:
+        """Print it, with at most so many signals; None for all."""
         printed.say(self.summary, self.how)
-        for headings, rows in self._tables():
+        for headings, rows in self._tables(most):
             labels = ["" if each == "name" else f"{each}: " for each in headings[1:]]
             entries = [(row[0], *map("".join, zip(labels, row[1:], strict=True))) for row in rows]
             printed.show(headings, rows, entries)
-        printed.say(*self.notes)
+        printed.say(*self._ends(most), *self.notes)
 
 
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" + "s" * (count != 1)
+def _counted(count: int, noun: str, more: str = "") -> str:
+    return f"{count} {noun}" + "s" * (count != 1) + more

@@ -82,15 +82,23 @@ class Meeting:
         within = max(within - math.floor(within + WHOLE), 0.0)
         return Place(float(trace.time[row]), TURN * within, turned - begun + 1)
 
-    def columns(self, signal: str) -> tuple[Floats, Floats, Floats]:
-        """The values of the first and the second trace at the places, and what interpolation is worth."""
+    def columns(self, signal: str, exact: bool = False) -> tuple[Floats, Floats, Floats]:
+        """The values of the first and the second trace at the places, and what interpolation is worth.
+
+        A whole number that jumps at a sample may do so one sample earlier in one of the traces, by rounding;
+        not where `exact` is wanted and both have the same samples.
+        """
         base, other = (_column(self.traces[each], signal) for each in (self.base, 1 - self.base))
         there, last = base[self.rows].astype(np.float64), len(other) - 1
         after = np.minimum(self.before + 1, last)
         near, doubt = other[self.before].astype(np.float64), np.zeros(len(self.before))
         if other.dtype.kind != "f":
-            for beside in () if self.same else (np.maximum(self.before - 1, 0), after):
-                near = np.where(other[beside] == there, there, near)  # it jumps in one step or the next
+            if not (exact and self.same):
+                sides = np.maximum(self.before - 1, 0), after
+                jumps = (other[sides[0]] == there) | (other[sides[1]] == there)
+                if self.same:  # what is there for one sample alone is no jump
+                    jumps &= (there[sides[0]] == near) | (there[sides[1]] == near)
+                near = np.where(jumps, there, near)
         else:
             inside = self.between > 0.0
             with np.errstate(invalid="ignore", over="ignore"):

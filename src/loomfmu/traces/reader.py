@@ -13,11 +13,12 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import notebook
+from .. import notebook, units
+from ..components import COMPONENTS
 from ..errors import LoomfmuError, shown
 from ..files import source
 from ..units import UnitError
-from ..variables import SHARED
+from ..variables import SHARED, variables_of
 from .disk import superblock
 from .layout import Foreign, check_link, column, has, member
 from .places import place_of
@@ -246,6 +247,14 @@ class Trace(Signals):
                 f"{self.given}: the file is damaged (its claims are not verdicts: {error})"
             ) from None
 
+    @property
+    def overrides(self) -> dict[str, Any]:
+        """The values that differ from the scene, as `--set` takes them."""
+        try:
+            return dict(json.loads(str(self.attributes.get("set", "{}"))))
+        except (RecursionError, TypeError, ValueError):
+            raise LoomfmuError(f"{self.given}: the file is damaged (its `set` is not a table)") from None
+
     @cached_property
     def wires(self) -> dict[str, str]:
         """The output that each wired input took its values from; traces of older versions do not say."""
@@ -317,6 +326,18 @@ class Trace(Signals):
         with self._opened() as file:
             known = json.loads(member(file, instance).attrs.get("parameter_units", "{}"))
             return str(known.get(key, "1"))
+
+    def parameter_display(self, name: str) -> str:
+        """The unit in which people read a value in `parameters`; that of its FMU if it is not one of ours."""
+        instance, _, key = name.partition(".")
+        with self._opened() as file:
+            component = COMPONENTS.get(str(member(file, instance).attrs.get("fmu", "")))
+        declared = {each.name: each.display for each in variables_of(component)} if component else {}
+        unit = self.parameter_unit(name)
+        display = declared.get(key) or unit
+        known = [units.UNITS.get(each) for each in (display, unit)]
+        alike = known[0] and known[1] and known[0].dimension == known[1].dimension
+        return display if alike else unit
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance, or an input that was left at its start, such as `heald_1.stroke`."""

@@ -68,7 +68,7 @@ def test_without_a_native_fmu_a_run_is_live_and_warns(
     monkeypatch.setattr(platforms, name, lambda: value)
     scene = scenes.parse(SCENE)
     result = loomfmu.run(scene, output=tmp_path / "run.h5")
-    warning = f"running live FMUs of MainShaft, WeftInsertion, BeltMonitor, not native ones: {reason}"
+    warning = f"running live FMUs of MainShaft, WeftInsertion and BeltMonitor, not native ones: {reason}"
     assert result.warnings == (warning,)
     assert result.trace.attributes["flavour"] == "live"
     assert result.trace.attributes["notes"] == warning

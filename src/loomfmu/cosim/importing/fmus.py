@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 import fmpy
 
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, suggestion
+from ...errors import LoomfmuError, listed, suggestion
 from ...files import check_archive, source
 from ...fmi import identities
 from ...fmi.cache_entries import FMUS, UNPACKED, folder, has_file, made_file
@@ -143,7 +143,7 @@ class Fmu:
             libraries = [PurePosixPath(name) for name in archive.namelist()]
         matching = [each for each in libraries if each.match(f"binaries/*/{self.identifier}.*")]
         found = sorted({each.parent.name for each in matching})
-        known = f"it has {', '.join(found)}" if found else "it has none"
+        known = f"it has {listed(found)}" if found else "it has none"
         raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
 
     def name_of(self, variable: str) -> str:

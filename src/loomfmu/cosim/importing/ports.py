@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ... import units
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
@@ -178,7 +178,7 @@ class Port:
             if value != int(value):
                 raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
             if self.numbers and value not in self.numbers:
-                known = ", ".join(f"{n} ({c})" for n, c in zip(self.numbers, self.choices, strict=True))
+                known = listed((f"{n} ({c})" for n, c in zip(self.numbers, self.choices, strict=True)), "or")
                 raise LoomfmuError(f"{where} = {value:.7g} is not one of {known}")
             return int(value)
         return value

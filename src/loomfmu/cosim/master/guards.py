@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ...errors import LoomfmuError, signal_name
+from ...errors import LoomfmuError, listed, signal_name
 
 FAILED = 2  # the exit status of a failed FMU
 
@@ -132,7 +132,7 @@ def supervised(run: Callable[[], int], instances: Sequence[str]) -> int:
             return status_byte[0]
     if len(interrupts) > 1:
         raise KeyboardInterrupt("interrupted; an FMU did not return")
-    who = instances[0] if len(instances) == 1 else f"one of {', '.join(instances)}"
+    who = instances[0] if len(instances) == 1 else f"one of {listed(instances, 'or')}"
     what = f"crashed the process ({signal_name(-ended)})"
     what = what if ended < 0 else f"ended the process (exit status {ended})"
     raise LoomfmuError(

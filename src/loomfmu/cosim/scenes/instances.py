@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
-from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
+from ...errors import LONGEST_NAME, LoomfmuError, listed, shown, suggestion
 from ...own import load
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ...variables import AT_STEP_END, Component, Variable, variables_of
@@ -280,7 +280,7 @@ def mixed(instances: dict[str, Instance]) -> list[str]:
             shown = [
                 f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published
             ] + [f"{each.name} has its own values" for each in differing]
-            notes.append(f"the loom mixes {kind}s: {', '.join(shown)}; {kind} = NAME sets all of them")
+            notes.append(f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them")
     return notes
 
 

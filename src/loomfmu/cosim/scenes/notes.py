@@ -2,7 +2,7 @@
 
 from collections.abc import Container, Iterable, Sequence
 
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, listed
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
@@ -43,7 +43,7 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
             wired = sinks.get((other, torque), {})
             loads = wired.get(name, [])
             if len(loads) > 1:
-                yield f"{other}.{torque} loads {name} {len(loads)} times: {', '.join(loads)}; keep one wire"
+                yield f"{other}.{torque} loads {name} {len(loads)} times: {listed(loads)}; keep one wire"
             port = mechanism.fmu.ports.get(torque)
             if port and port.causality == "output" and not wired:
                 yield f"{other} does not load {name}: {other}.{torque} is not wired"

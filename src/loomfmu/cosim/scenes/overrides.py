@@ -6,7 +6,7 @@ from typing import Any
 
 from ... import machines
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 from ...variables import variables_of
 from .instances import TIMES, WHOLE, Instance, fmu_of
 from .standard_loom import members, stem
@@ -72,7 +72,7 @@ def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) 
         takers = machines.TAKERS[key]
         found = [name for name in given if component(name) in takers]
         if not found:
-            raise LoomfmuError(f"{key}: the scene has no {' or '.join(takers)} to apply it to")
+            raise LoomfmuError(f"{key}: the scene has no {listed(takers, 'or')} to apply it to")
         return [(name, key) for name in found]
     if not dot:
         if key not in (*TIMES, *WHOLE):

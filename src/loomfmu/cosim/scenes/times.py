@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ... import units
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, listed
 from .instances import TIMES
 from .tables import number
 
@@ -39,7 +39,7 @@ def times_of(tables: dict[str, Any]) -> Times:
         )
     if set(given) != {"duration", "step"}:
         raise LoomfmuError(
-            f"{' and '.join(given)}: a scene runs either by duration and step,"
+            f"{listed(given)}: a scene runs either by duration and step,"
             " or by revolutions and steps_per_revolution"
         )
     duration, step = (seconds(tables[key], key, 1e-12) for key in ("duration", "step"))

@@ -17,7 +17,7 @@ from ...cosim.prepared import Prepared
 from ...cosim.reading import checked
 from ...cosim.run import prepare
 from ...cosim.scenes.scene import Scene
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, listed
 from .. import rewritten
 from ..span import Span, set_twice, span_of, warnings_of
 from . import measured
@@ -283,7 +283,7 @@ class _Search:
         if strengths[-1] <= ALIKE * strengths[0]:
             weak = [span.key for span, part in zip(spans, directions[-1], strict=True) if abs(part) > 0.1]
             raise LoomfmuError(
-                f"{self._data.path}: the data cannot tell {' and '.join(weak)} apart; vary one of them"
+                f"{self._data.path}: the data cannot tell {listed(weak)} apart; vary one of them"
             )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ... import units
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError, listed, shown
 from ...files import text_of
 from ...traces import Trace
 from ...traces.damage import check
@@ -80,7 +80,7 @@ def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
     numbers = _numbers(path, heading, rows)
     columns = {name: numbers[:, place] * scale for name, (place, scale) in named.items()}
     if missing := [name for name in signals if name not in columns]:
-        raise LoomfmuError(f"{path}: there is no column {missing[0]!r}; it has {', '.join(columns)}")
+        raise LoomfmuError(f"{path}: there is no column {missing[0]!r}; it has {listed(columns)}")
     along = numbers[:, 0] * factor
     if not np.all(np.isfinite(along)):
         row = int(np.flatnonzero(~np.isfinite(along))[0]) + 1

@@ -3,6 +3,7 @@
 from itertools import combinations
 
 from ... import printed
+from ...errors import listed
 from ...printed import say
 from .fit import HEADINGS, Fit, rows
 
@@ -55,7 +56,7 @@ def cautions(found: Fit) -> list[str]:
     for one, two in combinations(range(len(found.parameters)), 2):
         correlation = float(found.correlations[one, two])
         if abs(correlation) >= STRONG:
-            names = " and ".join(found.parameters[each].span.key for each in (one, two))
+            names = listed(found.parameters[each].span.key for each in (one, two))
             lines.append(
                 f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
             )

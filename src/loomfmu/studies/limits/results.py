@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ... import notebook
+from ...errors import listed
 from ...traces import Verdict
 from ..span import Span
 
@@ -197,7 +198,7 @@ def _sentence(stretch: Stretch, span: Span) -> str:
 
 
 def _names(claims: Sequence[str]) -> str:
-    return " and ".join(f"'{each}'" for each in claims)
+    return listed(f"'{each}'" for each in claims)
 
 
 def boundary_headings(found: Boundary) -> tuple[str, ...]:

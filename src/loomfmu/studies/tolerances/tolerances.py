@@ -14,7 +14,7 @@ from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...cosim.run import prepare
 from ...cosim.scenes.scene import Scene
-from ...errors import LoomfmuError
+from ...errors import LoomfmuError, listed
 from ...progress import progress as progress_bar
 from ...traces import Verdict
 from ..evaluations import Evaluations
@@ -101,7 +101,7 @@ def _costs(each: WorstCase) -> str:
     for cost in each.costs:
         share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
         parts.append(f"{share} by {cost.key}")
-    return "costs " + ", ".join(parts)
+    return f"costs {listed(parts)}"
 
 
 def tolerances(
