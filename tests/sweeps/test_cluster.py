@@ -74,7 +74,7 @@ def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
     (output / "table.parquet").unlink()
     arguments = ["sweep", str(path), "--output", str(output), "--scheduler", cluster.scheduler_address]
     assert main(arguments) == 1
-    assert "24 combinations (1 of them run before)" in capsys.readouterr().out
+    assert "24 combinations (1 run before)" in capsys.readouterr().out
     assert (output / "table.parquet").read_bytes() == before
 
 

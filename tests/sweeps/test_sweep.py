@@ -349,7 +349,7 @@ def test_a_finished_sweep_runs_nothing_again(tmp_path: Path, capsys: pytest.Capt
     before, written_at = table.read_bytes(), table.stat().st_mtime_ns
     assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
     assert main(arguments) == 1
-    assert "Swept: 6 combinations (6 of them run before): 2 hold" in capsys.readouterr().out
+    assert "Swept: 6 combinations (6 run before): 2 hold" in capsys.readouterr().out
     assert (table.read_bytes(), table.stat().st_mtime_ns) == (before, written_at)
     assert sorted(os.listdir(tmp_path / "out")) == ["sweep.json", "table.parquet"]
 

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from .. import units
+from ..traces import Trace
 from .section import Section, Subject
 from .templates import template
 
@@ -21,7 +23,7 @@ PLAIN = {
 
 def section(subject: Subject) -> Section:
     """Machine, values that differ from the scene, grid, warnings, versions and hashes of the first trace."""
-    attributes = subject.trace.attributes
+    attributes, overrides = subject.trace.attributes, subject.trace.overrides
     facts = [
         (label, str(attributes[key])) for key, label in PLAIN.items() if attributes.get(key) not in (None, "")
     ]
@@ -31,12 +33,17 @@ def section(subject: Subject) -> Section:
         template("provenance.html.j2").render(
             live=subject.live,
             facts=facts,
-            changed=sorted(subject.trace.overrides.items()),
+            changed=[(key, _given(subject.trace, key, text)) for key, text in sorted(overrides.items())],
             notes=str(attributes.get("notes", "")).splitlines(),
             fmus=_fmus(attributes),
             scene=str(attributes.get("scene", "")),
         ),
     )  # fmt: skip
+
+
+def _given(trace: Trace, key: str, text: Any) -> str:
+    """A value that was set, with its unit even if it was given without one."""
+    return trace.parameter_text(key) if units.is_plain(text) and key in trace.parameters else str(text)
 
 
 def _fmus(attributes: dict[str, Any]) -> list[tuple[str, str, str]]:

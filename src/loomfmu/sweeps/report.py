@@ -19,7 +19,7 @@ SHOWN = 5  # rows of a kind
 def show(sweep: Sweep) -> None:
     """Print how many rows hold, the worst of them, and where the results are."""
     before = sweep.rows - sweep.ran
-    again = f" ({before} of them run before)" if before else ""
+    again = f" ({before} run before)" if before else ""
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail"]
     counts += [f"{sweep.undecided} are undecided"] * bool(sweep.undecided)
     counts.append(f"{sweep.errors} could not be run")

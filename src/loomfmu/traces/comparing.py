@@ -217,16 +217,14 @@ def _values(
                 continue
         elif a == b:
             continue
-        yield Change("value", name, *(_set(trace, name) for trace in (first, second)))
-
-
-def _set(trace: Trace, name: str) -> str:
-    value = trace.parameters.get(name)
-    if not isinstance(value, float):
-        return "missing" if value is None else str(value)
-    display = trace.parameter_display(name)
-    factor = units.unit(display).factor if display in units.UNITS else 1.0
-    return f"{value / factor:.9g}" + ("" if display == "1" else f" {display}")
+        yield Change(
+            "value",
+            name,
+            *(
+                trace.parameter_text(name) if name in trace.parameters else "missing"
+                for trace in (first, second)
+            ),
+        )
 
 
 def _status(first: Trace, second: Trace) -> Iterator[Change]:

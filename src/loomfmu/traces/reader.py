@@ -327,8 +327,17 @@ class Trace(Signals):
             known = json.loads(member(file, instance).attrs.get("parameter_units", "{}"))
             return str(known.get(key, "1"))
 
-    def parameter_display(self, name: str) -> str:
-        """The unit in which people read a value in `parameters`; that of its FMU if it is not one of ours."""
+    def parameter_text(self, name: str) -> str:
+        """A value in `parameters` as people read it."""
+        value = self.parameters[name]
+        if not isinstance(value, float):
+            return str(value)
+        display = self._parameter_display(name)
+        factor = units.unit(display).factor if display in units.UNITS else 1.0
+        return f"{value / factor:.9g}" + ("" if display == "1" else f" {display}")
+
+    def _parameter_display(self, name: str) -> str:
+        """The unit in which people read a value; that of its FMU if it is not one of ours."""
         instance, _, key = name.partition(".")
         with self._opened() as file:
             component = COMPONENTS.get(str(member(file, instance).attrs.get("fmu", "")))

@@ -143,7 +143,7 @@ def _head(sketch: Sketch, tip: str, station: float, low: float) -> str:
     height = heights[0] if heights else 8.0
     with sketch.group(shown=tip):
         sketch.box(-station - 9.0, -0.5 * height, -station + 9.0, 0.5 * height, role="body weft")
-    sketch.label(-station, -0.5 * max(height, low), "rapier", shift=(0.0, 18.0))
+        sketch.letter((-station, -0.5 * max(height, low)), "rapier", (0.0, 18.0))
     if heights:
         return f" The rapier head has the {height:g} mm that its claim gives it."
     return " The size of the rapier head is schematic."

@@ -125,6 +125,7 @@
     const { found, data } = contents(made.name), logarithmic = wide(data), { about, bounds } = made.signal;
     made.about.textContent = [about, ...bounds.map(bound => bound.text)].filter(Boolean).join("; ");
     made.found = found;
+    made.largest = found.map(([, values]) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0));
     made.stale = false;
     setting += 1;
     if (fresh || made.logarithmic !== logarithmic || made.plot.series.length !== data.length) begin(made, data, logarithmic);
@@ -183,13 +184,14 @@
 
   // ---- the cursor
 
-  function valueAt({ found, signal }, x) {
-    return found.map(([along, values]) => {
+  function valueAt({ found, largest, signal }, x) {
+    return found.map(([along, values], number) => {
       if (!along.length || x < along[0] - 1e-6 || x > along[along.length - 1] + 1e-6) return "–";
       const [index, share] = loomfmu.locate(along, x), next = Math.min(index + 1, values.length - 1);
       const [before, after] = [values[index], values[next]];
       if (before === null || after === null) return "–";
-      const value = signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
+      let value = signal.step ? (share >= 1 ? after : before) : before + share * (after - before);
+      if (Math.abs(value) < 1e-12 * largest[number]) value = 0; // what rounding leaves of it
       return `${Number(value.toPrecision(5))}${signal.unit ? ` ${signal.unit}` : ""}`;
     }).join(" | ");
   }
