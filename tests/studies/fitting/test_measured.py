@@ -30,6 +30,11 @@ def test_columns_come_in_si_and_gaps_are_no_values(tmp_path: Path) -> None:
     assert list(read(tmp_path, text, "belt.margin").columns) == ["belt.margin"]
 
 
+def test_signals_may_be_measured_at_the_same_places_in_rows_of_their_own(tmp_path: Path) -> None:
+    text = "shaft_angle [deg],belt.free_length [mm],belt.margin [1]\n0,100,\n0,,0.5\n"
+    assert read(tmp_path, text).count == 2
+
+
 def test_a_trace_is_a_measurement(tmp_path: Path) -> None:
     path = tmp_path / "demo.h5"
     loomfmu.run(DEMO, output=path, set={"revolutions": 1, "steps_per_revolution": 36})
@@ -50,11 +55,15 @@ def test_a_trace_is_a_measurement(tmp_path: Path) -> None:
         ("time [s],belt.free_length [N]\n0,1\n", "column belt.free_length is in 'N', which does not fit m"),
         ("time [s],belt.free_length [1]\n0,1\n", "column belt.free_length is in '1', which does not fit m"),
         ("time [s],belt.free_lenth [m]\n0,1\n", "belt has no output 'belt.free_lenth'|did you mean"),
-        ("time [s],belt.margin [1],belt.margin [1]\n0,1,1\n", "two columns are called belt.margin"),
-        ("time [s],belt.margin [1]\n0\n", "row 1 has 1 values for 2 columns"),
-        ("time [s],belt.margin [1]\n0,1\n1,one\n", "row 2, belt\\.margin \\[1\\]: 'one' is not a number"),
-        ("time [s],belt.margin [1]\n0,inf\n", "row 1, belt\\.margin \\[1\\]: inf is not finite"),
-        ("time [s],belt.margin [1]\n,1\n", "row 1 has no time"),
+        ("time [s],belt.margin [1],belt.margin [1]\n0,1,1\n", "line 1: two columns are called belt.margin"),
+        ("time [s],belt.margin [1]\n0\n", "line 2: 1 values for 2 columns"),
+        ("time [s],belt.margin [1]\n0,1\n1,one\n", "line 3: belt\\.margin \\[1\\]: 'one' is not a number"),
+        ("time [s],belt.margin [1]\n0,inf\n", "line 2: belt\\.margin \\[1\\]: inf is not finite"),
+        ("time [s],belt.margin [1]\n,1\n", "line 2: there is no time"),
+        (
+            "# a loom\n\ntime [s],belt.margin [1]\n0,1\n# again\n0.0,2\n",
+            "line 6: time = 0.0 has a second value of belt.margin, after that in line 4",
+        ),
         ("time [s],belt.margin [1]\n0,\n", "there are no measured values"),
         ("time [s]\n0\n", "there is no column beside time"),
         ("time [s];belt.margin [1]\n0;1\n", "separate the columns with commas"),

@@ -23,6 +23,7 @@ ALONG = {"shaft_angle": "rad", "time": "s"}  # what curves are measured over: na
 FORM = "name the columns such as: shaft_angle [deg],heald_1.displacement [mm]"
 _COLUMN = re.compile(r"(.+)\[([^\[\]]+)\]")  # a name may have brackets of its own
 NOT_MEASURED = ("", "nan")
+Row = tuple[str, list[str]]  # of a file: where it is, and its cells
 
 
 @dataclass(frozen=True)
@@ -70,57 +71,79 @@ def _trace(path: Path, signals: Sequence[str]) -> Measured:
 
 
 def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
-    lines = [line for line in text_of(path).splitlines() if line.strip() and not line.startswith("#")]
-    if not lines:
+    numbered = [
+        (number, line)
+        for number, line in enumerate(text_of(path).splitlines(), start=1)
+        if line.strip() and not line.startswith("#")
+    ]
+    if not numbered:
         raise LoomfmuError(f"{path}: the file is empty; {FORM}")
+    numbers, lines = zip(*numbered, strict=True)
     if ";" in lines[0]:
         raise LoomfmuError(f"{path}: separate the columns with commas, and write decimals with points")
-    heading, *rows = csv.reader(lines)
-    over, factor, named = _headings(path, heading, scene)
-    numbers = _numbers(path, heading, rows)
-    columns = {name: numbers[:, place] * scale for name, (place, scale) in named.items()}
+    reader = csv.reader(lines)
+    heading, *rows = ((f"{path}: line {numbers[reader.line_num - 1]}", row) for row in reader)
+    over, factor, named = _headings(*heading, scene)
+    values = _values(heading[1], rows)
+    columns = {name: values[:, place] * scale for name, (place, scale) in named.items()}
     if missing := [name for name in signals if name not in columns]:
         raise LoomfmuError(f"{path}: there is no column {missing[0]!r}; it has {listed(columns)}")
-    along = numbers[:, 0] * factor
-    if not np.all(np.isfinite(along)):
-        row = int(np.flatnonzero(~np.isfinite(along))[0]) + 1
-        raise LoomfmuError(f"{path}: row {row} has no {over}")
+    along = values[:, 0] * factor
+    _check_places(along, columns, over, rows)
     return Measured(path, over, along, {name: columns[name] for name in signals or columns})
 
 
+def _check_places(along: Floats, columns: dict[str, Floats], over: str, rows: Sequence[Row]) -> None:
+    """Refuse rows without a place, and a signal that has two values at one."""
+    seen: dict[tuple[str, float], str] = {}
+    for number, (where, row) in enumerate(rows):
+        if not math.isfinite(along[number]):
+            raise LoomfmuError(f"{where}: there is no {over}")
+        for name, values in columns.items():
+            if not math.isfinite(values[number]):
+                continue
+            before = seen.setdefault((name, float(along[number])), where)
+            if before != where:
+                line = before.rpartition(": ")[2]
+                raise LoomfmuError(
+                    f"{where}: {over} = {row[0].strip()} has a second value of {name}, after that in {line};"
+                    " keep one of them, or their mean"
+                )
+
+
 def _headings(
-    path: Path, heading: Sequence[str], scene: Scene
+    where: str, heading: Sequence[str], scene: Scene
 ) -> tuple[str, float, dict[str, tuple[int, float]]]:
     """What the first column is, what it is multiplied by; and of each signal its column and factor to SI."""
-    over, unit = _named(path, heading[0])
+    over, unit = _named(where, heading[0])
     if over not in ALONG:
-        raise LoomfmuError(f"{path}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
+        raise LoomfmuError(f"{where}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
     named: dict[str, tuple[int, float]] = {}
     for place, text in enumerate(heading[1:], start=1):
-        name, stated = _named(path, text)
+        name, stated = _named(where, text)
         if name in named:
-            raise LoomfmuError(f"{path}: two columns are called {name}")
-        port = output_port(scene, name, f"{path}")
-        named[name] = place, _factor(path, name, stated, port.unit)
+            raise LoomfmuError(f"{where}: two columns are called {name}")
+        port = output_port(scene, name, f"{where}")
+        named[name] = place, _factor(where, name, stated, port.unit)
     if not named:
-        raise LoomfmuError(f"{path}: there is no column beside {over}; {FORM}")
-    return over, _factor(path, over, unit, ALONG[over]), named
+        raise LoomfmuError(f"{where}: there is no column beside {over}; {FORM}")
+    return over, _factor(where, over, unit, ALONG[over]), named
 
 
-def _named(path: Path, text: str) -> tuple[str, str]:
+def _named(where: str, text: str) -> tuple[str, str]:
     """A column's name and unit. Raises LoomfmuError for one without."""
     match = _COLUMN.fullmatch(text.strip())
     if match is None:
         raise LoomfmuError(
-            f"{path}: column {shown(text.strip())} has no unit; write it in brackets, such as"
+            f"{where}: column {shown(text.strip())} has no unit; write it in brackets, such as"
             f" {shown(text.strip() + ' [mm]')}, or [1] for a pure number"
         )
     return match.group(1).strip(), match.group(2).strip()
 
 
-def _factor(path: Path, name: str, stated: str, wanted: str) -> float:
+def _factor(where: str, name: str, stated: str, wanted: str) -> float:
     """What values in the stated unit are multiplied by. Raises LoomfmuError for one that does not fit."""
-    misfit = f"{path}: column {name} is in {shown(stated)}, which does not fit {units.fitted(wanted)}"
+    misfit = f"{where}: column {name} is in {shown(stated)}, which does not fit {units.fitted(wanted)}"
     if wanted not in units.UNITS:  # a third-party FMU's own
         if stated != wanted:
             raise LoomfmuError(misfit)
@@ -128,22 +151,22 @@ def _factor(path: Path, name: str, stated: str, wanted: str) -> float:
     try:
         given = units.unit(stated, like=wanted)
     except units.UnitError as error:
-        raise LoomfmuError(f"{path}: column {name}: {error}") from None
+        raise LoomfmuError(f"{where}: column {name}: {error}") from None
     if given.dimension != units.unit(wanted).dimension:
         raise LoomfmuError(misfit)
     return given.factor / units.unit(wanted).factor
 
 
-def _numbers(path: Path, heading: Sequence[str], rows: Iterable[Sequence[str]]) -> Floats:
+def _values(heading: Sequence[str], rows: Iterable[Row]) -> Floats:
     found = []
-    for number, row in enumerate(rows, start=1):
+    for where, row in rows:
         if len(row) != len(heading):
-            raise LoomfmuError(f"{path}: row {number} has {len(row)} values for {len(heading)} columns")
-        found.append([_number(path, number, name, text) for name, text in zip(heading, row, strict=True)])
+            raise LoomfmuError(f"{where}: {len(row)} values for {len(heading)} columns")
+        found.append([_value(f"{where}: {name}", text) for name, text in zip(heading, row, strict=True)])
     return np.array(found, float).reshape(-1, len(heading))
 
 
-def _number(path: Path, row: int, name: str, text: str) -> float:
+def _value(where: str, text: str) -> float:
     """A value, NaN where there is none."""
     text = text.strip()
     if text.lower() in NOT_MEASURED:
@@ -151,7 +174,7 @@ def _number(path: Path, row: int, name: str, text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise LoomfmuError(f"{path}: row {row}, {name}: {shown(text)} is not a number") from None
+        raise LoomfmuError(f"{where}: {shown(text)} is not a number") from None
     if not math.isfinite(value):
-        raise LoomfmuError(f"{path}: row {row}, {name}: {text} is not finite")
+        raise LoomfmuError(f"{where}: {text} is not finite")
     return value
