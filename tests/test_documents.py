@@ -118,6 +118,24 @@ def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert f"{shown['loom'].clearance_for('650 rpm', 'WL680-3600'):.5f}" == "0.00038"
 
 
+@pytest.mark.slow
+def test_the_long_commands_of_the_readme_can_be_followed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["init"]) == 0 and cli.main(["new", "PickingCam"]) == 0
+    long = [arguments for arguments in commands(README) if arguments[0] in ("build", "export", "sweep")]
+    for arguments in long:
+        # many looms of the sweep are too fast for their belt
+        assert cli.main(arguments) == (arguments[0] == "sweep"), arguments
+    assert len(list(Path("build/native").glob("*.fmu"))) == len(COMPONENTS) + 1
+    assert {"loom.fmu", "loom.ssp"} <= {path.name for path in tmp_path.iterdir()}
+    assert {"table.parquet", "map.png", "traces"} <= {
+        path.name for path in Path("results/safe_speed").iterdir()
+    }
+
+
+WORDS = {3: "three", 4: "four", 5: "five", 6: "six"}
 FOLLOWED = (
     "tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "optimizing",
     "fitting",
@@ -150,6 +168,7 @@ def test_the_docs_can_be_followed(
         expected = 1 if line.endswith("# exit status 1") else 0
         assert cli.main(shlex.split(line, comments=True)[1:]) == expected, line
     if name == "tour":
+        assert f"in {WORDS[len(commands(page))]} commands" in page.read_text()
         assert blocks(page, "toml")[0] in Path("wl680_3600.toml").read_text()
     shown: dict[str, Any] = {}
     for text in blocks(page, "python"):

@@ -195,7 +195,8 @@ def test_a_claim_that_holds_nowhere_is_named() -> None:
     found = limit(belt_scene("WL680-3600"), vary="shaft.speed=700rpm..900rpm", points=5)
     assert not found and found.ranges == ()
     assert str(found) == (
-        "Not all claims hold at any value from 700 to 900 rev/min: 'margin' and 'speed' hold nowhere."
+        "There is no value from 700 to 900 rev/min at which all claims hold:"
+        " 'margin' and 'speed' hold nowhere."
         " The scene's own value, 600 rev/min, is outside the range that was searched."
     )
 
@@ -211,7 +212,7 @@ def test_claims_that_hold_but_never_together_are_not_called_failing() -> None:
         [400.0 * RPM, 500.0 * RPM], rel=FOUND
     )
     assert str(found) == (
-        "Not all claims hold at any value from 300 to 600 rev/min."
+        "There is no value from 300 to 600 rev/min at which all claims hold."
         " At the scene's own value, 450 rev/min, 'slow' and 'fast' fail."
     )
 

@@ -82,7 +82,8 @@ def test_a_wide_terminal_has_a_table(
     assert "jumps at 322.24" in lines[3] and "up to 322.24" in lines[3]
     assert "  nowhere  " in lines[4]
     assert any(
-        line.startswith("Not all claims hold at any value from 300 to 340 rev/min: ") for line in lines
+        line.startswith("There is no value from 300 to 340 rev/min at which all claims hold: ")
+        for line in lines
     )
     assert any(line.startswith("Where a claim") for line in lines)
     assert "The scene's own value, 200 rev/min, is outside the range that was searched." in lines

@@ -176,9 +176,9 @@ def conclusion(found: Limits) -> Iterator[str]:
     if not found.ranges:
         never = [each.claim for each in found.claims if not each.ranges]
         why = f": {_names(never)} hold{'s' * (len(never) == 1)} nowhere" if never else ""
-        yield f"Not all claims hold at any value from {span.text}{why}."
+        yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
-        yield ('Where a claim "jumps", its distance does not pass 0: it counts, or has no value on one side.')
+        yield 'Where a claim "jumps", it counts something, or has no value on one side.'
     failing = [each.claim for each in found.claims if not each.verdict]
     if failing:
         own, they = span.show(span.value), f"{_names(failing)} fail{'s' * (len(failing) == 1)}"

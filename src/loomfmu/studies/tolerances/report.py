@@ -20,7 +20,7 @@ def show(found: Tolerances) -> None:
         for word, claim, own, worst, where, costs in table
     ]
     printed.show(HEADINGS, table, entries)
-    say(f"{found.runs} runs: a search for the worst cases, not a proof that there are none worse")
+    say(f"{found.runs} runs: a search, not a proof: worse cases may exist")
 
 
 def draw(found: Tolerances) -> Any:

@@ -95,13 +95,13 @@ def _where(each: WorstCase, found: Tolerances) -> str:
 def _costs(each: WorstCase) -> str:
     """What each tolerance costs, the most expensive first."""
     if not each.costs:
-        return "costs nothing"
+        return "cost: none"
     bound = abs(each.worst.bound)
     parts = []
     for cost in each.costs:
         share = f"{100.0 * cost.distance / bound:.3g} %" if bound else each.worst.shown(cost.distance)
-        parts.append(f"{share} by {cost.key}")
-    return f"costs {listed(parts)}"
+        parts.append(f"{share} from {cost.key}")
+    return f"cost: {listed(parts)}"
 
 
 def tolerances(
