@@ -168,7 +168,9 @@ def test_on_paper_the_drawings_stand_where_a_claim_of_this_run_fails(written: Pa
     page.emulate_media(media="print")
     until(page, lambda: "100." in page.inner_text("#motion-place"))
     place = page.evaluate("loomfmu.live.worst()")
+    assert page.evaluate("loomfmu.position") == place  # diagram and plots stand there, too
     page.emulate_media(media="screen")
+    until(page, lambda: page.evaluate("loomfmu.position === loomfmu.first"))
     page.evaluate(f"loomfmu.seek({place})")
     values = "Array.from(document.querySelectorAll('#motion [data-value]'), each => each.textContent)"
     page.locator("#motion").scroll_into_view_if_needed()

@@ -67,8 +67,11 @@
       for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
     });
   loomfmu.follow(draw);
-  // on paper: where the cursor was moved to, else where the worst claim of this run is
+  // on paper the whole page stands where the cursor was moved to, else where the worst claim of this run is
   const worst = () => live && live.worst && live.worst() !== null ? live.worst() : still;
-  matchMedia("print").addEventListener("change", event =>
-    draw(event.matches && loomfmu.position === loomfmu.first ? worst() : loomfmu.position));
+  let moved = false;
+  matchMedia("print").addEventListener("change", event => {
+    if (event.matches) moved = loomfmu.position === loomfmu.first;
+    if (moved) loomfmu.seek(event.matches ? worst() : loomfmu.first);
+  });
 })();
