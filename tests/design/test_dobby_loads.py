@@ -97,5 +97,7 @@ def test_bad_values_are_named(given, message):
 
 
 def test_unknown_load_is_named():
-    with pytest.raises(LoomfmuError, match="load = 'weight' must be one of frame_force, rotor_torque, shaft"):
+    with pytest.raises(
+        LoomfmuError, match="load = 'weight' must be one of frame_force, rotor_torque or shaft"
+    ):
         loads.least_loaded(load="weight")

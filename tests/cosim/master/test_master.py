@@ -358,7 +358,7 @@ def test_a_live_fmu_where_its_wrapper_has_no_library_is_told_with_what_it_has(
     monkeypatch.setattr("fmpy.platform", "darwin64")
     with pytest.raises(LoomfmuError) as raised:
         slave.Slave(fmu, "mine")
-    said = "has no library for this platform, darwin64; it has linux64, win64"
+    said = "has no library for this platform, darwin64; it has linux64 and win64"
     assert str(raised.value) == f"mine: {fmu.path} {said}"
 
 

@@ -40,7 +40,7 @@ def test_a_work_may_come_from_a_table():
     [
         (
             '"shaft.torque_2" = "heald_1.shaft_torque"\n"shaft.torque_7" = "heald_1.shaft_torque"',
-            "heald_1.shaft_torque loads shaft 2 times: shaft.torque_2, shaft.torque_7; keep one wire",
+            "heald_1.shaft_torque loads shaft 2 times: shaft.torque_2 and shaft.torque_7; keep one wire",
         ),
         ('"shaft.torque_1" = false', "weft does not load shaft: weft.shaft_torque is not wired"),
     ],

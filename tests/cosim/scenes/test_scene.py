@@ -207,7 +207,9 @@ machine = "WL800-3600"
 
 # ---- what a loom has one of
 
-MIXED = "the loom mixes machines: weft has WL450-3600, belt has WL680-3600; machine = NAME sets all of them"
+MIXED = (
+    "the loom mixes machines: weft has WL450-3600 and belt has WL680-3600; machine = NAME sets all of them"
+)
 
 
 @pytest.mark.parametrize("key", ["machine", "loom.machine"])

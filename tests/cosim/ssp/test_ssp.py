@@ -233,7 +233,7 @@ def test_the_machine_of_a_package_can_be_changed_and_a_mixed_one_is_named(demo: 
         assert changed.instances[name].values == wanted.instances[name].values
     assert changed.notes == ()
     (note,) = ssp_read.load(demo, {"weft.machine": "WL450-3600"}).notes
-    assert note.startswith("the loom mixes machines: weft has WL450-3600, belt has its own values;")
+    assert note.startswith("the loom mixes machines: weft has WL450-3600 and belt has its own values;")
 
 
 def test_a_connected_input_of_a_package_takes_no_value(demo: Path) -> None:
