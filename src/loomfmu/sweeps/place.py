@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, shown
+from ..errors import LoomfmuError, listed, shown
 from .pools import Here, Pool, Processes
 from .worker import Planned
 
@@ -33,7 +33,7 @@ def check_packages(path: Path, used: dict[str, bool]) -> None:
     missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
     if missing:
         extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
-        raise LoomfmuError(f'{path}: this needs {" and ".join(missing)}: pip install "loomfmu[{extras}]"')
+        raise LoomfmuError(f'{path}: this needs {listed(missing)}: pip install "loomfmu[{extras}]"')
 
 
 @contextmanager

@@ -52,7 +52,7 @@ def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
     scene = 'record = ["weft.*"]\n' + MOTOR + "[weft]\n"  # nothing recorded depends on the motor
     with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
         archive.writestr("binaries/other64/NotIt.so", b"")
-    for folder, known in (("", "none"), ("win64", "win64"), ("darwin64", "darwin64, win64")):
+    for folder, known in (("", "none"), ("win64", "win64"), ("darwin64", "darwin64 and win64")):
         if folder:
             with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
                 archive.writestr(f"binaries/{folder}/Motor.dll", b"")
@@ -96,8 +96,7 @@ TEXTS = {
     LENGTH + '[shaft]\nfmu = "Motor.fmu"\n': "the shaft of a scene must have an output angle in rad",
     SHAFT3: 'there is no shaft whose speed sets the step: add duration = "2 s" and step = "1 ms"',
     'duration = "1 s"\n': "duration is given but not step",
-    LENGTH
-    + "revolutions = 2\n": "revolutions and duration and step: a scene runs either by duration and step",
+    LENGTH + "revolutions = 2\n": "revolutions, duration and step: a scene runs either by duration and step",
     LENGTH.replace("1 ms", "1 mm"): "step: '1 mm' is in mm, which does not fit s",
     LENGTH.replace("1 ms", "0 s"): "step = 0 is outside [1e-12, 1e+09]",
     LENGTH.replace("1 ms", "1 s"): "duration = 0.2 s in steps of 1 s is less than one step",
