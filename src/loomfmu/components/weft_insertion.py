@@ -1,7 +1,7 @@
 """WeftInsertion: from the main shaft to the travel of the rapier head."""
 
 from dataclasses import dataclass
-from math import inf, pi
+from math import floor, inf, pi
 from typing import ClassVar
 
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
@@ -45,8 +45,9 @@ class WeftInsertion(ShaftDriven):
         minimum=0.0, maximum=1.5707963267948966,
     )  # fmt: skip
     crank_phase: float = parameter(
-        "rad", 0.0, "Crank angle at shaft angle 0", display="deg", minimum=-7.0, maximum=7.0
-    )
+        "rad", 0.0, "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre",
+        display="deg", minimum=-7.0, maximum=7.0,
+    )  # fmt: skip
     rocker_offset: float = parameter(
         "rad", 0.17121679962064373, "Angle between the rocker's arms BC and DC", display="deg",
         minimum=-7.0, maximum=7.0,
@@ -96,18 +97,20 @@ class WeftInsertion(ShaftDriven):
     )  # fmt: skip
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
-    stroke: float = output("m", "Travel at the transfer, half a turn on", variability="discrete", depends=())
+    stroke: float = output(
+        "m", "Travel at the inner dead centre, half a turn on", variability="discrete", depends=()
+    )
     shaft_torque: float = output("N.m", "Torque the shaft needs to drive the moving masses", nominal=10.0)
     kinetic_energy: float = output("J", "Kinetic energy of head, belt and wheel", nominal=10.0)
     shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
     travel_per_angle: float = auxiliary("m", "Travel per radian of the sector gear, signed")
-    sector_start: float = auxiliary("rad", "Angle of the sector gear at shaft angle 0")
+    sector_start: float = auxiliary("rad", "Angle of the sector gear at the outer dead centre")
     closure: float = auxiliary("m", "Margin by which the four-bar closes over the rocker's swing")
 
-    def sector(self, theta: float) -> tuple[float, float, float]:
-        """Angle of the sector gear at a shaft angle, with its derivatives."""
+    def sector(self, crank: float) -> tuple[float, float, float]:
+        """Angle of the sector gear at an angle of the crank, with its derivatives."""
         return weft_motion(
-            theta + self.crank_phase, self.rocker_angle, self.crank_cone, self.rocker_offset,
+            crank, self.rocker_angle, self.crank_cone, self.rocker_offset,
             self.planar_linkage, self.crank_length, self.coupler_length, self.output_length,
             self.pivot_x, self.pivot_y, self.assembly,
         )  # fmt: skip
@@ -136,8 +139,9 @@ class WeftInsertion(ShaftDriven):
         problem = self.check()
         if problem != 0:
             return problem
-        self.sector_start, _first, _second = self.sector(0.0)
-        middle, _first, _second = self.sector(pi)
+        outer = pi * floor(self.crank_phase / pi + 0.5)
+        self.sector_start, _first, _second = self.sector(outer)
+        middle, _first, _second = self.sector(pi + outer)
         swing = wrapped(middle - self.sector_start)
         self.travel_per_angle = 0.5 * self.gear_ratio * self.wheel_diameter
         if swing < 0.0:
@@ -150,7 +154,7 @@ class WeftInsertion(ShaftDriven):
         theta, speed, acceleration = self.shaft(time, step_size)
         if too_far(theta):
             return 4
-        angle, first, second = self.sector(theta)
+        angle, first, second = self.sector(theta + self.crank_phase)
         first = self.travel_per_angle * first
         second = self.travel_per_angle * second
         self.travel = self.travel_per_angle * wrapped(angle - self.sector_start)

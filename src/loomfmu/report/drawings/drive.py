@@ -41,7 +41,7 @@ def spherical(weft: WeftInsertion, angle: float) -> list[Place]:
 def planar(weft: WeftInsertion, angle: float) -> list[Place]:
     """Joints D and K of the four-bar [mm]; C is the origin."""
     alpha, _first, _second = spherical_rocker(angle + weft.crank_phase, weft.rocker_angle, weft.crank_cone)
-    chi, _first, _second = weft.sector(angle)
+    chi, _first, _second = weft.sector(angle + weft.crank_phase)
     psi = alpha + weft.rocker_offset
     return [
         (1000.0 * weft.crank_length * cos(psi), 1000.0 * weft.crank_length * sin(psi)),
@@ -109,9 +109,9 @@ def _wheel(sketch: Sketch, weft: WeftInsertion, name: str, at: Place, radius: fl
 
 def _sector(sketch: Sketch, weft: WeftInsertion, name: str, hub: Place) -> None:
     """The sector gear, whose middle meets the pinion in the middle of its swing."""
-    swing = wrapped(weft.sector(pi)[0] - weft.sector_start)
+    swing = weft.stroke / weft.travel_per_angle
     turns = [
-        wrapped(weft.sector(angle)[0] - weft.sector_start) - 0.5 * swing
+        wrapped(weft.sector(angle + weft.crank_phase)[0] - weft.sector_start) - 0.5 * swing
         for angle in TURN * sketch.tracks.shares
     ]
     turn = sketch.tracks.cycle(f"{name}.sector", np.degrees(turns))
