@@ -23,6 +23,7 @@ from loomfmu.components.pattern_lock import PatternLock
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
 from loomfmu.components.weft_tension import WeftTension
+from loomfmu.components.weft_transfer import WeftTransfer
 from loomfmu.variables import Component
 
 ROOT = Path(__file__).parents[1]
@@ -142,6 +143,10 @@ def main() -> None:
     chain = [WeftInsertion(), WeftTension(inputs_at_step_end=True)]
     time, behind, tension = trace(chain, 1, "eye_tension", "tension")
     draw("weft_tension", (time, behind, PALE), (time, tension, BLUE), levels=(0.0,))
+
+    time, travel = trace([WeftInsertion()], 1, "travel")
+    other = [WeftTransfer().separation - each for each in travel]
+    draw("weft_transfer", (time, other, RED), (time, travel, BLUE))
 
     time, velocity = trace([DobbyDrive(speed_reduction=0.7)], 2, "rotor_velocity")
     draw("dobby_drive", (time, velocity, BLUE), levels=(DobbyDrive().speed,))

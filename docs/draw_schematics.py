@@ -153,7 +153,7 @@ def weft_insertion() -> Drawing:
     )
     weft = WeftInsertion()
     assert weft.initialize(0.0) == 0
-    chi, _first, _second = weft.sector(pi / 3)
+    chi, _first, _second = weft.sector(pi / 3 + weft.crank_phase)
     alpha, _first, _second = spherical_rocker(pi / 3 + weft.crank_phase, weft.rocker_angle, weft.crank_cone)
     psi = alpha + weft.rocker_offset
     scale, c = 430.0, (210.0, 240.0)
@@ -264,6 +264,28 @@ def weft_tension() -> Drawing:
     d.arrow((190, y - 70), (560, y - 70), GREY, both=True)
     d.text((375, y - 78), "length L: q, EA, τ; drag c, d")
     d.text((440, y + 22), "tension", BLUE)
+    return d
+
+
+def weft_transfer() -> Drawing:
+    """Both heads where they meet, with their travels and what they overlap by."""
+    d = Drawing(640, 250, "Weft transfer: giver and taker in mid-shed, travels, separation, overlap")
+    for x, sense, colour, symbol in ((60.0, 1, BLUE, "s1"), (580.0, -1, GREY, "s2")):
+        tip = 320 + 30 * sense
+        y = 100 - 16 * sense
+        d.path((x - 40 * sense, y), (tip - 90 * sense, y), colour=colour, width=4)
+        body = [(tip - 90 * sense, y - 13), (tip - 14 * sense, y - 13), (tip, y), (tip - 14 * sense, y + 13)]
+        d.path(*body, (tip - 90 * sense, y + 13), body[0], colour=colour, fill=PALE)
+        d.path((x, 40), (x, 220), dash="6 4")
+        d.path((tip, 32), (tip, 165 + 15 * -sense), dash="3 3", width=1)
+        d.arrow((x, 160 - 15 * sense), (tip, 160 - 15 * sense), colour)
+        d.text((x + 110 * sense, 153 - 15 * sense), index(f"travel {symbol}"), colour)
+    d.text((190, 70), "giver", BLUE)
+    d.text((450, 102), "taker", GREY)
+    d.arrow((290, 36), (350, 36), both=True)
+    d.text((320, 26), "overlap", RED)
+    d.arrow((60, 205), (580, 205), GREY, both=True)
+    d.text((320, 225), "separation: tips of the heads at their outer dead centres")
     return d
 
 
@@ -496,9 +518,9 @@ def detaching_roller() -> Drawing:
 def main() -> None:
     """Draw all of them."""
     for draw in (
-        main_shaft, driven_shaft, weft_insertion, belt_monitor, belt_dynamics, weft_tension, dobby_drive,
-        heald_frame, heald_damper, warp_tension, heald_play, pattern_lock, reed_beat_up, belt_wrap,
-        detaching_roller,
+        main_shaft, driven_shaft, weft_insertion, belt_monitor, belt_dynamics, weft_tension, weft_transfer,
+        dobby_drive, heald_frame, heald_damper, warp_tension, heald_play, pattern_lock, reed_beat_up,
+        belt_wrap, detaching_roller,
     ):  # fmt: skip
         draw().write(draw.__name__)
 

@@ -55,7 +55,7 @@ def in_step(component, other, seed, compare):
 def test_flattened_text_imports_math_alone(component):
     tree = ast.parse(flatten(component))
     imported = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert [(type(node), node.module) for node in imported] == [(ast.ImportFrom, "math")]
+    assert [getattr(node, "module", None) for node in imported] in ([], ["math"])  # none where none is needed
     assert flatten(component) == flatten(component)
 
 

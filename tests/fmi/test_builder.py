@@ -142,8 +142,7 @@ def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> Non
 def test_the_component_in_it_imports_math_alone(name: str) -> None:
     tree = ast.parse(flatten(COMPONENTS[name]))
     imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert [node.module for node in imports if isinstance(node, ast.ImportFrom)] == ["math"]
-    assert len(imports) == 1
+    assert [getattr(node, "module", None) for node in imports] in ([], ["math"])
 
 
 @every_fmu

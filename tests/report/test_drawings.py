@@ -28,6 +28,7 @@ from loomfmu.traces import Trace
 Open = Callable[..., Any]
 SIMS = Path(__file__).parents[2] / "sims"
 ANGLES = (0.0, 37.0, 100.0, 180.0, 271.0, 359.0)  # deg
+PAIR = ("belt", "belt_2")
 STEP = 0.011  # mm: keyframes are rounded to 0.01 mm, points to a thousandth
 
 
@@ -153,6 +154,24 @@ def test_the_weft_reaches_to_the_head_and_is_red_where_it_hangs_slack(tmp_path: 
     assert slack
 
 
+def test_both_heads_overlap_by_what_the_trace_has(whole: Trace, pages: dict[str, Path], opened: Open) -> None:
+    page, lengths = opened(pages["whole"]), [whole.parameter(f"{each}.head_length") for each in PAIR]
+    figure = page.locator("#motion-transfer-transfer")
+    (apart,) = re.findall(r"translate\(([\d.]+) 0\) scale\(-1 1\)", figure.inner_html())
+    for degrees in (120.0, 165.0, 180.0, 190.3, 300.0):
+        seek(page, 1080.0 + degrees)
+        place = math.radians(1080.0 + degrees)
+        recorded = 1000.0 * np.interp(place, whole.shaft_angle, whole["transfer.overlap"])
+        heads = [figure.locator(f'g[data-shift^="{each}.tail"]').get_attribute("transform") for each in PAIR]
+        tails = [float(re.findall(r"-?[\d.]+", text)[0]) for text in heads]
+        drawn = sum(tails) + 1000.0 * sum(lengths) - float(apart)
+        # each head to a step; between keyframes of a degree the overlap, whose second derivative by the angle
+        # is 2.5 m, leaves its chord by 2.5 m (1 deg)^2 / 8
+        assert drawn == pytest.approx(recorded, abs=2.0 * STEP + 0.1), degrees
+        shown = figure.locator('output[data-value="transfer.overlap_mm"]').inner_text()
+        assert float(shown) == pytest.approx(drawn, abs=0.05 + 2.0 * STEP)  # a digit
+
+
 # ---- the buckled belt
 
 
@@ -237,7 +256,7 @@ def test_the_still_is_at_the_worst_claim(demo: Trace, buckled: Trace) -> None:
 def test_each_drawing_has_a_sentence(whole: Trace) -> None:
     html = made(whole).html
     labels = re.findall(r'<svg [^>]*role="img" aria-label="([^"]+)"', html)
-    assert len(labels) == html.count("<figure ") == 6
+    assert len(labels) == html.count("<figure ") == 9
     assert all(label.endswith(".") and len(label) > 40 for label in labels)
 
 

@@ -1,6 +1,7 @@
 """When things happen over the main shaft: against published and analytic angles."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,30 @@ def test_the_belt_is_buckled_at_and_beyond_its_critical_load(demo: Trace, tmp_pa
     for (low, high), (start, end) in ((first, (0.0, 180.0)), (last, (180.0, 360.0))):
         inside = beyond[(beyond > start) & (beyond < end)]
         assert inside[0] - step <= low <= inside[0] and inside[-1] <= high <= inside[-1] + step
+
+
+def test_the_hand_over_is_that_of_its_claim(whole: Trace) -> None:
+    ((low, high),) = degrees(
+        Occasions(Subject([whole])).revolution(5).intervals["transfer", "heads overlap enough"]
+    )
+    (note,) = [each.note for each in whole.verdicts if each.signal == "transfer.overlap"]
+    claimed = [float(word) for word in re.findall(r"[\d.]+(?= deg)", note)]
+    # on straight lines between samples of a quarter degree, on other revolutions of a shaft that ripples
+    assert (low, high) == pytest.approx(claimed, abs=0.01)
+    # equal rapiers in phase: the motion is symmetric about 180 deg
+    assert 0.5 * (low + high) == pytest.approx(180.0, abs=0.01)
+
+
+def test_each_rapier_is_in_the_shed_by_its_own_belt(whole: Trace) -> None:
+    occasions = Occasions(Subject([whole]))
+    labels = {row.name: row.label for row in occasions.rows}
+    assert [labels[name] for name in ("weft", "weft_2", "belt_2")] == [
+        "Rapier head",
+        "Rapier 2",
+        "Belt 2",
+    ]
+    bars = {row.name: row.bars[0].rule for row in occasions.rows}
+    assert bars["weft_2"] == ["-", "weft_2.travel", "belt_2.idle_travel"]
 
 
 def test_the_dwell_is_the_one_that_the_drive_computes(demo: Trace) -> None:

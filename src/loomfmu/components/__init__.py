@@ -13,6 +13,7 @@ MODULES = {
     "BeltMonitor": "belt_monitor",
     "BeltDynamics": "belt_dynamics",
     "WeftTension": "weft_tension",
+    "WeftTransfer": "weft_transfer",
     "DobbyDrive": "dobby.drive",
     "HealdFrame": "heald_frame",
     "HealdDamper": "heald_damper",

@@ -25,23 +25,23 @@ class BeltDynamicsVariables(Component):
 
     bending_stiffness: float = parameter(
         "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6,
-        source="belt.bending_stiffness",
+        source="belt_#.bending_stiffness",
     )  # fmt: skip
     head_mass: float = parameter(
         "kg", 0.1105, "Mass of rapier head and rigid section of the belt", display="g",
-        minimum=1e-6, maximum=100.0, nominal=0.1, source="belt.head_mass",
+        minimum=1e-6, maximum=100.0, nominal=0.1, source="belt_#.head_mass",
     )  # fmt: skip
     head_length: float = parameter(
         "m", 0.550, "Length of head and rigid section", display="mm", minimum=0.0, maximum=10.0,
-        source="belt.head_length",
+        source="belt_#.head_length",
     )  # fmt: skip
     idle_travel: float = parameter(
         "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0,
-        source="belt.idle_travel",
+        source="belt_#.idle_travel",
     )  # fmt: skip
     taker: bool = parameter(
         "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in",
-        source="belt.taker",
+        source="belt_#.taker",
     )  # fmt: skip
     belt_mass: float = parameter(
         "kg/m", 0.05, "Mass of the belt per length (assumed: none published; 0.02 to 0.1)",
@@ -93,7 +93,7 @@ class BeltDynamicsVariables(Component):
     )  # fmt: skip
     length_factor: float = input_(
         "1", 0.8, "Column length factor mu: the belt is a pinned one of stiffness EI / mu^2",
-        minimum=0.1, maximum=2.0, source="belt.length_factor",
+        minimum=0.1, maximum=2.0, source="belt_#.length_factor",
     )  # fmt: skip
 
     free_length: float = output(

@@ -8,7 +8,7 @@ from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
 from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
 from .terminals import SHAFT
 
-LOADS = 32  # mechanisms: 28 heald frames, dobby, weft insertion, reed and one more
+LOADS = 32  # mechanisms: 28 heald frames, dobby, both rapiers and reed
 
 
 @dataclass(slots=True)

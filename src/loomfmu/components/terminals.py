@@ -6,6 +6,9 @@ from ..variables import Terminal
 
 SHAFT = Terminal("shaft", "Motion of the main shaft", ("angle", "velocity", "acceleration"))
 HEAD = Terminal("head", "Motion of the rapier head", ("travel", "velocity", "acceleration"))
+# one head of two: each fits what any rapier moves
+GIVER = replace(HEAD, name="giver.head", description="Motion of the head that brings the weft")
+TAKER = replace(HEAD, name="taker.head", description="Motion of the head that takes the weft")
 ROTOR = Terminal(
     "rotor",
     "Motion of the dobby's rotor, and the lift it gives a frame",

@@ -31,7 +31,7 @@ HEAD_MASS = {"BeltMonitor": "head_mass", "WeftInsertion": "moving_mass"}
 
 # kind of published data -> the components whose parameters it sets
 TAKERS = {
-    "machine": tuple(dict.fromkeys(owner for owner, _name, _unit in MACHINE_COLUMNS.values())),
+    "machine": (*dict.fromkeys(owner for owner, _name, _unit in MACHINE_COLUMNS.values()), "WeftTransfer"),
     "head": tuple(HEAD_MASS),
 }
 
@@ -82,6 +82,8 @@ def _machine_parameters(component: str, row: dict[str, str]) -> dict[str, Value]
     if component == "WeftInsertion":
         values["planar_linkage"] = row["dc_mm"] != ""
         values["gear_ratio"] = float(row["gear_teeth_driver"]) / float(row["gear_teeth_driven"])
+    if component == "WeftTransfer":  # each guide ends at an edge of the loom's width: identified
+        values["separation"] = float(row["width_m"]) + 2e-3 * float(row["idle_travel_mm"])
     return values
 
 

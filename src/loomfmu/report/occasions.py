@@ -195,8 +195,9 @@ def _rapier(trace: Trace, weft: str) -> Iterator[Row]:
     if travel not in trace:
         return
     belts = [name for name, fmu in trace.fmus.items() if fmu == "BeltMonitor"]
+    belts.sort(key=lambda belt: trace.wires.get(f"{belt}.travel") != travel)  # its own one first
     bars = [Bar("in the shed", "weft", ["-", travel, f"{belt}.idle_travel"]) for belt in belts[:1]]
-    yield Row(weft, "Rapier head", tuple(bars), _share(travel))
+    yield Row(weft, _numbered("Rapier", weft, alone="Rapier head"), tuple(bars), _share(travel))
 
 
 def _belt(trace: Trace, belt: str) -> Iterator[Row]:
@@ -208,7 +209,25 @@ def _belt(trace: Trace, belt: str) -> Iterator[Row]:
         bars.append(Bar("outside and compressed", "risk", ["min", _scaled(free), _scaled(force)]))
     if f"{belt}.margin" in trace:
         bars.append(Bar("buckled", "buckled", ["-", 0.0, f"{belt}.margin"]))
-    yield Row(belt, "Belt", tuple(bars), _share(free))
+    yield Row(belt, _numbered("Belt", belt), tuple(bars), _share(free))
+
+
+def _numbered(label: str, instance: str, alone: str = "") -> str:
+    """A label with the number of the instance; without a number, `alone` if there is one.
+
+    A narrow screen has room for some 12 letters.
+    """
+    number = in_order(instance)[1]
+    return f"{label} {number}" if number else alone or label
+
+
+def _transfer(trace: Trace, transfer: str) -> Iterator[Row]:
+    overlap = f"{transfer}.overlap"
+    if overlap not in trace:
+        return
+    enough = Bar("heads overlap enough", "weft", ["-", overlap, f"{transfer}.needed_overlap"])
+    passed: Rule = ["max", overlap, 0.0]
+    yield Row(transfer, "Transfer", (enough,), ["/", passed, ["highest", ["max", passed, SMALL]]])
 
 
 def _frame(trace: Trace, heald: str) -> Iterator[Row]:
@@ -252,6 +271,7 @@ def _lock(trace: Trace, lock: str) -> Iterator[Row]:
 
 MAKERS: tuple[tuple[str, Callable[[Trace, str], Iterator[Row]]], ...] = (
     ("WeftInsertion", _rapier),
+    ("WeftTransfer", _transfer),
     ("BeltMonitor", _belt),
     ("DobbyDrive", _shed),
     ("HealdFrame", _frame),

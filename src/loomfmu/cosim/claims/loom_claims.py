@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
-from .arguments import Name, Names, Quantity, argument
-from .claim import AT_LEAST, AT_MOST, LENGTH, ONE, SPEED, Claim
-from .curves import SAME, Motion, Stretch, motion_of
+from . import shaft
+from .arguments import Edges, Name, Names, Quantity, Window, argument
+from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
+from .curves import SAME, Motion, Stretch, first_lowest, motion_of
 from .lifted import check_lifted_by, lift_of
 
 NEVER = "the head never enters the shed in this run"
@@ -110,6 +111,84 @@ class ReedClearOfRapier(_InShed):
         worst = float(trace[f"{self.reed}.front_limit"][-1]) - foremost.value
         notes = (travel.note, position.note, foremost.note)
         return self.verdict(trace, text, signal, self.clearance, worst, foremost.time, *notes)
+
+
+class _Transfer(Claim, kind=False):
+    """What holds of the transfer: the hand-over lasts while the heads overlap by what the hooks need."""
+
+    transfer: str = argument(Name(), "transfer")
+
+    reads = ("transfer",)
+    grid = LANDINGS
+
+    def _overlap(self, trace: Signals) -> tuple[Motion, float]:
+        """The overlap, and what the hooks need of it."""
+        name = self.transfer
+        return motion_of(trace, f"{name}.overlap"), trace.parameter(f"{name}.needed_overlap")
+
+
+class TransferInTime(_Transfer):
+    """In every revolution the heads overlap by what the hooks need, within a window of shaft angles.
+
+    The largest overlap in each pass through the window is judged, and the least of these decides. Passes of
+    which the run has only a part do not count.
+    """
+
+    window: Window = argument(Edges("rad", "deg", usual=1.5))
+
+    needs = ("transfer.overlap",)
+    unit = LENGTH
+
+    def judge(self, trace: Signals) -> Verdict:
+        text, signal = f"the heads meet in {self.window}", f"{self.transfer}.overlap"
+        overlap, needed = self._overlap(trace)
+        found = [overlap.lowest(-1.0, [each]) for each in shaft.passes(trace, self.window)]
+        if not found:
+            note = "the run never passes through the whole window"
+            return self.verdict(trace, text, signal, needed, math.nan, math.nan, overlap.note, note)
+        worst, time = first_lowest([each.value for each in found], [each.time for each in found])
+        notes = (overlap.note, *(each.note for each in found), *self._hand_over(trace, overlap, needed, time))
+        return self.verdict(trace, text, signal, needed, worst, time, *notes)
+
+    def _hand_over(self, trace: Signals, overlap: Motion, needed: float, time: float) -> list[str]:
+        """A note on the shaft angles between which the heads overlap enough about a time."""
+        turning = shaft.needed_angle(trace)
+        return [
+            "hand-over from {} to {}".format(
+                *(units.show(shaft.place(turning, end)[0], "deg") for end in each[:2])
+            )
+            for each in overlap.beyond(needed, 1.0)
+            if each.whole and each.start <= time <= each.end
+        ]
+
+    def landings(self, trace: Signals) -> Landings:
+        edges = [each.start for each in shaft.times_within(trace, self.window)]
+        return Landings(edges, [(f"{self.transfer}.overlap", -1.0)])
+
+
+class TransferSpeed(_Transfer):
+    """While the heads overlap by what the hooks need, they move no faster relative to each other."""
+
+    at_most: float = argument(Quantity("m/s", low=0.0))
+
+    needs = ("transfer.overlap", "transfer.closing_velocity")
+    sense, unit = AT_MOST, VELOCITY
+
+    def judge(self, trace: Signals) -> Verdict:
+        text, signal = "speed of the heads during the transfer", f"{self.transfer}.closing_velocity"
+        (overlap, needed), closing = self._overlap(trace), motion_of(trace, signal)
+        during = overlap.beyond(needed, 1.0)
+        if not during:
+            note = "the heads never overlap by what the hooks need in this run"
+            return self.verdict(trace, text, signal, self.at_most, math.nan, math.nan, overlap.note, note)
+        ends = [closing.lowest(sign, during) for sign in (1.0, -1.0)]
+        fastest = max(ends, key=lambda found: abs(found.value))
+        notes = (overlap.note, closing.note, *(each.note for each in ends))
+        return self.verdict(trace, text, signal, self.at_most, abs(fastest.value), fastest.time, *notes)
+
+    def landings(self, trace: Signals) -> Landings:
+        overlap, needed = self._overlap(trace)
+        return Landings(overlap.crossings(needed), [])
 
 
 class NipHolds(Claim):

@@ -51,6 +51,13 @@ def times_at(trace: Signals, wanted: float) -> list[float]:
     return sorted(set(times))
 
 
+def passes(trace: Signals, window: Window) -> list[Stretch]:
+    """The passes of the shaft through a window of its revolution, without those that the run cuts off."""
+    within = times_within(trace, window)
+    edges = {each.start for each in within if each.start == each.end}
+    return [each for each in within if each.start < each.end and {each.start, each.end} <= edges]
+
+
 def times_within(trace: Signals, window: Window) -> list[Stretch]:
     """Stretches of time in which the shaft is in a window of its revolution, the edges included."""
     start, width = window.start, window.width

@@ -266,22 +266,34 @@ def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
 
 
 def mixed(instances: dict[str, Instance]) -> list[str]:
-    """Warnings about a loom whose instances are not all of one machine, or not all of one head."""
+    """Warnings where the instances of a loom are not all of one machine, or those of a rapier of one head."""
     notes = []
     for kind, takers in machines.TAKERS.items():
-        fitted = [each for each in instances.values() if each.fmu.ours and each.fmu.name in takers]
-        names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
-        differing = [
-            each
-            for each in fitted
-            if kind not in each.published and not all(_is(each, kind, n) for n in names)
-        ]
-        if len(names) > 1 or differing:
-            shown = [
-                f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published
-            ] + [f"{each.name} has its own values" for each in differing]
-            notes.append(f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them")
+        groups: dict[str, list[Instance]] = {}
+        for name, each in instances.items():
+            if each.fmu.ours and each.fmu.name in takers:
+                groups.setdefault(_rapier(name, instances) if kind == "head" else "", []).append(each)
+        notes += [note for fitted in groups.values() if (note := _mixed(kind, fitted))]
     return notes
+
+
+def _rapier(name: str, instances: Collection[str]) -> str:
+    """The number of the rapier that an instance belongs to; none where there is one."""
+    number = name.removeprefix(standard_loom.stem(name))
+    return number if f"weft{number}" in instances else ""
+
+
+def _mixed(kind: str, fitted: list[Instance]) -> str:
+    """A warning where some instances do not have the same machine or head; none where they do."""
+    names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
+    differing = [
+        each for each in fitted if kind not in each.published and not all(_is(each, kind, n) for n in names)
+    ]
+    if len(names) < 2 and not differing:
+        return ""
+    shown = [f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published]
+    shown += [f"{each.name} has its own values" for each in differing]
+    return f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them"
 
 
 def _is(each: Instance, kind: str, name: str) -> bool:

@@ -18,6 +18,7 @@ COMPONENT_OF = {
     "belt": "BeltMonitor",
     "belt_motion": "BeltDynamics",
     "yarn": "WeftTension",
+    "transfer": "WeftTransfer",
     "dobby": "DobbyDrive",
     "heald": "HealdFrame",
     "damper": "HealdDamper",
@@ -31,7 +32,12 @@ COMPONENT_OF = {
 
 # kind of terminal -> the instances whose outputs it carries, the first one that the scene has; # is the
 # number of the instance that follows it. Where a frame has a damper, what it lifts hangs on the carrier.
-SOURCES = {"shaft": ("shaft",), "head": ("weft",), "rotor": ("dobby",), "frame": ("damper_#", "heald_#")}
+SOURCES = {
+    "shaft": ("shaft",),
+    "head": ("weft_#", "weft"),
+    "rotor": ("dobby",),
+    "frame": ("damper_#", "heald_#"),
+}
 
 # input of a mechanism on the shaft -> output of the shaft that it follows
 FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
@@ -41,9 +47,10 @@ ALL = "*."  # in the place of an instance: the output of that name of every inst
 FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
 
 FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one for each frame
-# one for the loom
-LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock", "belt_motion": "belt_motion"}
-LOOM_KEYS = ("machine", "head", "weave", *FRAME_FITTINGS, *LOOM_FITTINGS)
+LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock"}  # one for the loom
+RAPIER_FITTINGS = {"belt_motion": "belt_motion"}  # one for each rapier
+FITTINGS = (*FRAME_FITTINGS, *LOOM_FITTINGS, *RAPIER_FITTINGS)
+LOOM_KEYS = ("machine", "head", "taker_head", "both_rapiers", "weave", *FITTINGS)
 PICKS_IN_A_WORD = 16
 
 
@@ -68,7 +75,8 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """Instances of a standard loom, each with the keys that a scene would give it.
 
     `machine` and `head` name published ones, `weave` is one string of pegs for each frame
-    (`"10/01"` or a list) or the name of a WIF file. `dampers` hangs each frame's carrier on springs,
+    (`"10/01"` or a list) or the name of a WIF file. `both_rapiers` adds the taker, whose head is `head`
+    unless there is a `taker_head`, and the transfer. `dampers` hangs each frame's carrier on springs,
     `warps` loads it with its threads, `play` adds the blows of its healds. `yarn`, `reed`, `locks` and
     `belt_motion` add the weft, beat-up, pattern locks and the deflection of the belt.
     """
@@ -76,9 +84,7 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
         if key not in LOOM_KEYS:
             raise LoomfmuError(f"loom.{key} is unknown{suggestion(key, LOOM_KEYS)}")
     frames = weaves.parse(table["weave"], directory).pegs if "weave" in table else ()
-    machine = {key: table[key] for key in ("machine",) if key in table}
-    head = {key: table[key] for key in ("head",) if key in table}
-    instances: dict[str, dict[str, Any]] = {"shaft": {}, "weft": machine | head, "belt": machine | head}
+    instances: dict[str, dict[str, Any]] = {"shaft": {}, **_rapiers(table)}
     if frames:
         instances["dobby"] = {}
     for number, pegs in enumerate(frames, start=1):
@@ -89,7 +95,23 @@ def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     for key, name in LOOM_FITTINGS.items():
         if _wanted(table, key):
             instances[name] = {}
+    for key, name in RAPIER_FITTINGS.items():
+        if _wanted(table, key):
+            instances |= {each.replace("weft", name): {} for each in ("weft", "weft_2") if each in instances}
     return instances
+
+
+def _rapiers(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The rapier that brings the weft and, with `both_rapiers`, the one that takes it, and their transfer."""
+    machine = {key: table[key] for key in ("machine",) if key in table}
+    giver = machine | {key: table[key] for key in ("head",) if key in table}
+    rapiers: dict[str, dict[str, Any]] = {"weft": giver, "belt": giver}
+    taker = giver | ({"head": table["taker_head"]} if "taker_head" in table else {})
+    if _wanted(table, "both_rapiers"):
+        return rapiers | {"weft_2": taker, "belt_2": taker | {"taker": True}, "transfer": machine}
+    if "taker_head" in table:
+        raise LoomfmuError("loom.taker_head needs the second rapier: set loom.both_rapiers = true")
+    return rapiers
 
 
 def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:

@@ -121,31 +121,15 @@ def _steepest(tracks: Tracks, slope: str) -> float:
 
 def width(tracks: Tracks, belt: Belt) -> Figure:
     """The head's way across the loom, with the wheel on which the belt is wound."""
-    trace = tracks.trace
-    reach = float(tracks.values(["highest", mm(f"{belt.name}.free_length")])) + belt.head
-    back = belt.idle + belt.head
-    wheels = [
-        1000.0 * tracks.parameter(f"{each}.wheel_diameter")
-        for each in (*instances(trace, "WeftInsertion"), *instances(trace, "BeltWrap"))
-    ]
-    radius = 0.5 * wheels[0] if wheels else 0.0
-    centre = -back - 1.3 * radius
-    sketch = Sketch(tracks, centre - radius - 40.0, -190.0, max(reach, 500.0) + 60.0, 2.0 * radius + 130.0)
-    if radius:
-        sketch.circle((centre, radius), radius, "body")
-        sketch.joint((centre, radius))
-        wound = [(centre - radius * np.sin(a), radius + radius * np.cos(a)) for a in np.linspace(0.0, pi, 25)]
-        sketch.line(*wound, role="link belt")
-    for y in (-28.0, 28.0):
-        sketch.line((centre + 1.1 * radius, y), (0.0, y), role="rail")
-    for x in np.arange(0.0, max(reach, 500.0), 500.0):
-        sketch.line((x, -60.0), (x, -90.0))
-        sketch.label(x, -90.0, f"{x:g}", shift=(0.0, 14.0))
-    sketch.line((0.0, -60.0), (max(reach, 500.0), -60.0))
+    reach = reached(tracks, belt)
+    radius = wheel_radius(tracks, belt)
+    left = wheel_centre(belt, radius) - radius - 40.0
+    sketch = Sketch(tracks, left, -190.0, max(reach, 500.0) + 60.0, 2.0 * radius + 130.0)
+    side(sketch, belt, radius)
+    axis(sketch, max(reach, 500.0), 500.0)
     sketch.line((reach, -60.0), (reach, 90.0), role="path")
     sketch.label(reach, 90.0, "innermost", "end", (0.0, -5.0))
-    sketch.label(-0.5 * back, 28.0, "guide", shift=(0.0, -8.0))
-    _belt(sketch, belt, centre, 32.0)
+    sketch.label(-0.5 * (belt.idle + belt.head), 28.0, "guide", shift=(0.0, -8.0))
     return sketch.figure(
         f"width-{belt.name}", title("Across the loom", belt.name, "belt"),
         f"The rapier head on its way from the guide across the loom's width, up to {reach:.0f} mm into the"
@@ -153,6 +137,45 @@ def width(tracks: Tracks, belt: Belt) -> Figure:
         [Value("head into the shed", belt.tip, "mm"), Value("travel", belt.travel, "mm")],
         "The axis counts mm from the end of the guide. Heights of head and guide are schematic.",
     )  # fmt: skip
+
+
+def reached(tracks: Tracks, belt: Belt) -> float:
+    """How far the head gets into the shed [mm]."""
+    return float(tracks.values(["highest", mm(f"{belt.name}.free_length")])) + belt.head
+
+
+def wheel_radius(tracks: Tracks, belt: Belt) -> float:
+    """Radius of the wheel on which a belt is wound [mm]; 0 if the trace has none."""
+    trace, source = tracks.trace, tracks.trace.wires.get(f"{belt.name}.travel", "").partition(".")[0]
+    known = sorted(instances(trace, "WeftInsertion"), key=lambda name: name != source)
+    wheels = [f"{each}.wheel_diameter" for each in (*known, *instances(trace, "BeltWrap"))]
+    return 500.0 * tracks.parameter(wheels[0]) if wheels else 0.0
+
+
+def wheel_centre(belt: Belt, radius: float) -> float:
+    """Place of the wheel before the end of the guide [mm]."""
+    return -belt.idle - belt.head - 1.3 * radius
+
+
+def axis(sketch: Sketch, end: float, step: float) -> None:
+    """The axis that counts from the end of the guide."""
+    for x in np.arange(0.0, end, step):
+        sketch.line((x, -60.0), (x, -90.0))
+        sketch.label(x, -90.0, f"{x:g}", shift=(0.0, 14.0))
+    sketch.line((0.0, -60.0), (end, -60.0))
+
+
+def side(sketch: Sketch, belt: Belt, radius: float) -> None:
+    """A belt from its wheel through its guide to its head."""
+    centre = wheel_centre(belt, radius)
+    if radius:
+        sketch.circle((centre, radius), radius, "body")
+        sketch.joint((centre, radius))
+        wound = [(centre - radius * np.sin(a), radius + radius * np.cos(a)) for a in np.linspace(0.0, pi, 25)]
+        sketch.line(*wound, role="link belt")
+    for y in (-28.0, 28.0):
+        sketch.line((centre + 1.1 * radius, y), (0.0, y), role="rail")
+    _belt(sketch, belt, centre, 32.0)
 
 
 def between(tracks: Tracks, belt: Belt) -> Figure:

@@ -4,8 +4,9 @@ from math import degrees, floor, radians
 
 from ..section import COARSEST, TURN, Section, Subject
 from ..templates import template
-from .belt import MOVING, between, shapes, tracked, width
+from .belt import MOVING, between, shapes, tracked
 from .drive import drive
+from .rapiers import across
 from .recorded import instances
 from .reed import beat_up
 from .shed import frames, shed
@@ -63,7 +64,7 @@ def _figures(tracks: Tracks) -> list[Figure]:
     )
     drives = [drive(tracks, name) for name in weft]
     found = [tracked(tracks, name) for name in belts]
-    ways = [figure for belt in found for figure in (width(tracks, belt), between(tracks, belt))]
+    ways = [*across(tracks, found), *(between(tracks, belt) for belt in found)]
     moving = instances(tracks.trace, MOVING, *DRAWN[MOVING])
     ways += [between(tracks, tracked(tracks, name)) for name in moving]
     warp = [shed(tracks, found[0].tip if found else ""), frames(tracks)]

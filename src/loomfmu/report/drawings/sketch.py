@@ -108,6 +108,13 @@ class Sketch:
         )
 
     @contextmanager
+    def mirrored(self, x: float) -> Iterator[None]:
+        """Parts whose x counts to the left, from a place."""
+        self.parts.append(f'<g transform="translate({x:.6g} 0) scale(-1 1)">')
+        yield
+        self.parts.append("</g>")
+
+    @contextmanager
     def group(
         self, shift: Point | None = None, turn: tuple[str, float, float] | None = None, shown: str = ""
     ) -> Iterator[None]:

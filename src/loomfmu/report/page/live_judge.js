@@ -171,6 +171,25 @@
       if (foremost.coarse) return unknown(COARSE);
       return { worst: last(run.signal(`${claim.reed}.front_limit`)) - foremost.value, bound: claim.clearance, time: foremost.time };
     },
+    transfer_in_time: (run, claim) => {
+      const within = timesWithin(run, claim.window), overlap = motion(run, `${claim.transfer}.overlap`);
+      const edges = new Set(within.filter(({ start, end }) => start === end).map(each => each.start));
+      const found = within.filter(({ start, end }) => start < end && edges.has(start) && edges.has(end))
+        .map(each => overlap.lowest(-1, [each]));
+      if (!found.length) return unknown("the run never passes through the whole window");
+      if (found.some(each => each.coarse)) return unknown(COARSE);
+      const worst = Math.min(...found.map(each => each.value));
+      const time = Math.min(...found.filter(each => each.value <= worst + 1e-11).map(each => each.time));
+      return { worst, bound: run.parameter(`${claim.transfer}.needed_overlap`), time };
+    },
+    transfer_speed: (run, claim) => {
+      const needed = run.parameter(`${claim.transfer}.needed_overlap`);
+      const during = motion(run, `${claim.transfer}.overlap`).beyond(needed, 1);
+      if (!during.length) return unknown("the heads never overlap by what the hooks need in this run");
+      const [low, high] = [1, -1].map(sign => motion(run, `${claim.transfer}.closing_velocity`).lowest(sign, during));
+      const found = Math.abs(high.value) > Math.abs(low.value) ? high : low;
+      return low.coarse || high.coarse ? unknown(COARSE) : { worst: Math.abs(found.value), bound: claim.at_most, time: found.time };
+    },
     locks_in_time: (run, claim) => {
       if (claim.signal !== "shaft.velocity") return unknown(`the lock does not follow shaft.velocity; ${NOT_HERE}`);
       const limit = last(run.signal(`${claim.lock}.speed_limit`)), inTime = run.signal(`${claim.lock}.in_time`);

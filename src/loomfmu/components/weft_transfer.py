@@ -1,0 +1,102 @@
+"""WeftTransfer: where the heads of both rapiers meet, and how fast they pass each other."""
+
+from dataclasses import dataclass
+from math import inf
+from typing import ClassVar
+
+from ..physics.shaft import carried
+from ..variables import (
+    NOTHING,
+    Component,
+    Terminal,
+    at_step_end,
+    indicator,
+    input_,
+    output,
+    parameter,
+)
+from .terminals import GIVER, TAKER
+
+
+@dataclass(slots=True)
+class WeftTransfer(Component):
+    """Weft transfer: overlap of the giver's and the taker's head in mid-shed, closing velocity, hand-over."""
+
+    keeps: ClassVar[str] = NOTHING
+    longest_turn: ClassVar[float] = inf
+    terminals: ClassVar[tuple[Terminal, ...]] = (
+        GIVER.of("giver_travel", "giver_velocity", "giver_acceleration"),
+        TAKER.of("taker_travel", "taker_velocity", "taker_acceleration"),
+    )
+
+    separation: float = parameter(
+        "m", 4.086, "Distance between the tips of the heads at their outer dead centres (identified)",
+        minimum=0.0, maximum=100.0,
+    )  # fmt: skip
+    needed_overlap: float = parameter(
+        "m", 0.04, "Overlap that the hooks need to hand the weft over (assumed: none is published)",
+        display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
+    )  # fmt: skip
+    inputs_at_step_end: bool = at_step_end()
+    giver_travel: float = input_(
+        "m", 2.0953, "Travel of the head that brings the weft", rate="giver_velocity",
+        minimum=-1e5, maximum=1e5, source="weft.travel",
+    )  # fmt: skip
+    giver_velocity: float = input_(
+        "m/s", 0.0, "Velocity of the head that brings the weft", nominal=10.0, rate="giver_acceleration",
+        minimum=-1e9, maximum=1e9, source="weft.velocity",
+    )  # fmt: skip
+    giver_acceleration: float = input_(
+        "m/s2", 0.0, "Acceleration of the head that brings the weft", nominal=1000.0,
+        minimum=-1e15, maximum=1e15, source="weft.acceleration",
+    )  # fmt: skip
+    taker_travel: float = input_(
+        "m", 2.0953, "Travel of the head that takes the weft", rate="taker_velocity",
+        minimum=-1e5, maximum=1e5, source="weft_2.travel",
+    )  # fmt: skip
+    taker_velocity: float = input_(
+        "m/s", 0.0, "Velocity of the head that takes the weft", nominal=10.0, rate="taker_acceleration",
+        minimum=-1e9, maximum=1e9, source="weft_2.velocity",
+    )  # fmt: skip
+    taker_acceleration: float = input_(
+        "m/s2", 0.0, "Acceleration of the head that takes the weft", nominal=1000.0,
+        minimum=-1e15, maximum=1e15, source="weft_2.acceleration",
+    )  # fmt: skip
+    overlap: float = output(
+        "m", "How far the heads have passed each other; negative while they are apart", display="mm",
+        rate="closing_velocity",
+    )  # fmt: skip
+    closing_velocity: float = output(
+        "m/s", "Velocity of the heads relative to each other, positive while they approach", nominal=10.0,
+        rate="closing_acceleration",
+    )  # fmt: skip
+    closing_acceleration: float = output(
+        "m/s2", "Acceleration of the heads relative to each other", nominal=1000.0
+    )
+    offset: float = output(
+        "m", "Middle between the tips of the heads, from mid-shed towards the taker's side", display="mm",
+        rate="offset_velocity",
+    )  # fmt: skip
+    offset_velocity: float = output("m/s", "Rate of offset")
+    engaged: bool = output("1", "The overlap is at least needed_overlap", start=False, variability="discrete")
+    engaged_event: float = indicator("m", "Passes zero where the hand-over begins or ends")
+
+    def initialize(self, time: float) -> int:
+        """Place the heads."""
+        return self.step(time, 0.0)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Follow both heads: a function of their motion alone."""
+        lead = 0.0 if self.inputs_at_step_end else step_size
+        giver = carried(self.giver_travel, self.giver_velocity, self.giver_acceleration, lead)
+        taker = carried(self.taker_travel, self.taker_velocity, self.taker_acceleration, lead)
+        giver_velocity = self.giver_velocity + self.giver_acceleration * lead
+        taker_velocity = self.taker_velocity + self.taker_acceleration * lead
+        self.overlap = giver + taker - self.separation
+        self.closing_velocity = giver_velocity + taker_velocity
+        self.closing_acceleration = self.giver_acceleration + self.taker_acceleration
+        self.offset = 0.5 * (giver - taker)
+        self.offset_velocity = 0.5 * (giver_velocity - taker_velocity)
+        self.engaged_event = self.overlap - self.needed_overlap
+        self.engaged = self.overlap >= self.needed_overlap
+        return 0
