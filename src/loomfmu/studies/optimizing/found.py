@@ -97,7 +97,7 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     """A best design, written as a scene and judged as that scene runs."""
     study = runs.study
     rewritten.write(study.scene, study.written(design.values), path, overwrite=True)
-    verdicts = evaluate(path, flavour=study.flavour, errors="none").claims
+    verdicts = evaluate(path, flavour=study.flavour).claims  # with their errors, as any run of it has them
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
     return Best(values, tuple(goals), verdicts, tuple(binding(runs, design, names)), path)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ... import notebook, units
 from ...cosim.claims.claims import called
+from ...errors import listed
 from ...sweeps.varied import Value
 from ...traces import Verdict
 from .study import Goal, Study
@@ -170,5 +171,23 @@ def conclusion(found: Optimum) -> Iterator[str]:
         yield f"It is limited by {names}." if names else "No claim and no end of a range limits it."
     else:
         yield f"{len(found.front)} designs of which none is better than another in all goals."
+    if undecided := _undecided(found):
+        names = listed([f"'{name}'" for name in undecided])
+        share = 2.0 * max(undecided.values())  # the error may be another one there
+        yield (
+            f"Nearer to the bound than the numerical error, so undecided: {names};"
+            f' safety = "{100.0 * share:.1g} %" in the study keeps off it.'
+        )
     if found.failed:
         yield f"{found.failed} of {found.runs} designs could not be run."
+
+
+def _undecided(found: Optimum) -> dict[str, float]:
+    """The claims that are undecided in a best design, with their largest errors as shares of the bound."""
+    errors: dict[str, float] = {}
+    for best in found.front:
+        for claim, each in zip(found.study.scene.claims, best.verdicts, strict=True):
+            if not each.decided:
+                name, share = called(claim, each), each.error / abs(each.bound or each.worst or 1.0)
+                errors[name] = max(share, errors.get(name, 0.0))
+    return errors
