@@ -588,5 +588,5 @@ def test_a_row_within_its_error_of_a_bound_is_undecided(
     assert far["claim_2.error"] is None and far["claim_2.decided"] is True  # too far away to matter
     report.show(found)
     printed = capsys.readouterr().out
-    assert "3 combinations: 1 hold, 1 fail, 1 are undecided, 0 could not be run" in printed
+    assert "3 combinations: 1 hold, 1 fail, 1 undecided and 0 could not be run" in printed
     assert "undecided  row 1" in printed

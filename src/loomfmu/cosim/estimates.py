@@ -24,7 +24,6 @@ from .scenes.graph import step_order
 from .scenes.scene import ITERATED, Scene
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
-NEAR = 0.1  # of the bound: numbers further away from it are not estimated where only near ones are
 
 
 class Method(NamedTuple):
@@ -32,22 +31,25 @@ class Method(NamedTuple):
 
     The error is no more than `halved` times what half of the steps change, nor than `quartered` times what a
     quarter of them changes further: the second one counts where the first is small by chance. `floor` is a
-    share of the value, below which rounding, and what iterations leave, hide the order.
+    share of the value, below which rounding, and what iterations leave, hide the order. Numbers farther from
+    their bound than the share `near` of it are not estimated where only near ones are: it is far above what
+    errors are with a few dozen steps in a revolution.
     """
 
     halved: float
     quartered: float
     floor: float
+    near: float
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
 # and two where they are not: differences are 3 times the error or more.
-PRESENT = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-12)
+PRESENT = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-12, near=0.01)
 # An extreme that a component holds is found beyond what it takes for noise of its samples.
-HELD = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-9)
+HELD = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-9, near=0.01)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack, and to one where a
 # loop carries values of the step before.
-MEMORY = Method(halved=2.0, quartered=1.0 / 4.0, floor=1e-9)
+MEMORY = Method(halved=2.0, quartered=1.0 / 4.0, floor=1e-9, near=0.1)
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,14 @@ class Estimates:
             return Coarser(wanted, why="its steps cannot be halved")
         return Coarser(wanted, values[0], values[1] if len(values) > 1 else (math.nan,) * len(self.claims))
 
+    def near(self, verdicts: Sequence[Verdict]) -> set[int]:
+        """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
+        return {
+            number
+            for number, (verdict, method) in enumerate(zip(verdicts, self._methods, strict=True))
+            if not verdict.bound or abs(verdict.relative_distance) <= method.near
+        }
+
     def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
         """The worst value of each claim on a run, NaN for those that are not wanted."""
         return tuple(
@@ -132,15 +142,6 @@ class Estimates:
                 coarser.half[number], coarser.quarter[number],
             )  # fmt: skip
         return tuple(found)
-
-
-def near(verdicts: Sequence[Verdict]) -> set[int]:
-    """The verdicts, counted from 0, whose numbers are so near to their bounds that an error may matter."""
-    return {
-        number
-        for number, verdict in enumerate(verdicts)
-        if not verdict.bound or abs(verdict.relative_distance) <= NEAR
-    }
 
 
 def _estimated(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..traces import Signals, Verdict
 from . import accuracy
-from .estimates import Coarser, Estimates, near
+from .estimates import Coarser, Estimates
 from .importing import pool
 from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
@@ -86,7 +86,8 @@ class Pattern:
         found = self._in_memory(scene, self.judged, grid)
         verdicts = self._judged(found.recording)
         if errors != "none":
-            coarser = known or self._estimates.coarser(scene, grid, _wanted(verdicts, errors))
+            wanted = self._estimates.near(verdicts) if errors == "near" else range(len(verdicts))
+            coarser = known or self._estimates.coarser(scene, grid, wanted)
             verdicts = self._estimates.of(found.recording, verdicts, coarser)
         return Evaluation(
             scene, verdicts, (*scene.notes, *found.warnings), explained(found.plan), found.steps,
@@ -150,11 +151,6 @@ class Pattern:
         )  # fmt: skip
 
 
-def _wanted(verdicts: Sequence[Verdict], errors: Errors) -> Collection[int]:
-    """The verdicts, counted from 0, whose errors are to be estimated."""
-    return near(verdicts) if errors == "near" else range(len(verdicts))
-
-
 class Prepared:
     """A scene that was prepared by `loomfmu.prepare`, to be run with as many values as are wanted.
 
@@ -186,7 +182,8 @@ class Prepared:
         """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`.
 
         Estimating errors takes two more runs, on half and on a quarter of the steps: "near" estimates only
-        those of verdicts within 10 % of their bounds, and "none", for searches, does without.
+        those of verdicts within 1 % of their bounds, or 10 % where a mechanism has a memory; "none", for
+        searches, does without.
         """
         if errors not in get_args(Errors):
             raise LoomfmuError(

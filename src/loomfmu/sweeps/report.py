@@ -21,7 +21,7 @@ def show(sweep: Sweep) -> None:
     before = sweep.rows - sweep.ran
     again = f" ({before} run before)" if before else ""
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail"]
-    counts += [f"{sweep.undecided} are undecided"] * bool(sweep.undecided)
+    counts += [f"{sweep.undecided} undecided"] * bool(sweep.undecided)
     counts.append(f"{sweep.errors} could not be run")
     say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {listed(counts)}")
     if sweep.sensitivity is None:
