@@ -146,6 +146,11 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(written: Path, opened
 
     turned(page, 646.0)
     assert words()[:2] == ["holds", "holds"]
+    turned(page, 646.8164)  # within the numerical error of the margin's bound, where a run is undecided
+    assert page.inner_text("#claims tbody td:first-child").strip() == "not judged"
+    assert "nearer to its bound, 0.1, than the page can tell" in page.inner_text(
+        "#claims tbody tr:first-child"
+    )
     turned(page, 648.0)  # the margin's bound of 0.1 is passed at 646.8 rev/min
     assert words()[:2] == ["FAILS", "holds"]
     turned(page, 681.0)

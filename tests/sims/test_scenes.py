@@ -32,7 +32,7 @@ def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
 def test_the_readme_shows_what_the_demonstration_prints(tmp_path: Path) -> None:
     printed = run("wl680_3600.toml", tmp_path).stdout.splitlines()
     readme = (SIMS.parent / "README.md").read_text()
-    lines = readme.split("ends like this:\n\n```text\n")[1].split("\n```")[0].splitlines()
+    lines = readme.split("about 20 s; a wheel brings them.\n\n```text\n")[1].split("\n```")[0].splitlines()
     assert len(lines) > 4
     pace = "us each; "  # differs from run to run
     assert [line for line in lines if line not in printed and pace not in line] == ["..."]

@@ -136,10 +136,10 @@ def test_ctrl_c_in_a_row_is_no_result_of_that_row(
 
     evaluate = loomfmu.Prepared.evaluate
 
-    def interrupted(*arguments: Any) -> Any:
+    def interrupted(*arguments: Any, **keywords: Any) -> Any:
         if next(calls) == 30:
             raise how
-        return evaluate(*arguments)
+        return evaluate(*arguments, **keywords)
 
     with monkeypatch.context() as patched:
         patched.setattr("loomfmu.cosim.prepared.Prepared.evaluate", interrupted)

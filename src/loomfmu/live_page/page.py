@@ -3,6 +3,7 @@
 Beside them it holds a run of the scene, which can be read and printed before anything is varied.
 """
 
+import math
 import tempfile
 from base64 import b64encode
 from collections.abc import Callable, Sequence
@@ -120,7 +121,8 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """What the script judges: the kind and the arguments of each claim, and how its values are shown.
 
     `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
-    the page holds, without its numerical error: the script leaves out a claim that it would judge otherwise.
+    the page holds, whether its bound is met exactly, and its numerical error: the script leaves out a claim
+    that it would judge otherwise, or that is too near to its bound for that error.
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
@@ -138,6 +140,11 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
             "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
             "lifts": {frame: lift_of(frame, lifted_by, trace) for frame in frames},
             "shown": {"factor": verdict.displayed(1.0), "unit": unit},
-            "native": {"holds": verdict.holds or verdict.distance >= 0.0, "worst": verdict.worst},
+            "native": {
+                "holds": verdict.holds or verdict.distance >= 0.0,
+                "worst": verdict.worst,
+                "error": verdict.error if math.isfinite(verdict.error) else 0.0,
+                "met": verdict.decided and verdict.distance == 0.0,
+            },
         })  # fmt: skip
     return found

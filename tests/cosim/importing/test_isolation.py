@@ -1,6 +1,7 @@
 """FMUs that misbehave, in processes of their own: one line for each, and nothing else comes to harm."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -304,7 +305,11 @@ def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
         ]  # fmt: skip
         assert [each.returncode for each in done] == [status] * 2, done[1].stderr
         printed = [[line for line in each.stdout.splitlines() if "us each" not in line] for each in done]
-        assert printed[0] == printed[1] and done[0].stderr == done[1].stderr == ""
+        words = [" ".join(" ".join(lines).split()) for lines in printed]
+        # errors take further runs, which an FMU in this process could spoil
+        note = r" \(numerical error not estimated: motor runs in this process; set isolated = true\)"
+        assert re.sub(", error [^,]*", "", words[0]) == re.sub(note, "", words[1]) != words[1]
+        assert done[0].stderr == done[1].stderr == ""
 
 
 def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:

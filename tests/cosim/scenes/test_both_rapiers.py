@@ -73,7 +73,8 @@ def test_each_belt_has_its_own_motion() -> None:
 def test_heads_differ_between_the_rapiers_without_a_warning_but_not_within_one() -> None:
     (note,) = parsed(belt_2__head="GS900 right").notes
     assert note == (
-        "the loom mixes heads: weft_2 has G6300 right, belt_2 has GS900 right; head = NAME sets all of them"
+        "the loom mixes heads: weft_2 has G6300 right and belt_2 has GS900 right;"
+        " head = NAME sets all of them"
     )
     (note,) = parsed(weft_2__machine="WL450-3600").notes
     assert note.startswith("the loom mixes machines: weft has WL680-3600, belt has WL680-3600, weft_2 has")

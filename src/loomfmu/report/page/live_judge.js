@@ -6,6 +6,8 @@
   const last = values => values[values.length - 1], NOT_HERE = "loomfmu run judges it";
   const COARSE = "the samples are too far apart to be sure", FARTHEST = TURN / 20 * (1 + 1e-11);
 
+  const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
+
   // ---- what claims have in common
 
   let kept = new Map(), checked = false;
@@ -14,6 +16,8 @@
     return kept.get(name);
   };
   const unknown = note => ({ holds: null, note });
+  const short = value => String(Number(value.toPrecision(7)));
+  const shownIn = ({ shown: { factor, unit } }, value) => `${short(value * factor)}${unit && ` ${unit}`}`;
 
   /* All times at which the shaft stands at an angle of its revolution. */
   function timesAt(run, wanted) {
@@ -210,7 +214,14 @@
     const found = judge(run, claim);
     if (found.holds === null) return found;
     if (!Number.isFinite(found.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
+    if (tooNear(claim, found)) return unknown(`it is nearer to its bound, ${shownIn(claim, found.bound)}, than the page can tell; ${NOT_HERE}`);
     return { ...found, holds: claim.sense * found.worst >= claim.sense * found.bound };
+  }
+
+  /* Whether the numerical error may decide a verdict: the page knows it at the scene's own values only. */
+  function tooNear({ kind, native }, { worst, bound }) {
+    const distance = Math.abs(worst - bound), met = native.met || kind === "stop_contacts";
+    return !(met && distance === 0) && distance <= Math.max(FAR_ABOVE * native.error, NEAR * Math.abs(bound));
   }
 
   /* A claim that is judged otherwise than loomfmu did at the scene's own values is left out from then on. */
@@ -220,8 +231,6 @@
   }
 
   // ---- the table
-
-  const short = value => String(Number(value.toPrecision(7)));
 
   function place(run, time) {
     if (!Number.isFinite(time)) return null;
@@ -234,7 +243,7 @@
 
   function show(row, claim, verdict) {
     const [word, name, worst, bound, distance, where] = row.cells;
-    const { factor, unit } = claim.shown, shown = value => `${short(value * factor)}${unit && ` ${unit}`}`;
+    const shown = value => shownIn(claim, value);
     const known = verdict.holds !== null;
     word.className = known ? (verdict.holds ? "holds" : "fails") : "";
     word.replaceChildren();
