@@ -275,7 +275,13 @@ def sampled(lowest: float, h: float, a: float, b: float, end: float, c: float) -
 # ---- FMUs of it
 
 
-@pytest.mark.parametrize("options", [[], ["--native"], ["--native", "--fmi", "3"]])
+SLOW = pytest.mark.slow  # the first build for all platforms takes a minute
+
+
+@pytest.mark.parametrize(
+    "options",
+    [[], pytest.param(["--native"], marks=SLOW), pytest.param(["--native", "--fmi", "3"], marks=SLOW)],
+)
 def test_its_fmus_stand_alone(cam: Path, options: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(cam)
     (cam / "icon.png").write_bytes(b"a picture")

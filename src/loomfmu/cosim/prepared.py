@@ -121,7 +121,7 @@ class Pattern:
         target = target_of(plan, path, overwrite, progress)
         everything = range(len(self.claims))
         coarser = known
-        if not all(instance.fmu.ours for instance in scene.instances.values()):
+        if any(instance.fmu.component is None for instance in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
             coarser = known or self._estimates.coarser(scene, plan.grid, everything)
         with stepping.stepped(plan) as master:

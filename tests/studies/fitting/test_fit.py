@@ -105,6 +105,7 @@ def test_several_signals_are_weighed_by_their_own_noise(tmp_path: Path) -> None:
     assert idle.low < 0.0 < idle.high < 1e-3
 
 
+@pytest.mark.slow
 def test_intervals_cover_with_two_signals_of_different_size(tmp_path: Path) -> None:
     """The smaller signal has 12 values, two of whose degrees of freedom the parameters may take."""
     random = np.random.default_rng(11)
