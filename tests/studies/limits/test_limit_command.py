@@ -95,6 +95,15 @@ def test_a_scene_that_fails_at_its_own_value_says_so(capsys: pytest.CaptureFixtu
     assert "At the scene's own value, 650 rev/min, 'the belt keeps a margin of 10 %' fails." in out
 
 
+def test_a_claim_on_its_bound_at_the_own_value_is_undecided(capsys: pytest.CaptureFixture[str]) -> None:
+    # within the 2e-6 by which 90 steps are off
+    assert main([*SPEED, "--set", "shaft.speed=646.8157rpm", "--set", "steps_per_revolution=90"]) == 0
+    out = capsys.readouterr().out
+    assert (
+        "At the scene's own value, 646.8157 rev/min, 'the belt keeps a margin of 10 %' is undecided." in out
+    )
+
+
 def test_limits_are_written_as_a_table(capsys: pytest.CaptureFixture[str]) -> None:
     for _again in range(2):  # over a table of its own
         assert main([*SPEED, "--output", "limits.csv"]) == 0

@@ -110,3 +110,10 @@ def test_a_table_that_is_none_is_refused(table: str, tmp_path: Path) -> None:
     scene.write_text(f"{text}\n{table}\n" if table.startswith("[") else f"{table}\n{text}")
     with pytest.raises(LoomfmuError, match=r'such as .*\["0.2 mm", "0.5 mm"\]'):
         prepare(scene)
+
+
+def test_the_scene_may_be_its_own_worst_case() -> None:
+    found = tolerances(DEMO, vary="shaft.speed=300rpm..600rpm", set=FAST)
+    where = {claim: place for _word, claim, _own, _worst, place, _cost in worst_cases.rows(found)}
+    assert where[MARGIN] == "worst at the scene's own value"
+    assert where["the frames dwell long enough"] == "the same everywhere"

@@ -179,10 +179,13 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
         yield 'Where a claim "jumps", it counts something, or has no value on one side.'
-    failing = [each.claim for each in found.claims if not each.verdict]
-    if failing:
-        own, they = span.show(span.value), f"{_names(failing)} fail{'s' * (len(failing) == 1)}"
-        yield f"At the scene's own value, {own}, {they}."
+    own = [
+        f"{_names(names)} {one if len(names) == 1 else several}"
+        for decided, one, several in ((True, "fails", "fail"), (False, "is undecided", "are undecided"))
+        if (names := [e.claim for e in found.claims if not e.verdict and e.verdict.decided == decided])
+    ]
+    if own:
+        yield f"At the scene's own value, {span.show(span.value)}, {' and '.join(own)}."
     if not span.low <= span.value <= span.high:
         yield f"The scene's own value, {span.show(span.value)}, is outside the range that was searched."
 

@@ -41,7 +41,7 @@ class WorstCase:
     """The worst that was found of a claim: its verdict there, and the values (SI) by their keys.
 
     `own` is the verdict with the scene's values; `costs` are the tolerances that cost something, the most
-    expensive first.
+    expensive first. `depends` is false if the distance is the same everywhere.
     """
 
     claim: str
@@ -49,6 +49,7 @@ class WorstCase:
     worst: Verdict
     place: dict[str, float]
     costs: tuple[Cost, ...]
+    depends: bool
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,9 +88,11 @@ def rows(found: Tolerances) -> list[tuple[str, ...]]:
 
 def _where(each: WorstCase, found: Tolerances) -> str:
     """The values that make it the worst case."""
+    if not each.depends:
+        return "the same everywhere"
     matter = {cost.key for cost in each.costs}
     places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
-    return ", ".join(places) or "the same everywhere"
+    return ", ".join(places) or f"worst at the scene's own value{'s' * (len(found.spans) > 1)}"
 
 
 def _costs(each: WorstCase) -> str:
@@ -211,7 +214,8 @@ class _Box:
             return -math.inf if math.isnan(found) else found  # it fails without one
 
         ranked = sorted(points, key=distance)
-        alike = distance(ranked[-1]) - distance(ranked[0]) <= SAME * abs(self._at(points[0])[number].bound)
+        least, most = distance(ranked[0]), distance(ranked[-1])
+        alike = least == most or most - least <= SAME * abs(self._at(points[0])[number].bound)
         worst = points[0] if alike else _descended(distance, ranked[0])
         own, verdict = (self._runs.estimated(*self._values(place))[number] for place in (points[0], worst))
         costs = []
@@ -221,7 +225,8 @@ class _Box:
                 costs.append(Cost(span.key, given_back))
         name = called(self._loom.scene.claims[number], own)
         values = {span.key: span.at(share) for span, share in zip(self._spans, worst, strict=True)}
-        return WorstCase(name, own, verdict, values, tuple(sorted(costs, key=lambda each: -each.distance)))
+        costs.sort(key=lambda each: -each.distance)
+        return WorstCase(name, own, verdict, values, tuple(costs), not alike)
 
     def _at(self, point: Shares) -> tuple[Verdict, ...]:
         """The verdicts at a place. Raises LoomfmuError that names it."""
