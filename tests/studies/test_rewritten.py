@@ -40,3 +40,13 @@ def test_what_does_not_work_in_another_folder_is_refused(tmp_path: Path) -> None
     with pytest.raises(LoomfmuError, match="is an input of this command"):
         scene = scenes.load(SIMS / "wl680_3600.toml")
         rewritten.write(scene, {}, SIMS / "wl680_3600.toml")
+
+
+def test_an_accuracy_replaces_steps_and_numbers_of_the_command_line_are_numbers(tmp_path: Path) -> None:
+    path = rewritten.write(
+        scenes.load(SIMS / "wl680_3600.toml", {"accuracy": "1e-3"}), {}, tmp_path / "accurate.toml"
+    )
+    again = scenes.load(path)
+    assert again.accuracy == 1e-3 and "steps_per_revolution" not in path.read_text()
+    back = rewritten.write(scenes.load(path, {"steps_per_revolution": "90"}), {}, tmp_path / "steps.toml")
+    assert "\nsteps_per_revolution = 90\n" in back.read_text() and scenes.load(back).accuracy is None

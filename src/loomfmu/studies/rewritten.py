@@ -1,6 +1,7 @@
 """The text of a scene with other values in it: comments and order stay."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +88,8 @@ def rewritten(scene: Scene, values: Mapping[str, Any]) -> str:
     """The scene's text with values as `--set` takes them."""
     tomlkit = _tomlkit()
     document = tomlkit.parse(scene.text)
+    for key in scenes.replaced(values):
+        document.pop(key, None)
     for key, value in values.items():
         for table, variable, written in _places(scene, key, value):
             owner = document.setdefault(table, tomlkit.table()) if table else document
@@ -101,12 +104,20 @@ def _places(scene: Scene, key: str, value: Any) -> list[tuple[str, str, Any]]:
         return [("loom", variable, value)]
     found = overridden(scene.instances, key, components(scene.instances))
     if not isinstance(value, units.Si):  # as somebody wrote it
-        return [(name, each, value) for name, each in found]
+        return [(name, each, value if name else _number(value)) for name, each in found]
     ports = [scene.instances[name].fmu.port(each, name) for name, each in found]
     return [
         (name, each, quantity(float(value), port.unit, port.display))
         for (name, each), port in zip(found, ports, strict=True)
     ]
+
+
+def _number(given: Any) -> Any:
+    """A number for a text such as "90" of a command line; what is not one stays as it is."""
+    for kind in (int, float) if isinstance(given, str) else ():
+        with suppress(ValueError):
+            return kind(given)
+    return given
 
 
 def _tomlkit() -> Any:

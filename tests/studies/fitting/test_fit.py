@@ -200,3 +200,13 @@ def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFix
     assert "is an input of this command" in capsys.readouterr().err
     assert main([*words, "--output", str(tmp_path / "fitted.txt")]) == 2
     assert "a scene is written as .toml" in capsys.readouterr().err
+
+
+def test_an_accuracy_is_refused(tmp_path: Path) -> None:
+    data = tmp_path / "data.csv"
+    data.write_text("shaft_angle [deg],damper_1.spring_force [N]\n10,1\n20,2\n30,3\n")
+    scene = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
+    with pytest.raises(
+        LoomfmuError, match=r"accuracy = 0\.001 chooses steps by .*; set steps_per_revolution"
+    ):
+        fit(scene, data, vary="damper_1.stiffness=500N/m..2kN/m", set={"accuracy": 1e-3})

@@ -127,9 +127,8 @@ def parse(
     rest = override_weave(tables, overrides or {})
     texts = standard_loom.resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
-    if ACCURACY in rest or any(key in rest for key in CHOSEN):  # the one that is set replaces the other
-        for key in CHOSEN if ACCURACY in rest else (ACCURACY,):
-            tables.pop(key, None)
+    for key in replaced(rest):
+        tables.pop(key, None)
     for key, value in rest.items():
         override(tables, given, key, value, Path(directory))
     instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
@@ -205,6 +204,13 @@ def assemble(
     _check_tolerances(scene)
     check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
     return scene
+
+
+def replaced(keys: Collection[str]) -> tuple[str, ...]:
+    """The keys of a scene that give way to these: an accuracy replaces steps, and steps an accuracy."""
+    if ACCURACY in keys:
+        return CHOSEN
+    return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
 
 
 def _accuracy(tables: dict[str, Any], times: Times) -> float | None:

@@ -133,6 +133,11 @@ def fit(
     if not keys:
         raise LoomfmuError("name at least one parameter to fit, such as damper_1.stiffness")
     loaded = replace(checked(scene, set, "native"), claims=[])
+    if loaded.accuracy is not None:
+        raise LoomfmuError(
+            f"{loaded.name}: accuracy = {loaded.accuracy:g} chooses steps by the errors of claims, and a fit"
+            " judges none; set steps_per_revolution instead"
+        )
     found = measured.read(data, loaded, signals)
     spans = [span_of(loaded, key) for key in keys]
     _check(spans, found)
