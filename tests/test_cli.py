@@ -782,6 +782,7 @@ def test_help_says_what_the_command_is_for(capsys: pytest.CaptureFixture[str]) -
         main(["--help"])
     printed = " ".join(capsys.readouterr().out.split())
     assert printed.index("Simulate the mechanisms of a weaving loom") < printed.index("Exit status: 0 all")
+    assert "1 a claim fails or is undecided;" in printed
 
 
 def test_a_trace_that_was_not_judged_is_not_one_that_holds(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,10 @@ ABOUT = (
     "Simulate the mechanisms of a weaving loom as FMUs over the main shaft's angle, and check claims about"
     ' them, such as "the rapier belt does not buckle".'
 )
-STATUSES = "Exit status: 0 all claims hold; 1 a claim fails; 2 bad input or a failed FMU; 130 interrupted."
+STATUSES = (
+    "Exit status: 0 all claims hold; 1 a claim fails or is undecided; 2 bad input or a failed FMU;"
+    " 130 interrupted."
+)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -203,7 +206,8 @@ def _limit(commands: Any) -> None:
 def _tolerances(commands: Any) -> None:
     tolerances = commands.add_parser(
         "tolerances", help="find the worst case of every claim within tolerances",
-        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails; 2 bad input or a failed FMU.",
+        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails or is undecided;"
+        " 2 bad input or a failed FMU.",
     )  # fmt: skip
     _add_scene(tolerances)
     tolerances.add_argument(

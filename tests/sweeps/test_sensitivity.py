@@ -113,7 +113,7 @@ def test_an_output_without_a_value_in_some_rows_says_so(tmp_path: Path) -> None:
     [
         ("method = 'sobel'\nsamples = 8", "sensitivity.method = 'sobel' is unknown; did you mean 'sobol'?"),
         ("samples = 100", "sensitivity.samples = 100 must be a power of 2 for sobol, such as 128"),
-        ("method = 'morris'", "sensitivity.samples = None is not a whole number"),
+        ("method = 'morris'", "sensitivity.samples is missing"),
         ("samples = 8\noutputs = ['claim_7.distance']", "'claim_7.distance' is not a column of results"),
         ("samples = 8\noutputs = []", "is not a list such as"),
         ("samples = 8\nmethods = 'sobol'", "'methods' cannot be set"),

@@ -38,6 +38,8 @@ class Axis:
 
 def whole(given: Any, where: str, low: int, high: int = MOST) -> int:
     """A whole number within bounds. Raises LoomfmuError."""
+    if given is None:
+        raise LoomfmuError(f"{where} is missing; give a whole number")
     if isinstance(given, bool) or not isinstance(given, int):
         raise LoomfmuError(f"{where} = {given!r} is not a whole number")
     if not low <= given <= high:
@@ -74,7 +76,9 @@ def grid_axis(varied: Varied, given: Any, table: str = "grid") -> Axis:
         values = [varied.read(float(value)) for value in space(low, high, count)]
         doubts = _doubts(varied, [given["from"], given["to"]])
         return Axis(varied, np.array(values, TYPES[varied.kind]), logarithmic=logarithmic, doubts=doubts)
-    if not isinstance(given, list) or not given:
+    if given == []:
+        raise LoomfmuError(f"{where} must name at least one value")
+    if not isinstance(given, list):
         raise LoomfmuError(
             f"{where} = {shown(given)} is neither a list of values nor"
             ' { from = "..", to = "..", count = .. }'
