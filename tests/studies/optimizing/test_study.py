@@ -49,6 +49,10 @@ def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
         (f"{GOAL}{SPEED}[choices]\nmachine = ['WL680-3600', 'WL680-3600']",
          "choices.machine: WL680-3600 appears twice"),
         (SPEED, "there is no goal: write maximise ="),
+        (f"maximise = ''\n{SPEED}", "maximise = '' is not a name such as maximise = 'shaft.speed'"),
+        (f"{GOAL}[ranges]\n'heald.stroke' = ['90 mm', '98 mm']",
+         "maximise: shaft.speed is a parameter; put it into [ranges]"),
+        (f"{GOAL}{SPEED}[choices]\nhead = []", "choices.head must name at least one value"),
         (f"maximise = 3\n{SPEED}", "maximise = 3 is not a name"),
         (f"maximise = 'belt.magrin'\n{SPEED}",
          "maximise: belt has no output 'magrin'; did you mean 'margin'?"),
@@ -91,10 +95,14 @@ def test_a_share_of_a_bound_of_0_is_refused(tmp_path: Path, monkeypatch: pytest.
          "ranges.dobby.plateau_angle changes neither a goal nor a claim"),
         ("[choices]\n'dobby.lever_radius' = ['80 mm', '90 mm']",
          "choices.dobby.lever_radius changes neither a goal nor a claim (80 mm | 90 mm); leave it out"),
+        ("[choices]\n'heald.stroke' = ['10 mm', '98 mm']",
+         "choices.heald.stroke: no design with 10 mm can be run (claim 'clear_shed' of heald_1: "),
+        ("[choices]\n'dobby.law' = ['table', 'sloped_sine']",
+         "choices.dobby.law: no design with table can be run (dobby: law = table has no table: "),
         ("[choices]\n'dobby.law' = ['uniform']", "choices.dobby.law has one value; fix it in [set]"),
     ],
 )  # fmt: skip
-def test_what_changes_nothing_is_refused(
+def test_what_changes_nothing_or_cannot_be_run_is_refused(
     text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -25,6 +25,7 @@ from .. import rewritten
 from .binding import binding
 from .optimum import Best, Optimum, front_table
 from .runs import Design, Point, Runs
+from .start import SAME
 from .study import Study
 
 
@@ -79,8 +80,8 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
     warnings = study.notes if picture else (*study.notes, 'no picture: pip install "loomfmu[plot]"')
     found = Optimum(
         study, tuple(front), len(designs), runs.ran, sum(each.allowed for each in designs),
-        sum(bool(each.error) for each in designs), _nowhere(designs, names, own), files.directory,
-        files.picture if picture else None, warnings,
+        sum(bool(each.error) for each in designs), _nowhere(designs, names, own), _constant(study, designs),
+        files.directory, files.picture if picture else None, warnings,
     )  # fmt: skip
     if len(study.goals) > 1:
         headings, rows = front_table(found)
@@ -103,17 +104,31 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     return Best(values, tuple(goals), verdicts, tuple(binding(runs, design, names)), path)
 
 
+def _constant(study: Study, designs: Sequence[Design]) -> tuple[str, ...]:
+    """The goals that are the same in all designs."""
+    heights = np.array([each.heights for each in designs if np.all(np.isfinite(each.heights))])
+    if len(heights) < 2:
+        return ()
+    alike = np.ptp(heights, axis=0) <= SAME * np.max(np.abs(heights), axis=0)
+    return tuple(goal.name for goal, same in zip(study.goals, alike, strict=True) if same)
+
+
 def _nowhere(designs: Sequence[Design], names: Sequence[str], own: Sequence[Verdict]) -> tuple[str, ...]:
-    """The claims that no design meets, with the nearest that any came."""
+    """What no design does: meet a claim or keep its safety distance, with the nearest that any came."""
     found = []
     for number, (name, verdict) in enumerate(zip(names, own, strict=True)):
         if any(each.room[number] >= 0.0 for each in designs):
             continue
         distances = [each.distances[number] for each in designs if np.isfinite(each.distances[number])]
-        near = (
-            f"; the nearest distance from its bound is {verdict.shown(max(distances))}" if distances else ""
-        )
-        found.append(f"'{name}'{near}")
+        nearest = verdict.shown(max(distances, default=0.0))
+        if any(each >= 0.0 for each in distances):
+            text = (
+                f"keeps the safety distance from '{name}'; the largest distance from its bound is {nearest}"
+            )
+        else:
+            near = f"; the nearest distance from its bound is {nearest}" if distances else ""
+            text = f"meets '{name}'{near}"
+        found.append(text)
     return tuple(found)
 
 

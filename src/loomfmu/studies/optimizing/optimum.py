@@ -39,7 +39,8 @@ class Optimum:
 
     `front` has them in the order of the first goal. `runs` counts the designs that were tried, `ran` those
     that were run now and not before, `allowed` those that meet all claims, `failed` those that could not be
-    run; `nowhere` are the claims that no design meets. Values are in SI.
+    run; `nowhere` says which claims no design meets, or from which none keeps the safety distance; `constant`
+    are goals that are the same in all designs. Values are in SI.
     """
 
     study: Study = field(repr=False)
@@ -49,6 +50,7 @@ class Optimum:
     allowed: int
     failed: int
     nowhere: tuple[str, ...]
+    constant: tuple[str, ...]
     path: Path
     picture: Path | None
     warnings: tuple[str, ...] = ()
@@ -159,7 +161,7 @@ def conclusion(found: Optimum) -> Iterator[str]:
     if not found.front:
         yield f"None of the {found.runs} designs that were tried meets all claims."
         for claim in found.nowhere:
-            yield f"No design meets {claim}."
+            yield f"No design {claim}."
     elif len(found.study.goals) == 1:
         (best,) = found.front
         goal = found.study.goals[0]
@@ -168,9 +170,19 @@ def conclusion(found: Optimum) -> Iterator[str]:
         names = " and ".join(
             f"the end of the range of {each}" if each in keys else f"'{each}'" for each in best.binding
         )
-        yield f"It is limited by {names}." if names else "No claim and no end of a range limits it."
+        if names:
+            yield f"It is limited by {names}."
+        elif not found.constant and found.study.continuous:
+            yield "No claim and no end of a range limits it."
     else:
-        yield f"{len(found.front)} designs of which none is better than another in all goals."
+        count = len(found.front)
+        yield (
+            f"{count} designs of which none is better than another in all goals."
+            if count > 1
+            else "One design is best in all goals."
+        )
+    for name in found.constant:
+        yield f"The goal '{name}' is the same in all designs: nothing that varies changes it."
     if undecided := _undecided(found):
         names = listed([f"'{name}'" for name in undecided])
         share = 2.0 * max(undecided.values())  # the error may be another one there

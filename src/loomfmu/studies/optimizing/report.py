@@ -30,7 +30,10 @@ def show(found: Optimum) -> None:
         ]
         printed.show(headings, rows, entries)
     say(*conclusion(found))
-    say("This is a search, not a proof that there is no better design.")
+    if found.study.enumerable:
+        say(f"All {found.study.combinations} combinations were run.")
+    else:
+        say("This is a search, not a proof that there is no better design.")
     if found.front:
         first, last = found.front[0].scene, found.front[-1].scene
         say(f"scene: {first}" if first == last else f"scenes: {first} to {last.name}")

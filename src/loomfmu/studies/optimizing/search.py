@@ -9,17 +9,20 @@ import numpy as np
 from .polished import polished
 from .runs import Design, Floats, Pieces, Point, Runs, about
 from .scattered import first_points, generation, scattered
-from .start import check_effects
+from .start import check_effects, check_options
 from .study import Study
 
 POLISHED = 6  # combinations of options that are searched near their best design
 EXPECTED = 60  # runs of that for each variable, as a progress bar expects them
 BETWEEN = 4  # a design within a front has that part of the runs of one at its ends
+ALIKE = 1e-7  # of a goal: what the search near a design leaves open
 TIE = 1e-4  # weight of the sum of all goals beside the largest: none is worse than it must be
 
 
 def expected(study: Study) -> int:
     """How many designs a search will run, roughly."""
+    if study.enumerable:
+        return study.combinations
     near = EXPECTED * len(study.continuous) * min(study.combinations, POLISHED)
     inside = len(_weights(study)) - len(study.goals) if len(study.goals) > 1 else 0
     ends = (study.search["runs"] + near) * len(study.goals)
@@ -31,7 +34,10 @@ def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
     meets all claims. Raises LoomfmuError for a variable that changes nothing."""
     study, seed = runs.study, runs.study.search["seed"]
     first = first_points(study, own, generation(study), seed)
+    check_options(runs, first, path)
     check_effects(runs, first, path)
+    if study.enumerable:
+        runs.at(list(product(*(map(float, range(len(each.options))) for each in study.variables))))
     known = np.array([each.heights for each in runs.at(first)])
     scales = _spread(known)
     count = len(study.goals)
@@ -87,6 +93,17 @@ def _best(runs: Runs, pieces: Pieces, first: Sequence[Point], budget: int) -> li
     def height(design: Design) -> float:
         return float(np.max(pieces(design.heights)))
 
+    if not runs.study.enumerable:
+        _search(runs, pieces, height, first, budget)
+    allowed = [each for each in runs.designs.values() if each.allowed]
+    return [min(allowed, key=height)] if allowed else []
+
+
+def _search(
+    runs: Runs, pieces: Pieces, height: Callable[[Design], float], first: Sequence[Point], budget: int
+) -> None:
+    """Search everywhere, then near the best designs; the designs are kept in `runs`."""
+
     def rank(design: Design) -> tuple[float, float]:
         return design.shortfall, height(design) if np.all(np.isfinite(design.heights)) else np.inf
 
@@ -98,8 +115,6 @@ def _best(runs: Runs, pieces: Pieces, first: Sequence[Point], budget: int) -> li
         if runs.study.continuous:
             shares = np.array([design.point[place] for place in runs.study.continuous])
             polished(about(runs, design, pieces), shares)
-    allowed = [each for each in runs.designs.values() if each.allowed]
-    return [min(allowed, key=height)] if allowed else []
 
 
 def _leaders(runs: Runs, rank: Callable[[Design], tuple[float, float]]) -> Iterator[Design]:
@@ -134,13 +149,17 @@ def _stepped(runs: Runs, design: Design, rank: Callable[[Design], tuple[float, f
 
 
 def _front(designs: Sequence[Design]) -> list[Design]:
-    """Those that no other one is better than in one goal and as good in all, each once."""
-    unique = list({each.values: each for each in designs}.values())
-    best = [
-        each
-        for each in unique
-        if not any(
-            np.all(other.heights <= each.heights) and np.any(other.heights < each.heights) for other in unique
-        )
-    ]
-    return sorted(best, key=lambda each: tuple(each.heights.tolist()))
+    """Those that no other one is better than in one goal and as good in all, each once.
+
+    What differs by less than a search finds counts as equal.
+    """
+    ordered = sorted(designs, key=lambda each: tuple(each.heights.tolist()))
+    heights = np.array([each.heights for each in ordered])
+    same = ALIKE * np.max(np.abs(heights), axis=0)
+    best: list[int] = []
+    for number, here in enumerate(heights):
+        no_worse = np.all(heights <= here + same, axis=1)
+        better = no_worse & np.any(heights < here - same, axis=1)
+        if not np.any(better) and not np.any(no_worse[best]):
+            best.append(number)
+    return [ordered[number] for number in best]

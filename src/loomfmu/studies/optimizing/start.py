@@ -78,6 +78,29 @@ def check_effects(runs: Runs, points: Sequence[Point], path: Path) -> None:
         )
 
 
+def check_options(runs: Runs, points: Sequence[Point], path: Path) -> None:
+    """Refuse a choice with which no design can be run, while others of its kind can. Raises LoomfmuError."""
+    for place, each in enumerate(runs.study.variables):
+        if each.range or isinstance(each.options, range):
+            continue
+        errors = [
+            _error(runs, [(*point[:place], float(number), *point[place + 1 :]) for point in points[:BASES]])
+            for number in range(len(each.options))
+        ]
+        for option, error in zip(each.options, errors, strict=True):
+            if error and not all(errors):
+                raise LoomfmuError(
+                    f"{path}: choices.{each.key}: no design with {each.varied.show(option)} can be run"
+                    f" ({error}); leave it out"
+                )
+
+
+def _error(runs: Runs, points: Sequence[Point]) -> str:
+    """Why none of these designs can be run; an empty text if one can. Most often the first can."""
+    (first,) = runs.at(points[:1])
+    return first.error if first.error and all(each.error for each in runs.at(points)) else ""
+
+
 def _alike(one: Design, other: Design) -> bool:
     if one.error or other.error:
         return bool(one.error and other.error) or one.values == other.values

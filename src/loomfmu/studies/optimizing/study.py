@@ -132,6 +132,11 @@ class Study:
         return prod(len(each.options) for each in self.variables if not each.range)
 
     @property
+    def enumerable(self) -> bool:
+        """Whether nothing but options vary, so few of them that a search can run every combination."""
+        return not self.continuous and self.combinations <= self.search["runs"]
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What the user is to be warned of."""
         doubts = (doubt for each in self.variables if each.range for doubt in each.range.doubts)
@@ -206,7 +211,7 @@ def _goals(scene: Scene, tables: dict[str, Any], known: Sequence[Variable]) -> l
     for way, sign in WAYS.items():
         given = tables.get(way, [])
         for name in [given] if isinstance(given, str) else given if isinstance(given, list) else [given]:
-            if not isinstance(name, str):
+            if not isinstance(name, str) or not name:
                 raise LoomfmuError(f"{way} = {shown(name)} is not a name such as {way} = 'shaft.speed'")
             if any(goal.name == name for goal in goals):
                 raise LoomfmuError(f"{way}: {name} is already a goal")
@@ -230,6 +235,10 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
     claims = [str(claim.get("name")) for claim in scene.claims]
     if name in claims:
         return Goal(name, sign, "claim", claims.index(name))
+    owner, _, variable = name.rpartition(".")
+    settable = scene.instances[owner].fmu.ports.get(variable) if owner in scene.instances else None
+    if settable and settable.causality == "parameter":
+        raise LoomfmuError(f"{way}: {name} is a parameter; put it into [ranges]")
     try:
         port = output_port(scene, name, way)
     except LoomfmuError as error:
