@@ -76,8 +76,11 @@ def verdicts_agree(page: Any, expected: Any) -> None:
         if mine["holds"] is None:
             assert mine["note"]
             continue
-        assert not math.isnan(its.worst)
         assert mine["holds"] == its.holds, its
+        assert mine.get("signal", its.signal) == its.signal
+        if math.isnan(its.worst):
+            assert math.isnan(mine["worst"]) and mine["note"] == its.note
+            continue
         # edges of spans are times: rounding of sums of some 1e4 steps
         assert mine["worst"] == pytest.approx(its.worst, rel=1e-9, abs=1e-12), its
         assert mine["bound"] == pytest.approx(its.bound, rel=1e-14), its
@@ -106,6 +109,29 @@ def test_so_are_those_of_a_loom_with_every_mechanism(
     values_agree(page, result.trace)
     verdicts_agree(page, result.claims)
     assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))
+
+
+def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_path: Path) -> None:
+    """The taker comes so late that the hooks never meet: there is no speed to judge."""
+    scene, late = SIMS / "both_rapiers.toml", "weft_2.crank_phase"
+    page = running(opened(live_page.write(scene, [f"{late}=-50deg..5deg"], tmp_path / "page.html")))
+    turned(page, -40.0)
+    result = loomfmu.run(scene, set={late: "-40 deg"}, output=tmp_path / "run.h5")
+    verdicts_agree(page, result.claims)
+    row = page.locator("#claims tbody tr").nth(1)
+    assert "FAILS" in row.inner_text() and "no value" in row.inner_text()
+    assert result.claims[1].note in row.inner_text()
+    assert page.inner_text(".outcome").endswith(loomfmu.traces.verdict.outcome(result.claims))
+
+
+def test_the_signal_that_is_named_is_that_of_the_frame_judged_worst(
+    written_whole: Path, opened: Open, tmp_path: Path
+) -> None:
+    page = running(opened(written_whole))
+    turned(page, 500.0)
+    result = loomfmu.run(WHOLE, set={"shaft.speed": "500 rpm"}, output=tmp_path / "run.h5")
+    found = page.locator("#claims tbody code").all_inner_texts()
+    assert found == [each.signal for each in result.claims]
 
 
 def test_a_claim_that_the_page_would_judge_otherwise_is_left_out(

@@ -172,6 +172,26 @@ def test_both_heads_overlap_by_what_the_trace_has(whole: Trace, pages: dict[str,
         assert float(shown) == pytest.approx(drawn, abs=0.05 + 2.0 * STEP)  # a digit
 
 
+def test_numbers_of_heads_with_buckled_belts_fit_their_overlap(tmp_path: Path, opened: Open) -> None:
+    """The transfer counts belts as straight: so do the captions, which say so."""
+    scene = SIMS / "both_rapiers.toml"
+    trace = loomfmu.run(scene, set={"shaft.speed": "720rpm"}, output=tmp_path / "late.h5").trace
+    page = opened(report.write([trace], tmp_path / "late.html"))
+    idle = [trace.parameter(f"{each}.idle_travel") for each in PAIR]
+    apart = 1000.0 * (trace.parameter("transfer.separation") - sum(idle))
+    shown = page.locator("#motion-rapiers-transfer output[data-value]")
+    assert float(np.max(trace["belt.deflection"])) > 1e-3
+    worst = int(np.argmax(trace["belt.deflection"]))
+    page.evaluate(f"loomfmu.seek({float(trace.shaft_angle[worst])!r})")
+    within = [float(each) for each in shown.all_inner_texts()]
+    # as in the test of the overlap, of which the two shown lengths have a digit each
+    recorded = 1000.0 * trace["transfer.overlap"][worst]
+    assert sum(within) - apart == pytest.approx(recorded, abs=0.1 + 2.0 * STEP + 0.1)
+    for figure in ("rapiers", "transfer"):
+        assert "of straight belts" in page.inner_text(f"#motion-{figure}-transfer")
+    assert "giver's head into the shed" in page.inner_text("#motion-rapiers-transfer")
+
+
 # ---- the buckled belt
 
 

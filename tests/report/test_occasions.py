@@ -55,11 +55,8 @@ def test_the_hand_over_is_that_of_its_claim(whole: Trace) -> None:
 def test_each_rapier_is_in_the_shed_by_its_own_belt(whole: Trace) -> None:
     occasions = Occasions(Subject([whole]))
     labels = {row.name: row.label for row in occasions.rows}
-    assert [labels[name] for name in ("weft", "weft_2", "belt_2")] == [
-        "Rapier head",
-        "Rapier 2",
-        "Belt 2",
-    ]
+    named = [labels[name] for name in ("weft", "weft_2", "belt", "belt_2")]
+    assert named == ["Giver head", "Taker head", "Giver belt", "Taker belt"]
     bars = {row.name: row.bars[0].rule for row in occasions.rows}
     assert bars["weft_2"] == ["-", "weft_2.travel", "belt_2.idle_travel"]
 

@@ -197,7 +197,8 @@ def _rapier(trace: Trace, weft: str) -> Iterator[Row]:
     belts = [name for name, fmu in trace.fmus.items() if fmu == "BeltMonitor"]
     belts.sort(key=lambda belt: trace.wires.get(f"{belt}.travel") != travel)  # its own one first
     bars = [Bar("in the shed", "weft", ["-", travel, f"{belt}.idle_travel"]) for belt in belts[:1]]
-    yield Row(weft, _numbered("Rapier", weft, alone="Rapier head"), tuple(bars), _share(travel))
+    label = _of_both(trace, travel, "head") or _numbered("Rapier", weft, alone="Rapier head")
+    yield Row(weft, label, tuple(bars), _share(travel))
 
 
 def _belt(trace: Trace, belt: str) -> Iterator[Row]:
@@ -209,7 +210,17 @@ def _belt(trace: Trace, belt: str) -> Iterator[Row]:
         bars.append(Bar("outside and compressed", "risk", ["min", _scaled(free), _scaled(force)]))
     if f"{belt}.margin" in trace:
         bars.append(Bar("buckled", "buckled", ["-", 0.0, f"{belt}.margin"]))
-    yield Row(belt, _numbered("Belt", belt), tuple(bars), _share(free))
+    label = _of_both(trace, trace.wires.get(f"{belt}.travel", ""), "belt") or _numbered("Belt", belt)
+    yield Row(belt, label, tuple(bars), _share(free))
+
+
+def _of_both(trace: Trace, travel: str, part: str) -> str:
+    """What a part of giver or taker is called, by the travel of its head; empty for one rapier alone."""
+    for name, fmu in trace.fmus.items():
+        for role in ("giver", "taker") if fmu == "WeftTransfer" else ():
+            if travel and trace.wires.get(f"{name}.{role}_travel") == travel:
+                return f"{role.capitalize()} {part}"
+    return ""
 
 
 def _numbered(label: str, instance: str, alone: str = "") -> str:

@@ -175,7 +175,7 @@ class TransferSpeed(_Transfer):
     sense, unit = AT_MOST, VELOCITY
 
     def judge(self, trace: Signals) -> Verdict:
-        text, signal = "speed of the heads during the transfer", f"{self.transfer}.closing_velocity"
+        text, signal = "relative speed of the heads during the transfer", f"{self.transfer}.closing_velocity"
         (overlap, needed), closing = self._overlap(trace), motion_of(trace, signal)
         during = overlap.beyond(needed, 1.0)
         if not during:

@@ -196,7 +196,7 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
     sketch.label(0.0, 9.0, "guide", "end", (-4.0, -6.0))
     shape = (
         "The belt is the exact elastica of the recorded deflection, pinned at both ends; it is drawn bent"
-        " upwards, and its head stays back by what the bend takes."
+        " upwards, and the head lags by the length that the bend takes up."
         if belt.slope
         else "The belt stays straight in this run."
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ..rules import mm
 from .belt import Belt, axis, reached, side, wheel_centre, wheel_radius, width
 from .recorded import instances
 from .sketch import Figure, Sketch, Value, title
@@ -45,18 +46,32 @@ def _both(tracks: Tracks, name: str, giver: Belt, taker: Belt) -> list[Figure]:
         near.line((x, -80.0), (x, 95.0), role="path")
         near.label(x, 95.0, f"{label} at most", "start" if label == "giver" else "end", (0.0, -4.0))
     closing = tracks.add(f"{name}.closing", f"{name}.closing_velocity")
+    unbent = (
+        " Numbers are those of straight belts; a head is drawn back by the length that the bend takes up."
+        if giver.slope or taker.slope
+        else ""
+    )
     return [
         sketch.figure(
             f"rapiers-{name}", title("Both rapiers across the loom", name, "transfer"),
             "Both rapier heads on their ways from their guides to the middle of the loom, where the giver,"
             " on the left, hands the weft over to the taker.",
-            [Value(f"{each.name} into the shed", each.tip, "mm") for each in (giver, taker)],
-            "The axis counts mm from the end of the giver's guide. Heights are schematic.",
+            [
+                Value(f"{who}'s head into the shed", _unbent(tracks, belt), "mm")
+                for who, belt in (("giver", giver), ("taker", taker))
+            ],
+            f"The axis counts mm from the end of the giver's guide. Heights are schematic.{unbent}",
         ),
         near.figure(
             f"transfer-{name}", title("The heads in mid-shed", name, "transfer"),
             "The heads of giver and taker about the middle of the loom, where they pass each other.",
             [Value("overlap", tracks.mm(f"{name}.overlap"), "mm"), Value("closing velocity", closing, "m/s")],
-            "Dashed: how far each head gets. Heights are schematic; the heads are drawn side by side.",
+            "Dashed lines: the farthest reach of each head. Heights are schematic; the heads are drawn side by"
+            f" side.{unbent}",
         ),
     ]  # fmt: skip
+
+
+def _unbent(tracks: Tracks, belt: Belt) -> str:
+    """How far a head is in the shed if its belt is straight, as the transfer counts it [mm]."""
+    return tracks.add(f"{belt.name}.unbent", ["-", mm(f"{belt.name}.free_length"), -belt.head])

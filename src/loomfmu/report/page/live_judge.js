@@ -4,6 +4,7 @@
   const { claims } = loomfmu.live.plan, TURN = 2 * Math.PI, DEGREE = Math.PI / 180, ALIKE = 1e-8;
   const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector("#claims .outcome");
   const last = values => values[values.length - 1], NOT_HERE = "loomfmu run judges it";
+  const NEVER = "the head never enters the shed in this run";
   const COARSE = "the samples are too far apart to be sure", FARTHEST = TURN / 20 * (1 + 1e-11);
 
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
@@ -16,8 +17,10 @@
     return kept.get(name);
   };
   const unknown = note => ({ holds: null, note });
+  const never = (bound, note) => ({ holds: false, worst: NaN, bound, note }); // a claim without a value fails
   const short = value => String(Number(value.toPrecision(7)));
-  const shownIn = ({ shown: { factor, unit } }, value) => `${short(value * factor)}${unit && ` ${unit}`}`;
+  const shownIn = ({ shown: { factor, unit } }, value) =>
+    Number.isNaN(value) ? "no value" : `${short(value * factor)}${unit && ` ${unit}`}`;
 
   /* All times at which the shaft stands at an angle of its revolution. */
   function timesAt(run, wanted) {
@@ -91,6 +94,7 @@
       .sort((one, other) => one.time - other.time);
     const late = missed(run, own, frames);
     if (late !== undefined) return { worst: 0, bound: claim.at_least, time: late };
+    if (!own.flat().length) return never(claim.at_least, "the frame never gets there in this run");
     if (!spans.length) return unknown(`no such span begins and ends within the run; ${NOT_HERE}`);
     const worst = Math.min(...spans.map(each => each.turned));
     return { worst, bound: claim.at_least, time: spans.find(each => each.turned <= worst + 1e-11).time };
@@ -152,25 +156,26 @@
         const value = lift.at(time);
         return { time, away: Math.min(Math.abs(value), Math.abs(stroke - value)) / stroke };
       }).sort((one, other) => one.time - other.time);
-      if (!found.length) return unknown("the run never reaches these angles");
+      if (!found.length) return never(claim.tolerance, "the run never reaches these angles");
       const worst = Math.max(...found.map(each => each.away));
       return { worst, bound: claim.tolerance, time: found.find(each => each.away >= worst - 1e-11).time };
     },
     rapier_in_open_shed: (run, claim) => {
       const within = inShed(run, claim);
-      if (!within.length) return unknown("the head never enters the shed in this run");
+      if (!within.length) return never(claim.head_height, NEVER);
       const found = Object.entries(claim.lifts).map(([heald, lift]) => {
         const near = motion(run, lift).nearest(0.5 * run.parameter(`${heald}.stroke`), within);
-        return { ...near, value: 2 * run.parameter(`${heald}.warp_ratio`) * near.value };
+        const signal = lift === `${heald}.lift` ? `2 |${heald}.warp_height|` : `2 |warp height by ${lift}|`;
+        return { ...near, value: 2 * run.parameter(`${heald}.warp_ratio`) * near.value, signal };
       });
       if (found.some(each => each.coarse)) return unknown(COARSE);
       const worst = Math.min(...found.map(each => each.value));
-      const time = Math.min(...found.filter(each => each.value <= worst + 1e-11).map(each => each.time));
-      return { worst, bound: claim.head_height, time };
+      const [{ time, signal }] = found.filter(each => each.value <= worst + 1e-11).sort((one, other) => one.time - other.time);
+      return { worst, bound: claim.head_height, time, signal };
     },
     reed_clear_of_rapier: (run, claim) => {
       const within = inShed(run, claim);
-      if (!within.length) return unknown("the head never enters the shed in this run");
+      if (!within.length) return never(claim.clearance, NEVER);
       const foremost = motion(run, `${claim.reed}.position`).lowest(-1, within);
       if (foremost.coarse) return unknown(COARSE);
       return { worst: last(run.signal(`${claim.reed}.front_limit`)) - foremost.value, bound: claim.clearance, time: foremost.time };
@@ -180,16 +185,17 @@
       const edges = new Set(within.filter(({ start, end }) => start === end).map(each => each.start));
       const found = within.filter(({ start, end }) => start < end && edges.has(start) && edges.has(end))
         .map(each => overlap.lowest(-1, [each]));
-      if (!found.length) return unknown("the run never passes through the whole window");
+      const bound = run.parameter(`${claim.transfer}.needed_overlap`);
+      if (!found.length) return never(bound, "the run never passes through the whole window");
       if (found.some(each => each.coarse)) return unknown(COARSE);
       const worst = Math.min(...found.map(each => each.value));
       const time = Math.min(...found.filter(each => each.value <= worst + 1e-11).map(each => each.time));
-      return { worst, bound: run.parameter(`${claim.transfer}.needed_overlap`), time };
+      return { worst, bound, time };
     },
     transfer_speed: (run, claim) => {
       const needed = run.parameter(`${claim.transfer}.needed_overlap`);
       const during = motion(run, `${claim.transfer}.overlap`).beyond(needed, 1);
-      if (!during.length) return unknown("the heads never overlap by what the hooks need in this run");
+      if (!during.length) return never(claim.at_most, "the heads never overlap by what the hooks need in this run");
       const [low, high] = [1, -1].map(sign => motion(run, `${claim.transfer}.closing_velocity`).lowest(sign, during));
       const found = Math.abs(high.value) > Math.abs(low.value) ? high : low;
       return low.coarse || high.coarse ? unknown(COARSE) : { worst: Math.abs(found.value), bound: claim.at_most, time: found.time };
@@ -212,7 +218,7 @@
     for (let k = 1; k < angle.length; k++)
       if (Math.abs(angle[k] - angle[k - 1]) > FARTHEST) return unknown(COARSE);
     const found = judge(run, claim);
-    if (found.holds === null) return found;
+    if (found.holds !== undefined) return found;
     if (!Number.isFinite(found.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
     if (tooNear(claim, found)) return unknown(`it is nearer to its bound, ${shownIn(claim, found.bound)}, than the page can tell; ${NOT_HERE}`);
     return { ...found, holds: claim.sense * found.worst >= claim.sense * found.bound };
@@ -227,7 +233,8 @@
   /* A claim that is judged otherwise than loomfmu did at the scene's own values is left out from then on. */
   function check(claim, { holds, worst }) {
     const { native } = claim, scale = Math.max(Math.abs(native.worst), Math.abs(worst));
-    claim.left = holds !== null && (holds !== native.holds || Math.abs(worst - native.worst) > 1e-6 * scale);
+    const same = native.worst === null ? Number.isNaN(worst) : Math.abs(worst - native.worst) <= 1e-6 * scale;
+    claim.left = holds !== null && !(holds === native.holds && same);
   }
 
   // ---- the table
@@ -243,7 +250,7 @@
 
   function show(row, claim, verdict) {
     const [word, name, worst, bound, distance, where] = row.cells;
-    const shown = value => shownIn(claim, value);
+    const shown = value => shownIn(claim, value), code = name.querySelector("code");
     const known = verdict.holds !== null;
     word.className = known ? (verdict.holds ? "holds" : "fails") : "";
     word.replaceChildren();
@@ -251,6 +258,7 @@
     mark.className = "mark";
     mark.setAttribute("aria-hidden", "true");
     word.append(...(known ? [mark, verdict.holds ? "holds" : "FAILS"] : ["not judged"]));
+    code.textContent = verdict.signal || claim.signal;
     for (const old of name.querySelectorAll("small, code + br")) old.remove();
     if (verdict.note) {
       const note = document.createElement("small");
@@ -261,7 +269,7 @@
     worst.textContent = known ? shown(verdict.worst) : "–";
     bound.textContent = known ? shown(verdict.bound) : "–";
     distance.textContent = !known ? "–" : shown(gap)
-      + (verdict.bound ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)}%)` : "");
+      + (verdict.bound && !Number.isNaN(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)}%)` : "");
     where.textContent = "–";
     if (verdict.place) {
       const button = document.createElement("button");
