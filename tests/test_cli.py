@@ -91,6 +91,21 @@ def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str
         assert trace.rows == 46
 
 
+def test_a_run_up_turns_the_shaft_less_than_the_nominal_revolutions(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It rises to its speed over one of the two revolutions: half a revolution less."""
+    ramp = HEAD.replace("revolutions = 1", "revolutions = 2") + '[shaft]\nspeed = "600rpm"\n'
+    assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n')]) == 0
+    printed = capsys.readouterr().out
+    assert ": 2 nominal revolutions at 600 rev/min, the shaft turned 1.5 revolutions, 180 steps" in printed
+    assert main(["run", scene(ramp)]) == 0
+    assert ": 2 revolutions at 600 rev/min, 180 steps" in capsys.readouterr().out
+    trace = Path("results/scene.h5")
+    assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n'), "--report"]) == 0
+    assert "2.0 nominal; the shaft turned 1.5 revolutions" in trace.with_suffix(".html").read_text()
+
+
 def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
     text = (
         HEAD

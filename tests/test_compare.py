@@ -1,5 +1,6 @@
 """Two traces compared: what counts as a difference, where it is, and what no grid can tell."""
 
+import json
 import math
 import tracemalloc
 from pathlib import Path
@@ -178,6 +179,34 @@ def test_looms_of_other_speeds_are_compared_by_angle_or_by_time(tmp_path: Path) 
     assert [each.signal for each in loomfmu.compare(a, b).differences] == ["time"]
     by_time = {each.signal for each in loomfmu.compare(a, b, over="time").differences}
     assert {"shaft_angle", "belt.x"} <= by_time
+
+
+def test_of_several_that_differ_first_the_shaft_is_named(tmp_path: Path) -> None:
+    """The relatively largest difference is an effect of it; their order in the file is alphabetical."""
+    paths = []
+    for number in (0, 1):
+        channels = [
+            Channel(name, "x", "m", "m", "X", at) for at, name in enumerate(("belt", "shaft", "weft"))
+        ]
+        wires = {"belt.y": "weft.x", "weft.y": "shaft.x", "belt.z": "shaft.x"}
+        paths.append(tmp_path / f"{number}.h5")
+        writer = TraceWriter(paths[-1], {"title": "made", "wires": json.dumps(wires)}, channels, {})
+        angle = np.linspace(0.0, 2.0 * math.pi, 721)
+        columns = np.cos(angle)[:, None] * (1.0 + number * np.array([0.3, 0.1, 0.2]))
+        writer.append(angle / SPEED, angle, columns, np.zeros((721, 0), dtype="i4"))
+        writer.complete([])
+    found = loomfmu.compare(*paths)
+    assert [each.signal for each in found.differences] == ["belt.x", "weft.x", "shaft.x"]
+    assert found.earliest is not None and found.earliest.signal == "shaft.x"
+    assert "first to differ: shaft.x at 0 s" in repr(found)
+
+
+def test_a_tolerance_that_cannot_be_read_names_its_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a = str(trace(tmp_path / "a.h5"))
+    assert cli.main(["compare", a, a, "--tolerance", "5apples"]) == 2
+    assert "--tolerance 5apples: unknown unit 'apples'" in capsys.readouterr().err
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

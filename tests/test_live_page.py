@@ -342,6 +342,7 @@ def test_a_page_narrower_than_a_hand_shows_all(written: Path, opened: Open) -> N
         ("belt.margin=1..2", "belt.margin is computed and cannot be set"),
         ("dobby.law=1..2", "dobby.law has choices, not a range"),
         ("belt.guide_clearance=-1mm..1mm", "is outside"),
+        ("loom.head", "--vary loom.head: keys of [loom] cannot be varied; write --vary INSTANCE.VARIABLE"),
         ("speed", "write --vary INSTANCE.VARIABLE=LOW..HIGH"),
     ],
 )

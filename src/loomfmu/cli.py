@@ -157,8 +157,10 @@ def _run_here(options: argparse.Namespace) -> int:
     if result.ended:
         say(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
-        turned, speed = _revolutions(f"{scene.periods:g}"), units.show(scene.speed, "rev/min")
-        say(f"{scene.title}: {turned} at {speed}, {result.steps} steps")
+        turned, speed = result.trace.turned_otherwise(scene.periods), units.show(scene.speed, "rev/min")
+        count = f"{scene.periods:g} nominal" if turned else f"{scene.periods:g}"
+        parts = f"{_revolutions(count)} at {speed}", turned, f"{result.steps} steps"
+        say(f"{scene.title}: {', '.join(filter(None, parts))}")
     else:
         say(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
     if result.chosen:
@@ -405,7 +407,7 @@ def _compare(options: argparse.Namespace) -> int:
         check_target(Path(options.report), report.REPORT, inputs, options.force)
     found = compare(
         options.first, options.second, ignore=options.ignore, over=options.over,
-        tolerance=units.parse(shares[0], "1") if shares else TOLERANCE,
+        tolerance=_share(shares[0]) if shares else TOLERANCE,
         absolute=_pairs(amounts, "--tolerance"),
     )  # fmt: skip
     if options.all:
@@ -415,6 +417,15 @@ def _compare(options: argparse.Namespace) -> int:
     if options.report:
         say(f"report: {report.write([options.first, options.second], options.report, options.force)}")
     return 0 if found else 1
+
+
+def _share(text: str) -> float:
+    """The share that --tolerance gives."""
+    try:
+        return units.parse(text, "1")
+    except units.UnitError as error:
+        wanted = "write a share such as 0.1%, or NAME=AMOUNT such as belt.free_length=0.1mm"
+        raise LoomfmuError(f"--tolerance {text}: {error}; {wanted}") from None
 
 
 def _summarise(trace: "Trace") -> None:

@@ -58,6 +58,8 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
     where = f"--vary {key}"
     if "." not in key:
         raise LoomfmuError(f"{where}: {FORM}")
+    if key.startswith("loom.") and "loom" not in scene.instances:
+        raise LoomfmuError(f"{where}: keys of [loom] cannot be varied; {FORM}")
     port, targets = _port(scene, known, key, where)
     name, _, variable = targets[0].partition(".")
     started = scene.instances[name].effective()[variable]

@@ -27,6 +27,10 @@ def section(subject: Subject) -> Section:
     facts = [
         (label, str(attributes[key])) for key, label in PLAIN.items() if attributes.get(key) not in (None, "")
     ]
+    if units.is_plain(attributes.get("revolutions", "")):
+        turned = subject.trace.turned_otherwise(float(attributes["revolutions"]))
+        shown = {"Revolutions": f"{attributes['revolutions']} nominal; {turned}"} if turned else {}
+        facts = [(label, shown.get(label, text)) for label, text in facts]
     facts.insert(1, ("Samples", f"{subject.trace.rows}"))
     return Section(
         "provenance", "The scene\u2019s own run" if subject.live else "The run",

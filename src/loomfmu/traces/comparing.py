@@ -2,6 +2,7 @@
 
 import fnmatch
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,8 +103,36 @@ def compare(
         notes.append(f"{len(unclear)} more signals may differ by less than can be seen: {reason}")
     names = (str(one.given), str(two.given))
     return Comparison(
-        names, len(common), meeting.how, allowed.share, tuple(differences), changes, tuple(notes)
-    )
+        names, len(common), meeting.how, allowed.share, tuple(differences), changes, tuple(notes),
+        _earliest(one, differences),
+    )  # fmt: skip
+
+
+def _earliest(trace: Trace, differences: Sequence[Difference]) -> Difference | None:
+    """The signal that differs first; of several at the same sample, one that others follow from.
+
+    That is one of the instance that depends on the fewest others by its wires, and feeds most of them: the
+    shaft, if it is among them. Without wires it is the first instance of the file.
+    """
+    sources: dict[str, set[str]] = {}
+    for sink, source in trace.wires.items():
+        sources.setdefault(sink.partition(".")[0], set()).add(source.partition(".")[0])
+    fed = Counter(source for found in sources.values() for source in found)
+    places = list(dict.fromkeys(name.partition(".")[0] for name in (*trace, *SHARED)))
+
+    def upstream(instance: str) -> int:
+        found, left = set[str](), [instance]
+        while left:
+            new = sources.get(left.pop(), set()) - found
+            found |= new
+            left += new
+        return len(found)
+
+    def rank(each: Difference) -> tuple[float, int, int, int]:
+        instance = each.signal.partition(".")[0]
+        return each.first.time, upstream(instance), -fed[instance], places.index(instance)
+
+    return min(differences, key=rank, default=None)
 
 
 def _opened(given: str | Path | Trace) -> Trace:

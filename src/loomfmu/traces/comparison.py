@@ -96,7 +96,7 @@ class Comparison:
     `differences` are the signals that differ, the relatively largest difference first; `changes` what else
     does: values, claims, the length of the run, signals that only one trace has. `how` says at which samples
     they were compared, `notes` what may explain a difference, such as another version of an FMU, and counts
-    as none.
+    as none. `earliest` is the signal that differs first.
     """
 
     names: tuple[str, str]
@@ -106,6 +106,7 @@ class Comparison:
     differences: tuple[Difference, ...]
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
+    earliest: Difference | None = None
 
     def __bool__(self) -> bool:
         return not self.differences and not self.changes
@@ -148,12 +149,11 @@ class Comparison:
 
     def _ends(self, most: int | None) -> list[str]:
         """Where the traces begin to differ, and how many signals the table leaves out."""
-        if not self.differences:
+        if self.earliest is None:
             return []
-        earliest = min(self.differences, key=lambda each: each.first.time)
         more = len(self.differences[most:]) if most is not None else 0
         left_out = f"{_counted(more, 'more signal')} with smaller relative differences; --all lists all"
-        return [f"first to differ: {earliest.signal} at {earliest.first}", *[left_out] * bool(more)]
+        return [f"first to differ: {self.earliest.signal} at {self.earliest.first}", *[left_out] * bool(more)]
 
     def show(self, most: int | None = MOST) -> None:
         """Print it, with at most so many signals; None for all."""

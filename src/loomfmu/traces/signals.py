@@ -1,5 +1,6 @@
 """Signals of a run, however they are kept; kept in memory."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -98,6 +99,14 @@ class Signals(ABC):
         """Whether a shaft turns."""
         angle = self.shaft_angle
         return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and bool(angle[-1] > angle[0])
+
+    def turned_otherwise(self, nominal: float) -> str:
+        """How far the shaft turned, if not by the nominal revolutions: a run-up takes its time from them."""
+        if not self.turns:
+            return ""
+        turned = float(self.shaft_angle[-1] - self.shaft_angle[0]) / (2.0 * math.pi)
+        same = abs(turned - nominal) <= 0.005 * nominal  # as people read them, three digits
+        return "" if same else f"the shaft turned {turned:.3g} revolutions"
 
     @abstractmethod
     def rate(self, signal: str) -> str | None:
