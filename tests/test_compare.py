@@ -117,7 +117,7 @@ def test_causes_are_listed_first_and_few_signals(tmp_path: Path, capsys: pytest.
     few = capsys.readouterr().out
     assert few.index("value shaft.speed") < few.index("claim x stays") < few.index("weft.x11")
     assert "weft.x2 " in few and "weft.x1 " not in few.replace("at weft.x1 ", "")
-    assert "2 more signals with smaller relative differences; --all lists all" in few
+    assert "2 more signals with smaller relative differences; loomfmu compare --all lists all" in few
     assert cli.main(["compare", *map(str, paths), "--all"]) == 1
     assert "weft.x0 " in capsys.readouterr().out
 
@@ -221,7 +221,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert cli.main(["compare", a, str(tmp_path / "none.h5")]) == 2
     page = tmp_path / "page.html"
     assert cli.main(["compare", a, b, "--report", str(page)]) == 1
-    assert page.read_text().startswith("<!DOCTYPE html>")
+    text = page.read_text()
+    assert text.startswith("<!DOCTYPE html>")
+    first, rest = text.partition('<section id="comparison"')[2].split("</section>", 1)
+    assert (
+        "1 of 2 signals" in first and "first to differ: belt.x" in first and ">largest difference<" in first
+    )
+    assert "In the first trace: the claim holds" in rest
 
 
 def test_memory_holds_a_few_columns_whatever_the_number_of_signals(tmp_path: Path) -> None:

@@ -415,7 +415,7 @@ def _compare(options: argparse.Namespace) -> int:
     else:
         found.show()
     if options.report:
-        say(f"report: {report.write([options.first, options.second], options.report, options.force)}")
+        say(f"report: {report.write(inputs, options.report, options.force, comparison=found)}")
     return 0 if found else 1
 
 

@@ -18,12 +18,17 @@ def section(subject: Subject) -> Section:
         "claims", "Claims",
         template("claims.html.j2").render(
             judged=trace.judged,
-            outcome=outcome(verdicts, trace.judged),
+            outcome=_of_first(outcome(verdicts, trace.judged), subject),
             word="fails" if FAILS in words else "unknown" if UNDECIDED in words or not words else "holds",
             rows=[_row(subject, verdict) for verdict in verdicts],
         ),
         ("claims.js",),
     )  # fmt: skip
+
+
+def _of_first(text: str, subject: Subject) -> str:
+    """The verdict of the first trace, which says so where there are others."""
+    return f"In the first trace: {text[0].lower()}{text[1:]}" if len(subject.traces) > 1 else text
 
 
 def outcome(verdicts: list[Verdict], judged: bool) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
 from ..files import check_target, starts_with, write_file
-from ..traces import Trace
+from ..traces import Comparison, Trace
 from .claims import section as claims
 from .diagram import section as diagram
 from .drawings import section as motion
@@ -28,7 +28,10 @@ SECTIONS: tuple[Callable[[Subject], Section | None], ...] = (claims, diagram, mo
 
 
 def write(
-    traces: Sequence[str | Path | Trace], output: str | Path | None = None, overwrite: bool = False
+    traces: Sequence[str | Path | Trace],
+    output: str | Path | None = None,
+    overwrite: bool = False,
+    comparison: Comparison | None = None,
 ) -> Path:
     """Write the report of a trace, with others laid over it, and return its path.
 
@@ -36,6 +39,7 @@ def write(
         traces: traces or their files; the first one is judged and shown in motion
         output: the file; beside the first trace, with `.html` for `.h5`, by default
         overwrite: also replace a file that is not a report
+        comparison: what differs between two of them, shown first
 
     Raises:
         LoomfmuError: a trace cannot be read or has no sample, the file cannot be written, or the extra
@@ -53,13 +57,19 @@ def write(
     with ExitStack() as files:
         for trace in opened:
             files.enter_context(trace)
-        content = page(Subject(opened)).encode()
+        content = page(Subject(opened), comparison).encode()
     return write_file(path, content, REPORT, inputs, overwrite)
 
 
-def page(subject: Subject) -> str:
+def page(subject: Subject, comparison: Comparison | None = None) -> str:
     """The whole page. Raises LoomfmuError if the extra `report` is not installed."""
-    return assembled(subject, sections(subject))
+    compared = [] if comparison is None else [_compared(comparison)]
+    return assembled(subject, [*compared, *sections(subject)])
+
+
+def _compared(comparison: Comparison) -> Section:
+    """What differs between the traces, as a notebook shows it."""
+    return Section("comparison", "Comparison", comparison._repr_html_(), of_first=False)
 
 
 def sections(subject: Subject) -> list[Section]:

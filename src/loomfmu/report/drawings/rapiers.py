@@ -66,8 +66,8 @@ def _both(tracks: Tracks, name: str, giver: Belt, taker: Belt) -> list[Figure]:
             f"transfer-{name}", title("The heads in mid-shed", name, "transfer"),
             "The heads of giver and taker about the middle of the loom, where they pass each other.",
             [Value("overlap", tracks.mm(f"{name}.overlap"), "mm"), Value("closing velocity", closing, "m/s")],
-            "Dashed lines: the farthest reach of each head. Heights are schematic; the heads are drawn side by"
-            f" side.{unbent}",
+            "Dashed lines: the farthest reach of each head. Heights are schematic; the heads are drawn side"
+            f" by side.{unbent}",
         ),
     ]  # fmt: skip
 
