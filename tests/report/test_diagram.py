@@ -113,6 +113,28 @@ def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path)
     assert {"in the shed", "outside and compressed", "buckled", "dwells"} <= {*shown}
 
 
+def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
+    demo: Trace, copied: Path, tmp_path: Path
+) -> None:
+    there = {each.revolution for each in demo.verdicts}
+    assert there < {1, 2, 3}  # else there is nothing to tell apart
+    heights = {}
+    for number in (1, 2, 3):
+        output = tmp_path / f"{number}.svg"
+        diagram.write(Trace(copied), output, number)
+        assert (">Claims<" in output.read_text()) == (number in there)
+        heights[number in there] = float(ElementTree.parse(output).getroot().attrib["viewBox"].split()[3])
+    assert heights[True] - heights[False] == diagram.ROW
+
+
+def test_a_report_without_claims_has_no_row_for_them(tmp_path: Path) -> None:
+    lines = (SIMS / "wl680_3600.toml").read_text().partition("[[claims]]")[0]
+    (tmp_path / "plain.toml").write_text(lines)
+    trace = loomfmu.run(tmp_path / "plain.toml", output=tmp_path / "plain.h5").trace
+    page = report.write([trace]).read_text()
+    assert ">Claims</text>" not in page and "worst value of a claim" not in page
+
+
 def test_a_revolution_beyond_those_that_are_kept_is_not_drawn(
     whole: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:

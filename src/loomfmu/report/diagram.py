@@ -51,15 +51,19 @@ def section(subject: Subject) -> Section | None:
             drawn.append(revolution)
             marks.append(its)
         shown[revolution.number] = place
-    height = straight_size(occasions.rows)[1]
+    claims = subject.live or any(marks)
+    height = straight_size(occasions.rows, claims)[1]
     html = template("diagram.html.j2").render(
         width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
         centre=CENTRE, outer=OUTER + 8.0, inner=INNER - 8.0,
-        straight=[svg(straight(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
+        straight=[
+            svg(straight(occasions.rows, each, its, claims)) for each, its in zip(drawn, marks, strict=True)
+        ],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
-        legend=_legend(occasions.rows), coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
+        legend=_legend(occasions.rows), claims=claims,
+        coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
     )  # fmt: skip
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
     scripts: tuple[str, ...] = ("diagram.js",)
@@ -94,9 +98,12 @@ def write(
     number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
     if number not in numbers:
         raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.path}")
-    its = occasions.revolution(number), marks_in(trace.verdicts, number)
-    drawing = (round_ if circular else straight)(occasions.rows, *its)
-    size = (SQUARE, SQUARE) if circular else straight_size(occasions.rows)
+    its, marks = occasions.revolution(number), marks_in(trace.verdicts, number)
+    if circular:
+        drawing, size = round_(occasions.rows, its, marks), (SQUARE, SQUARE)
+    else:
+        drawing = straight(occasions.rows, its, marks, bool(marks))
+        size = straight_size(occasions.rows, bool(marks))
     title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
     drawing, size = headed(title, _legend(occasions.rows), drawing, size)
     kind = pictures.kind(output)
@@ -146,19 +153,19 @@ def _legend(rows: Sequence[Row]) -> dict[str, str]:
 # ---- straight
 
 
-def straight_size(rows: Sequence[Row]) -> tuple[float, float]:
-    """Width and height of the straight diagram [px]."""
-    return WIDTH, TOP + ROW * (len(rows) + 1) + 10.0
+def straight_size(rows: Sequence[Row], claims: bool) -> tuple[float, float]:
+    """Width and height of the straight diagram, with a row of claims or without [px]."""
+    return WIDTH, TOP + ROW * (len(rows) + claims) + 10.0
 
 
 def _x(angle: float) -> float:
     return LEFT + (WIDTH - RIGHT - LEFT) * angle / TURN
 
 
-def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -> Drawing:
-    """Rows over 0 to 360 deg, one below the other, the claims at last."""
+def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark], claims: bool) -> Drawing:
+    """Rows over 0 to 360 deg, one below the other, at last that of the claims if there is one."""
     drawing: list[Shape | Text] = []
-    bottom = TOP + ROW * (len(rows) + 1)
+    bottom = TOP + ROW * (len(rows) + claims)
     for degrees in range(0, 361, 30):
         x = _x(math.radians(degrees))
         drawing.append(Shape([(x, TOP - 4.0), (x, bottom)], "line", filled=False))
@@ -176,7 +183,8 @@ def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark])
         if row.name in revolution.curves:
             drawing.append(Shape(list(_curve(revolution, row, top)), "curve", filled=False))
     top = TOP + ROW * len(rows)
-    drawing.append(Text((LEFT - 8.0, top + 0.65 * ROW), "Claims", "text", "end"))
+    if claims:
+        drawing.append(Text((LEFT - 8.0, top + 0.65 * ROW), "Claims", "text", "end"))
     for mark in marks:
         x = _x(mark.angle)
         tip = [(x, top + 4.0), (x + 6.0, top + ROW - 6.0), (x - 6.0, top + ROW - 6.0)]

@@ -152,7 +152,8 @@ class Comparison:
         if self.earliest is None:
             return []
         more = len(self.differences[most:]) if most is not None else 0
-        left_out = f"{_counted(more, 'more signal')} with smaller relative differences; loomfmu compare --all lists all"
+        left_out = f"{_counted(more, 'more signal')} with smaller relative differences"
+        left_out += "; loomfmu compare --all lists all"
         return [f"first to differ: {self.earliest.signal} at {self.earliest.first}", *[left_out] * bool(more)]
 
     def show(self, most: int | None = MOST) -> None:
