@@ -210,6 +210,15 @@ def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
     assert output.read_bytes()[:4] == first[:4]
 
 
+def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:
+    pictures = [copied.with_name(f"{name}.svg") for name in ("one", "other")]
+    healds = [name for name in Trace(copied) if name.startswith("heald_") and name.endswith(".lift")]
+    assert len(healds) > 1
+    for output, names in zip(pictures, (["heald_*.lift"], healds), strict=True):
+        assert main(["plot", str(copied), *names, "--output", str(output)]) == 0
+    assert pictures[0].read_bytes() == pictures[1].read_bytes()
+
+
 def test_a_picture_lies_beside_its_trace(
     copied: Path, fast: Trace, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -221,6 +230,7 @@ def test_a_picture_lies_beside_its_trace(
     ("arguments", "reason"),
     [
         (["belt.marign"], "signal 'belt.marign' is not recorded; did you mean 'belt.margin'?"),
+        (["nothing*"], "signal 'nothing*' is not recorded"),
         (["nothing.h5", "belt.margin"], "nothing.h5: there is no such file"),
         (["belt.margin", "--output", "x.gif"], "x.gif: '.gif' is not a suffix of a picture; use .svg, .png"),
         (["belt.margin", "--over", "time", "--fold"], "can be folded, not one over time"),

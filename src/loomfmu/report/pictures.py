@@ -1,6 +1,7 @@
 """Single pictures: what files they may be, and plots of signals as such files."""
 
 from collections.abc import Iterable, Sequence
+from fnmatch import fnmatchcase
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -63,7 +64,7 @@ def plot(
 
     Args:
         traces: the traces, laid over one another
-        signals: such as `belt.margin`
+        signals: such as `belt.margin`; `*` and `?` stand for parts of names
         output: `.png`, `.svg` or `.pdf`; `TRACE_plot.png` beside the first trace by default
         over: `"angle"` or `"time"`; the shaft's angle if a shaft turns, by default
         fold: lay the revolutions over one another, at 0 to 360 deg
@@ -83,7 +84,13 @@ def plot(
     for trace in traces[1:]:
         plotting.checked(trace, over, fold)
     title = str(traces[0].attributes["title"])
-    return save(_figure(traces, signals, over, fold, title), path, title, inputs, overwrite)
+    named = list(dict.fromkeys(each for name in signals for each in _named(traces[0], name)))
+    return save(_figure(traces, named, over, fold, title), path, title, inputs, overwrite)
+
+
+def _named(trace: Trace, name: str) -> list[str]:
+    """The signals that a name or a pattern stands for; itself if there is none."""
+    return [each for each in trace if fnmatchcase(each, name)] or [name]
 
 
 def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bool, title: str) -> Any:
