@@ -8,7 +8,8 @@ import pytest
 from belt_reference import FiniteElements
 from scipy.optimize import minimize_scalar
 
-from loomfmu import run
+from loomfmu import LoomfmuError, Trace, run
+from loomfmu.components.belt_dynamics import BeltDynamics
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.machines import parameters
 from loomfmu.physics.belt import LARGEST_BEND, critical_force, elastica_deflection
@@ -31,7 +32,7 @@ def euler(belt):
     return critical_force(belt.free_length, belt.length_factor, belt.bending_stiffness)
 
 
-@pytest.mark.parametrize("belt_mass", [1e-6, 0.05])
+@pytest.mark.parametrize("belt_mass", [1e-5, 0.05])
 @pytest.mark.parametrize("excess", [-1e-6, 1e-6])
 def test_a_light_belt_loses_its_stability_at_the_load_of_euler(belt_in_c, belt_mass, excess):
     belt = standing(belt_in_c, belt_mass=belt_mass)
@@ -346,3 +347,61 @@ def test_the_claim_names_the_deflection_and_what_it_was_under_the_push(tmp_path)
     assert not dynamic.holds
     assert 1e3 * dynamic.worst == pytest.approx(7.80, abs=0.01)
     assert "while the head was pushed: 3.35" in dynamic.note
+
+
+@pytest.mark.parametrize("beyond", [1.01, 1.4])
+def test_a_belt_too_long_for_its_modes_says_so_and_does_not_count(belt_in_c, beyond):
+    belt = belt_in_c(travel=0.793 + 0.7)
+    assert belt.initialize(0.0) == 0
+    counted = belt.largest_deflection
+    belt = belt_in_c(travel=0.793 + beyond)
+    assert belt.initialize(0.0) == 3
+    assert belt.step(0.0, 1e-3) == 3
+    assert (belt.largest_deflection, belt.largest_at_risk, belt.too_long) == (0.0, 0.0, True)
+    belt.travel = 0.793 + 0.7  # a jump, after which it is at rest
+    assert belt.step(1e-3, 1e-3) == 0
+    assert belt.largest_deflection == counted
+    span = belt_in_c(travel=0.793 + beyond, bow_of=SPAN)
+    assert span.initialize(0.0) == 0
+    assert span.largest_deflection == span.deflection > 0.0
+
+
+SLOW = {
+    "loom.machine": "WL450-4600", "shaft.speed": "100 rev/min", "belt_motion.damping": 20.0,
+    "revolutions": 1,
+}  # fmt: skip
+
+
+def test_a_belt_that_cannot_be_followed_has_not_folded_and_its_claim_is_undecided(tmp_path):
+    dynamic = run("sims/belt_motion.toml", output=tmp_path / "run.h5", set=SLOW).claims[1]
+    assert (dynamic.holds, dynamic.decided) == (False, False)
+    assert math.isnan(dynamic.worst)
+    assert "could not be followed: take more steps" in dynamic.note
+    trace = Trace(tmp_path / "run.h5")
+    assert not trace["belt_motion.followed"][-1]
+    assert not trace["belt_motion.folded"][-1]
+    # the largest deflection was followed long before; four times as many steps give it, too
+    assert trace["belt_motion.largest_deflection"][-1] == pytest.approx(0.72484e-3, rel=1e-4)
+
+
+def test_the_lightest_belt_is_followed_and_a_lighter_one_refused(belt_in_c):
+    lightest = Loom(belt_in_c, 600.0, belt_mass=1e-5, bow_of=BELT)
+    twice = Loom(belt_in_c, 600.0, belt_mass=2e-5, bow_of=BELT)
+    for loom in (lightest, twice):
+        loom.turn_to(125.0)
+        assert not loom.belt.folded
+        assert loom.belt.followed
+    # the belt's inertia is nearly gone: the bow follows the load
+    assert lightest.belt.largest_at_risk == pytest.approx(twice.belt.largest_at_risk, rel=3e-3)
+    with pytest.raises(ValueError, match="belt_mass"):
+        BeltDynamics(belt_mass=1e-6)
+
+
+def test_the_error_of_the_claim_has_the_share_of_modes_and_integration(tmp_path):
+    scene = "sims/belt_motion.toml"
+    dynamic = run(scene, output=tmp_path / "run.h5").claims[1]
+    finer = run(scene, output=tmp_path / "finer.h5", set={"steps_per_revolution": 11520}).claims[1]
+    assert 1e-4 * dynamic.bound <= dynamic.error <= 2e-4 * dynamic.bound
+    assert abs(dynamic.worst - finer.worst) < dynamic.error
+    with pytest.raises(LoomfmuError, match="stays within the 2 mm .* is at least 0.0001 of its bound"):
+        run(scene, output=tmp_path / "never.h5", set={"accuracy": 1e-6})

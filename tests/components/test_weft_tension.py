@@ -281,6 +281,18 @@ def test_a_weft_that_is_carried_at_the_start_is_drawn_steadily():
     assert late.carried and late.length == pytest.approx(0.6 + 1.0 - 0.1)
 
 
+def test_alone_it_has_a_constant_tension():
+    weft = WeftTension()
+    assert weft.initialize(0.0) == 0
+    tension = weft.tension
+    assert tension == pytest.approx(exp(0.1 * pi) * (0.05 + 0.2), rel=1e-12)
+    for n in range(5):
+        assert weft.step(1e3 * n, 1e3) == 0
+        assert weft.tension == pytest.approx(tension, rel=1e-12)
+    assert weft.highest_tension == pytest.approx(tension, rel=1e-12)
+    assert (weft.slack, weft.longest_slack) == (False, 0.0)
+
+
 def test_too_far():
     weft = WeftTension(start_angle=9e5, speed=1.0)
     assert weft.initialize(1e9) == 0

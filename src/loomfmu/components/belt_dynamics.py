@@ -20,6 +20,7 @@ GROWTH = 0.05  # of the free length in a step of the integration
 MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
+MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
 
@@ -36,6 +37,9 @@ class BeltDynamics(BeltRest):
         self.outside = False
         self.held = False
         self.folded = False
+        self.lost = False
+        self.followed = True
+        self.too_long = False
         self.largest_deflection = 0.0
         self.largest_at_risk = 0.0
         self.lowest_margin = 1.0
@@ -60,9 +64,7 @@ class BeltDynamics(BeltRest):
         ends_outside = self.length_at(1.0) > self.shortest_length
         share = 0.0
         if jumped:
-            self.outside = False
-            self.held = False
-            self.forget()
+            self.go_in()
             share = 1.0 if self.inputs_at_step_end else 0.0
         if not self.outside and ends_outside:
             if share == 0.0 and self.length_at(0.0) < self.shortest_length:
@@ -73,9 +75,7 @@ class BeltDynamics(BeltRest):
         elif self.outside:
             if self.length_at(0.0) > self.shortest_length:
                 self.move(0.0, self.crossing())
-            self.outside = False
-            self.held = False
-            self.forget()
+            self.go_in()
         self.remember()
         return self.show()
 
@@ -99,33 +99,51 @@ class BeltDynamics(BeltRest):
                 high = middle
         return high
 
+    def go_in(self) -> None:
+        """Put the belt back into its guide, straight."""
+        self.outside = False
+        self.held = False
+        self.lost = False
+        self.forget()
+
     def come_out(self, share: float) -> None:
         """Put the belt where it comes out in equilibrium under its load, or without it if there is none."""
         self.outside = True
         self.held = False
+        self.lost = False
         length = self.length_at(share)
         self.rest(length, self.velocity_at(share), self.acceleration_at(share), self.tension_at(share))
         if not self.at_rest:
             self.rest(length, 0.0, 0.0, 0.0)
         self.look(share)
         if not (self.at_rest and self.steepness < STEEPEST):
-            self.hold(share)
+            self.fold(share)
             return
         self.take_extremes(share, 0.0)
 
-    def hold(self, share: float) -> None:
-        """Hold the belt as it folded: it counts as bent as far as a belt of its length can be."""
+    def hold(self) -> None:
+        """Stop the belt until it is back in its guide."""
         self.settle()
+        self.deflection_rate = 0.0
+        self.growth_rate = 0.0
+        self.energy = 0.0
+        self.held = True
+
+    def lose(self) -> None:
+        """Hold the belt where its motion could last be followed: what it does from there on is unknown."""
+        self.hold()
+        self.lost = True
+        self.followed = False
+
+    def fold(self, share: float) -> None:
+        """Hold the belt as it folded: it counts as bent as far as a belt of its length can be."""
+        self.hold()
+        self.folded = True
         self.deflection = LARGEST_BEND * self.length_at(share)
         if self.deflection > self.largest_deflection:
             self.largest_deflection = self.deflection
         if self.pushed_at(share) > 0.0 and self.deflection > self.largest_at_risk:
             self.largest_at_risk = self.deflection
-        self.deflection_rate = 0.0
-        self.growth_rate = 0.0
-        self.energy = 0.0
-        self.held = True
-        self.folded = True
 
     def move(self, start: float, end: float) -> None:
         """Integrate over a part of the step, in equal steps; one that does not settle is halved."""
@@ -164,9 +182,14 @@ class BeltDynamics(BeltRest):
             self.look(share)
             self.take_extremes(share, taken * self.path_step)
             if not self.steepness < STEEPEST:
-                break
+                self.fold(share)
+                return
         if end - share > 1e-12:
-            self.hold(share)
+            self.lose()
+
+    def follows(self, length: float) -> bool:
+        """Whether six modes can follow the bow of a belt of that free length."""
+        return self.bow_of != 1 or length <= MOST_WAVES * self.bow_length
 
     def suited(self, share: float, end: float, size: float) -> float:
         """Share of the step over which the free length changes by a twentieth, or a given smaller one."""
@@ -200,7 +223,14 @@ class BeltDynamics(BeltRest):
         self.bending_strain = 0.5 * self.thickness * bend
 
     def take_extremes(self, share: float, duration: float) -> None:
-        """Bring the largest deflections up to a share of the step, on the cubic from the last look."""
+        """Bring the largest deflections up to a share of the step, on the cubic from the last look.
+
+        What is too long for its modes does not count.
+        """
+        if not self.follows(self.length_at(share)):
+            self.too_long = True
+            self.push_before = self.pushed_at(share)
+            return
         self.largest_deflection = highest_so_far(
             self.largest_deflection, duration, self.last_deflection, self.last_rate, self.deflection,
             self.deflection_rate,
@@ -234,4 +264,6 @@ class BeltDynamics(BeltRest):
             self.shortening = shortening(self.free_length, *self.mode)
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
-        return 1 if self.held else 0
+        if self.held:
+            return 2 if self.lost else 1
+        return 3 if self.outside and not self.follows(self.free_length) else 0

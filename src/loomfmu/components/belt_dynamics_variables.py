@@ -16,8 +16,19 @@ class BeltDynamicsVariables(Component):
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the belt has folded, or moves too fast to be followed, at a free length of {free_length}: until"
-            " it is back in its guide, its deflection is shown as {deflection}, the largest possible",
+            "the belt has folded at a free length of {free_length}: until it is back in its guide, its"
+            " deflection is shown as {deflection}, the largest possible",
+            warning=True,
+        ),
+        Problem(
+            "the belt's motion could not be followed at a free length of {free_length}: until it is back in"
+            " its guide, nothing counts for the largest deflections; take more steps",
+            warning=True,
+        ),
+        Problem(
+            "the free length of {free_length} is more than 5 times bow_length = {bow_length}: the deflection"
+            " is too small, since six modes cannot follow the bow, and does not count for the largest"
+            " deflections",
             warning=True,
         ),
     )
@@ -45,7 +56,7 @@ class BeltDynamicsVariables(Component):
     )  # fmt: skip
     belt_mass: float = parameter(
         "kg/m", 0.05, "Mass of the belt per length (assumed: none published; 0.02 to 0.1)",
-        minimum=1e-9, maximum=10.0, nominal=0.1,
+        minimum=1e-5, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     damping: float = parameter(
         "1/s", 0.0, "Rate at which a free vibration of the belt decays (assumed: none published)",
@@ -75,7 +86,10 @@ class BeltDynamicsVariables(Component):
         "m", 0.02, "Free length below which the belt is taken as straight", display="mm",
         minimum=1e-4, maximum=1.0, nominal=0.01,
     )  # fmt: skip
-    modes: int = parameter("1", 6, "Number of modes, the others being held at 0", minimum=1, maximum=6)
+    modes: int = parameter(
+        "1", 6, "Number of modes that move; the others are held at 0, and the end shape stays that of six",
+        minimum=1, maximum=6,
+    )  # fmt: skip
     inputs_at_step_end: bool = at_step_end()
     travel: float = input_(
         "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
@@ -108,10 +122,11 @@ class BeltDynamicsVariables(Component):
         "m", "Distance of the largest deflection from the guide", display="mm", nominal=0.1
     )
     largest_deflection: float = output(
-        "m", "Largest deflection so far", display="mm", nominal=5e-3, highest_of="deflection"
-    )
+        "m", "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow",
+        display="mm", nominal=5e-3, highest_of="deflection",
+    )  # fmt: skip
     largest_at_risk: float = output(
-        "m", "Largest deflection so far while the head was pushed", display="mm", nominal=5e-3
+        "m", "That of largest_deflection while the head was pushed", display="mm", nominal=5e-3
     )
     margin: float = output("1", "Dynamic margin, 1 - deflection / allowed_deflection")
     lowest_margin: float = output("1", "Lowest dynamic margin so far", lowest_of="margin")
@@ -128,16 +143,32 @@ class BeltDynamicsVariables(Component):
     guide_work: float = output("J", "Work done on the deflection at the guide so far", nominal=0.1)
     lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
     energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1)
-    energy_residual: float = output("J", "Energy that all work so far does not explain", nominal=1e-9)
+    energy_residual: float = output(
+        "J", "Energy that all work so far does not explain; without meaning once the belt has been held",
+        nominal=1e-9,
+    )  # fmt: skip
     folded: bool = output(
         "1",
-        "The belt has folded at least once, or its motion could not be followed",
+        "The belt has folded at least once",
+        start=False,
+        variability="discrete",
+    )
+    followed: bool = output(
+        "1",
+        "The belt's motion could always be followed; if not, it may have been deflected farther",
+        start=True,
+        variability="discrete",
+    )
+    too_long: bool = output(
+        "1",
+        "The free length has been above 5 times bow_length, where largest_deflection does not count",
         start=False,
         variability="discrete",
     )
 
     outside: bool = state("1", "The free length is above the shortest one", start=False)
-    held: bool = state("1", "The belt is held as it folded", start=False)
+    held: bool = state("1", "The belt is held until it is back in its guide", start=False)
+    lost: bool = state("1", "It is held because its motion could not be followed", start=False)
     mode: tuple[float, ...] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
     mode_rate: tuple[float, ...] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
     sampled_travel: float = state("m", "Travel at the last sample of the inputs")

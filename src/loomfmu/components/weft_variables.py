@@ -82,7 +82,7 @@ class WeftVariables(ShaftDriven):
         minimum=-1e9, maximum=1e9,
     )  # fmt: skip
     acceleration: float = input_(
-        "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
+        "m/s2", 0.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
     tension: float = output("N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5)
     highest_tension: float = output(

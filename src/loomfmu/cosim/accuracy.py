@@ -33,6 +33,13 @@ def chosen(
     LoomfmuError where the accuracy is not reached.
     """
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
+    for claim, table in zip(estimates.claims, scene.claims, strict=True):
+        if claim.resolved > wanted:
+            raise LoomfmuError(
+                f"accuracy = {wanted:g} cannot be reached: with any steps, the error of"
+                f" {table.get('name') or table['kind']!r} is at least {claim.resolved:g} of its bound;"
+                " set a larger accuracy, or steps_per_revolution"
+            )
     before: list[tuple[float, ...]] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in (FEWEST << doubled for doubled in range(DOUBLED + 1)):

@@ -44,7 +44,7 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit.
+    may be off by with any steps, in its unit, and `resolved` the same as a share of that number.
     """
 
     name: str = argument(Name(), "")
@@ -56,6 +56,7 @@ class Claim(ABC):
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
+    resolved: ClassVar[float] = 0.0
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)

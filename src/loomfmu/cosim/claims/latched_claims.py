@@ -1,6 +1,7 @@
 """Claims on extremes that a component itself finds on its continuous curve, and keeps."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -40,8 +41,12 @@ class BeltDeflection(Claim):
     at_most: float = argument(Quantity("m", "mm", low=0.0))
     belt: str = argument(Name(), "belt_motion")
 
-    needs = ("belt.deflection", "belt.largest_deflection", "belt.largest_at_risk", "belt.folded")
+    needs = (
+        "belt.deflection", "belt.largest_deflection", "belt.largest_at_risk", "belt.folded", "belt.followed",
+        "belt.too_long",
+    )  # fmt: skip
     sense, unit, grid = AT_MOST, LENGTH, NOTHING
+    resolved = 1e-4  # six modes and the integration steps inside, which the steps of a run do not show
 
     def judge(self, trace: Signals) -> Verdict:
         latch = f"{self.belt}.largest_deflection"
@@ -50,7 +55,16 @@ class BeltDeflection(Claim):
         notes = [f"while the head was pushed: {pushed}"]
         if trace[f"{self.belt}.folded"][-1]:
             notes.append("the belt folded")
-        return self.verdict(trace, "largest deflection of the belt", latch, self.at_most, worst, time, *notes)
+        if trace[f"{self.belt}.too_long"][-1]:
+            notes.append("free lengths above 5 times bow_length do not count")
+        # beyond the bound a deflection that was followed decides
+        unknown = not trace[f"{self.belt}.followed"][-1] and worst <= self.at_most
+        if unknown:
+            worst, time = math.nan, math.nan
+            notes = ["the belt's motion could not be followed: take more steps"]
+        text = "largest deflection of the belt"
+        verdict = self.verdict(trace, text, latch, self.at_most, worst, time, *notes)
+        return replace(verdict, decided=not unknown)
 
 
 class PeakLoad(Claim):

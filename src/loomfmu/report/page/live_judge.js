@@ -126,6 +126,9 @@
     },
     belt_deflection: (run, claim) => {
       const latch = run.signal(`${claim.belt}.largest_deflection`);
+      if (!last(run.signal(`${claim.belt}.followed`)) && last(latch) <= claim.at_most) {
+        return unknown("the belt's motion could not be followed: take more steps");
+      }
       const deflection = run.signal(`${claim.belt}.deflection`).map(each => -each);
       return { worst: last(latch), bound: claim.at_most, time: reached(run, latch, deflection),
                note: last(run.signal(`${claim.belt}.folded`)) ? "the belt folded" : "" };
