@@ -380,6 +380,7 @@ def test_a_sweep_of_it_runs_in_several_processes(cam: Path) -> None:
 # ---- its page in the documentation
 
 
+@pytest.mark.slow  # it builds for all platforms
 def test_the_commands_of_its_page_work(tmp_path: Path) -> None:
     page = (Path(__file__).parents[1] / "docs" / "own_mechanism.md").read_text()
     section = page[page.index("## Start") : page.index("## In a scene")]
