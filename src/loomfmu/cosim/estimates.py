@@ -15,10 +15,10 @@ import numpy as np
 
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
+from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
 from .master.grid import Grid, chosen
-from .planning.pruning import upstream
 from .planning.requested import signals_of
 from .scenes.graph import step_order
 from .scenes.scene import ITERATED, Scene
@@ -82,10 +82,11 @@ class Estimates:
         scene = self._scene
         _order, lagged = step_order(scene.instances, scene.wires)
         delayed = bool(lagged) and scene.coupling != ITERATED
+        sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
         found = []
         for claim in self.claims:
             owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
-            components = [scene.instances[name].fmu.component for name in upstream(owners, scene.wires)]
+            components = [scene.instances[name].fmu.component for name in upstream(owners, sources)]
             kept = {MOTION if each is None else each.keeps for each in components}
             found.append(MEMORY if MOTION in kept or delayed else HELD if EXTREMES in kept else PRESENT)
         return found

@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import units
 from ..errors import LoomfmuError, listed, shown
+from ..upstream import sources_of, upstream
 from ..variables import SHARED
 from .comparison import Change, Comparison, Difference
 from .meeting import Meeting, meet
@@ -114,23 +115,15 @@ def _earliest(trace: Trace, differences: Sequence[Difference]) -> Difference | N
     That is one of the instance that depends on the fewest others by its wires, and feeds most of them: the
     shaft, if it is among them. Without wires it is the first instance of the file.
     """
-    sources: dict[str, set[str]] = {}
-    for sink, source in trace.wires.items():
-        sources.setdefault(sink.partition(".")[0], set()).add(source.partition(".")[0])
+    wires = ((source.partition(".")[0], sink.partition(".")[0]) for sink, source in trace.wires.items())
+    sources = sources_of(wires)
     fed = Counter(source for found in sources.values() for source in found)
     places = list(dict.fromkeys(name.partition(".")[0] for name in (*trace, *SHARED)))
 
-    def upstream(instance: str) -> int:
-        found, left = set[str](), [instance]
-        while left:
-            new = sources.get(left.pop(), set()) - found
-            found |= new
-            left += new
-        return len(found)
-
     def rank(each: Difference) -> tuple[float, int, int, int]:
         instance = each.signal.partition(".")[0]
-        return each.first.time, upstream(instance), -fed[instance], places.index(instance)
+        before = len(upstream(sources.get(instance, ()), sources))
+        return each.first.time, before, -fed[instance], places.index(instance)
 
     return min(differences, key=rank, default=None)
 

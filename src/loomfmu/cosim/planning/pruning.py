@@ -8,9 +8,9 @@ Third-party FMUs always run: they may be there for what they do, such as to log 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from ...upstream import sources_of, upstream
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
-from ..scenes.graph import Wire
 from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import FOLLOWED, follows, turning
@@ -51,7 +51,7 @@ def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pr
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
     requested = {signal.split(".")[0] for signal in signals} - set(shafts)
     third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}
-    needed = upstream(requested | third_party, wires)
+    needed = upstream(requested | third_party, sources_of((w.source[0], w.sink[0]) for w in wires))
     wires = [wire for wire in wires if wire.sink[0] in needed]
     like = {wire.sink[0]: wire.source[0] for wire in scene.wires if wire.source[0] in shafts}
     instances = {
@@ -119,18 +119,6 @@ def _fed(scene: Scene) -> dict[str, set[str]]:
 def _read(scene: Scene) -> set[str]:
     """The instances whose parameters the claims need."""
     return {name for claim in claims_of(scene) for name in claim.parameter_owners()}
-
-
-def upstream(wanted: set[str], wires: list[Wire]) -> set[str]:
-    """Instances, and all that feed them, directly or through others."""
-    needed, waiting = set(wanted), list(wanted)
-    while waiting:
-        sink = waiting.pop()
-        for wire in wires:
-            if wire.sink[0] == sink and wire.source[0] not in needed:
-                needed.add(wire.source[0])
-                waiting.append(wire.source[0])
-    return needed
 
 
 def _is_constant(scene: Scene, name: str) -> bool:
