@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .tables import claim_columns, decided_column, labels_of
+from .tables import claim_columns, labels_of
 
 DIGITS = 6  # that distinguish rows
 
@@ -46,7 +46,9 @@ def _rounded(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def distance(table: Any, number: int) -> NDArray[np.float64]:
     """How far the rows are beyond the bound of one claim, counted from 0; see `Beyond`."""
-    holds, worst, bound = (table[name].to_numpy() for name in claim_columns(number))
+    holds, worst, bound = (
+        table[name].to_numpy() for name in claim_columns(number, "holds", "worst", "bound")
+    )
     fails = holds == np.False_  # rows without result are None
     judged = fails | (holds == np.True_)
     away = np.abs(worst - bound)
@@ -60,9 +62,7 @@ def undecided(table: Any) -> int:
     """In how many rows no claim fails, but one is undecided."""
     open_ones, failing = (np.zeros(table.num_rows, dtype=bool) for _ in range(2))
     for number in range(len(labels_of(table))):
-        holds, decided = (
-            table[name].to_numpy() for name in (claim_columns(number)[0], decided_column(number))
-        )
+        holds, decided = (table[name].to_numpy() for name in claim_columns(number, "holds", "decided"))
         open_ones |= decided == np.False_  # rows without result are None
         failing |= (holds == np.False_) & (decided != np.False_)
     return int(np.sum(open_ones & ~failing))

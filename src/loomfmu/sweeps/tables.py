@@ -18,34 +18,14 @@ from ..cosim.importing.fmus import Port
 from ..version import __version__
 from .axes import Axis
 from .plan import SweepPlan
-from .worker import Batch, Label
+from .worker import Batch, ClaimResult, Label
 
 TYPES = {"Real": pa.float64(), "Integer": pa.int64(), "Boolean": pa.bool_(), "Text": pa.string()}
 
 
-def claim_columns(number: int) -> tuple[str, str, str]:
-    """Names of the columns of a claim, counted from 0."""
-    return f"claim_{number + 1}.holds", f"claim_{number + 1}.worst", f"claim_{number + 1}.bound"
-
-
-def distance_column(number: int) -> str:
-    """Name of the column of the distances of a claim, counted from 0, from its bound: below 0 it fails."""
-    return f"claim_{number + 1}.distance"
-
-
-def decided_column(number: int) -> str:
-    """Name of the column that says whether a claim, counted from 0, is decided beyond its numerical error."""
-    return f"claim_{number + 1}.decided"
-
-
-def error_column(number: int) -> str:
-    """Name of the column of the numerical errors of a claim, counted from 0: none far from its bound."""
-    return f"claim_{number + 1}.error"
-
-
-def note_column(number: int) -> str:
-    """Name of the column of the notes on a claim, counted from 0."""
-    return f"claim_{number + 1}.note"
+def claim_columns(number: int, *parts: str) -> list[str]:
+    """Names of the columns of a claim, counted from 0, for these parts of its `ClaimResult`."""
+    return [f"claim_{number + 1}.{part}" for part in parts]
 
 
 def table_of(plan: SweepPlan, rows: range, batch: Batch) -> Any:
@@ -135,16 +115,14 @@ def _claim(number: int, label: Label | None) -> list[Any]:
     about: dict[str, str] = {}
     if label is not None:
         about = _about(label.unit, label.display_unit, label.claim) | {"signal": label.signal}
-    holds, worst, bound = claim_columns(number)
-    return [
-        pa.field(holds, pa.bool_(), metadata={"description": about.get("description", "")}),
-        pa.field(worst, pa.float64(), metadata=about),
-        pa.field(bound, pa.float64(), metadata=about),
-        pa.field(distance_column(number), pa.float64(), metadata=about),
-        pa.field(note_column(number), pa.string(), metadata={"description": "What limits the verdict"}),
-        pa.field(decided_column(number), pa.bool_(), metadata={"description": "Whether it is decided"}),
-        pa.field(error_column(number), pa.float64(), metadata=about),
-    ]
+    said = {
+        "holds": (pa.bool_(), {"description": about.get("description", "")}),
+        "note": (pa.string(), {"description": "What limits the verdict"}),
+        "decided": (pa.bool_(), {"description": "Whether it is decided"}),
+    }
+    types = [said.get(part, (pa.float64(), about)) for part in ClaimResult._fields]
+    names = claim_columns(number, *ClaimResult._fields)
+    return [pa.field(name, type_, metadata=words) for name, (type_, words) in zip(names, types, strict=True)]
 
 
 def _about(unit: str, display: str, description: str) -> dict[str, str]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from .. import machines
 from ..cosim.claims.claims import called
@@ -50,11 +50,22 @@ class Label:
     display_unit: str
 
 
+class ClaimResult(NamedTuple):
+    """What the result of a row has of each claim, in this order; all None if the row could not be run."""
+
+    holds: bool | None = None
+    worst: float | None = None
+    bound: float | None = None
+    distance: float | None = None
+    note: str | None = None
+    decided: bool | None = None
+    error: float | None = None
+
+
 @dataclass(frozen=True)
 class Batch:
-    """Results of some rows, each: final values, then of each claim whether it holds, worst value, bound,
-    distance, note, whether it is decided and error, whether all hold, the first claim that does not,
-    warnings, and what went wrong.
+    """Results of some rows, each: final values, then a `ClaimResult` of each claim, whether all hold, the
+    first claim that does not, warnings, and what went wrong.
 
     None stands for what there is not.
 
@@ -158,8 +169,10 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         return failed(job, loom.scene, described(error)), ()
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
-        numbers = map(_finite, (verdict.worst, verdict.bound, verdict.distance))
-        values += [verdict.holds, *numbers, verdict.note or None, verdict.decided, _finite(verdict.error)]
+        values += ClaimResult(
+            verdict.holds, _finite(verdict.worst), _finite(verdict.bound), _finite(verdict.distance),
+            verdict.note or None, verdict.decided, _finite(verdict.error),
+        )  # fmt: skip
         if not verdict.holds and first is None:
             first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
@@ -167,7 +180,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * (len(job.values) + 7 * len(scene.claims) + 3) + [reason]
+    return [None] * len(job.values) + [*ClaimResult()] * len(scene.claims) + [None] * 3 + [reason]
 
 
 def _finite(value: float) -> float | None:

@@ -16,12 +16,11 @@ from ...files import cannot_write
 from ...sweeps.pools import Pool
 from ...sweeps.schedule import run_batches
 from ...sweeps.varied import Value
-from ...sweeps.worker import Batch, Job
+from ...sweeps.worker import Batch, ClaimResult, Job
 from .study import Study
 
 Point = tuple[float, ...]  # a number for each variable, see `Variable.value`
 Floats = NDArray[np.float64]
-OF_CLAIM = 7  # columns of a claim in a result: holds, worst, bound, distance, note, decided, error
 
 
 @dataclass(frozen=True)
@@ -107,9 +106,11 @@ class Runs:
     def _design(self, point: Point, values: tuple[Value, ...], result: list[Any]) -> Design:
         study = self.study
         signals, claims = result[: len(study.values)], result[len(study.values) :]
-        columns = range(0, OF_CLAIM * len(study.scene.claims), OF_CLAIM)
-        holds = [bool(claims[column]) for column in columns]
-        bounds, distances = (_numbers(claims[column + 2 + each] for column in columns) for each in (0, 1))
+        size = len(ClaimResult._fields)
+        parts = range(0, size * len(study.scene.claims), size)
+        found = [ClaimResult(*claims[part : part + size]) for part in parts]
+        holds = [bool(each.holds) for each in found]
+        bounds, distances = _numbers(each.bound for each in found), _numbers(each.distance for each in found)
         of_kind: dict[str, Any] = {"signal": _numbers(signals), "claim": distances, "variable": values}
         heights = np.array([goal.sign * float(of_kind[goal.kind][goal.place]) for goal in study.goals])
         room = self._limits.room(holds, bounds, distances)
