@@ -391,6 +391,7 @@ def _plot(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> int:
     from .traces import compare
     from .traces.comparing import TOLERANCE
+    from .traces.comparison import MOST
     from .traces.damage import check
 
     amounts = [text for text in options.tolerance if "=" in text]
@@ -410,10 +411,7 @@ def _compare(options: argparse.Namespace) -> int:
         tolerance=_share(shares[0]) if shares else TOLERANCE,
         absolute=_pairs(amounts, "--tolerance"),
     )  # fmt: skip
-    if options.all:
-        found.show(most=None)
-    else:
-        found.show()
+    found.show(None if options.all else MOST)
     if options.report:
         say(f"report: {report.write(inputs, options.report, options.force, comparison=found)}")
     return 0 if found else 1

@@ -1,12 +1,13 @@
 """All that is printed: one place where foreign text is made harmless, tables that fit."""
 
 import contextlib
+import io
 import shutil
 import sys
 import textwrap
 import traceback
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
 from .errors import LoomfmuError
@@ -75,6 +76,15 @@ def show(headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequen
     if max(map(len, lines)) > width:
         lines = [line for entry in entries for line in as_entry([safe(part) for part in entry], width)]
     say("", *lines, "")
+
+
+def as_csv(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as the text of a CSV file."""
+    import csv  # few commands write any
+
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
 
 
 def in_columns(rows: Sequence[Sequence[str]]) -> list[str]:

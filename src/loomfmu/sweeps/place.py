@@ -28,6 +28,17 @@ def check_place(processes: Any, scheduler: Any) -> None:
         raise LoomfmuError(f'scheduler = {shown(scheduler)} is not an address such as "tcp://host:8786"')
 
 
+@contextmanager
+def resumable(directory: Path, what: str) -> Iterator[None]:
+    """Say of Ctrl-C what is kept in a directory, and how to go on. Raises KeyboardInterrupt."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; finished {what} are kept in {directory}; run the same command to continue"
+        ) from None
+
+
 def check_packages(path: Path, used: dict[str, bool]) -> None:
     """Refuse a file that uses packages which are not installed, and name all of them."""
     missing = [package for package, needed in used.items() if needed and find_spec(package) is None]

@@ -11,7 +11,7 @@ from .ranking import beyond, worst_rows
 from .run import Sweep
 from .sensitivity import WORDS, Influences
 from .store import INDICES_FILE
-from .tables import claim_columns, decided_column, labels_of, note_column
+from .tables import claim_columns, labels_of
 
 SHOWN = 5  # rows of a kind
 
@@ -62,7 +62,7 @@ def _show_worst(sweep: Sweep) -> None:
     claims, labels = beyond(sweep.table).claim, labels_of(sweep.table)
     for row in rows:
         number = int(claims[row])
-        names = (*claim_columns(number), decided_column(number), note_column(number))
+        names = claim_columns(number, "holds", "worst", "bound", "decided", "note")
         holds, worst, bound, decided, note = (sweep.table[name][row].as_py() for name in names)
         word, claim = HOLDS if holds else FAILS if decided else UNDECIDED, labels[number].claim
         shown = [

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, described, path_of
 from ..files import ANY, write_file
+from ..printed import as_csv
 from ..progress import Advance
 from ..progress import progress as progress_bar
 from ..traces import TRACE
 from . import plan as plans
-from .place import check_packages, check_place, cluster, local
+from .place import check_packages, check_place, cluster, local, resumable
 from .plan import SweepPlan
 from .pools import Died, Pool, Task
 from .schedule import run_batches
-from .sensitivity import Influences, as_csv, influences
+from .sensitivity import Influences, csv_rows, influences
 from .worker import Batch, Job, job_of, run_trace
 
 if TYPE_CHECKING:
@@ -120,7 +121,7 @@ def sweep(
 
     job = job_of(plan)
     directory = path_of(output, "output") if output is not None else Path("results") / plan.name
-    try:
+    with resumable(directory, "rows"):
         fingerprint, inputs = _fingerprint(plan, job), [Path(path), *files_of(plan.scene)]
         with opened(directory, plan, fingerprint, restart, inputs) as store, ExitStack() as pools:
             here = pools.enter_context(local(plan, processes, plan.rows))
@@ -131,10 +132,6 @@ def sweep(
             found = _indices(store, table)
             traces, untraced = _run_traces(store, job, table, here, progress)
             store.tidy()
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            f"interrupted; finished rows are kept in {directory}; run the same command to continue"
-        ) from None
     return Sweep(plan, table, store.table_path, ran, picture, traces, untraced, found)
 
 
@@ -176,7 +173,7 @@ def _indices(store: "Store", table: Any) -> Influences | None:
     if plan.sensitivity is None:
         return None
     found = influences(plan.sensitivity, table, plan.sample, plan.title)
-    write_file(store.indices_path, as_csv(found).encode(), ANY)
+    write_file(store.indices_path, as_csv(csv_rows(found)).encode(), ANY)
     if find_spec("matplotlib") is not None:
         from ..report import pictures
         from .bars import draw

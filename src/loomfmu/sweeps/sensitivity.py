@@ -4,8 +4,6 @@ A sweep file with `[sensitivity]` runs the rows that the method needs; SALib cho
 indices from the table.
 """
 
-import csv
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -176,17 +174,15 @@ def influences(wanted: Sensitivity, table: Any, axes: Sequence[Axis], title: str
     )
 
 
-def as_csv(found: Influences) -> str:
-    """All indices as a table in CSV."""
+def csv_rows(found: Influences) -> list[list[str]]:
+    """All indices as a table, its headings first."""
     names = [name for pair in INDICES[found.method] for name in pair if name]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["output", "unit", "range", *names, "note"])
+    rows = [["output", "unit", "range", *names, "note"]]
     for each in found.outputs:
         for number, key in enumerate(each.keys):
             numbers = [f"{each.indices[name][number]:.9g}" if each.indices else "" for name in names]
-            writer.writerow([each.words, each.label, key, *numbers, each.note])
-    return text.getvalue()
+            rows.append([each.words, each.label, key, *numbers, each.note])
+    return rows
 
 
 def _shares(span: Range, axis: Axis) -> Floats:

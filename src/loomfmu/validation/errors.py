@@ -4,7 +4,6 @@
 """
 
 import csv
-import io
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 
 from ..cosim.run import prepare
 from ..cosim.scenes.scene import parse
+from ..printed import as_csv
 from .sections import Chapter, Row, Section
 
 FIGURES = Path(__file__).with_name("errors.csv")
@@ -197,9 +197,7 @@ def _statistics(group: list[Found]) -> list[str]:
 
 def written(rows: list[list[str]]) -> str:
     """The rows as the text of the file."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([HEADS, *rows])
-    return text.getvalue()
+    return as_csv([HEADS, *rows])
 
 
 def chapter() -> Chapter:

@@ -1,7 +1,5 @@
 """Limits as people read them: tables, sentences, CSV."""
 
-import csv
-import io
 from collections.abc import Sequence
 
 from ... import printed
@@ -51,7 +49,7 @@ def table(found: Limits) -> str:
         for limit in each.limits:
             numbers = _numbers(found.span, limit.value, limit.low, limit.high)
             lines.append((each.claim, limit.begins, *numbers, found.span.unit, str(limit.jumps).lower()))
-    return _csv(lines)
+    return printed.as_csv(lines)
 
 
 # ---- two variables
@@ -82,14 +80,8 @@ def boundary_table(found: Boundary) -> str:
         for stretch in limits.ranges:
             ends = _numbers(first, stretch.low, stretch.high)
             lines.append((*_numbers(second, value), *ends, stretch.below, stretch.above))
-    return _csv(lines)
+    return printed.as_csv(lines)
 
 
 def _numbers(span: Span, *values: float) -> list[str]:
     return [f"{value / span.factor:.13g}" for value in values]
-
-
-def _csv(lines: Sequence[Sequence[str]]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(lines)
-    return text.getvalue()

@@ -7,8 +7,6 @@ best.toml         the best scene; best_01.toml ... for a front, whose goals are 
 best.png          the picture
 """
 
-import csv
-import io
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,6 +17,7 @@ from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.run import evaluate
 from ...files import ANY, write_file
+from ...printed import as_csv
 from ...sweeps.directory import files
 from ...traces import Verdict
 from .. import rewritten
@@ -166,6 +165,4 @@ def _labelled(name: str, unit: str, display: str) -> str:
 
 
 def _write(path: Path, rows: Sequence[Sequence[str]]) -> None:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    write_file(path, text.getvalue().encode(), ANY)
+    write_file(path, as_csv(rows).encode(), ANY)

@@ -11,7 +11,7 @@ from ...cosim.run import evaluate
 from ...cosim.scenes.scene_files import files_of
 from ...errors import LoomfmuError, path_of
 from ...progress import progress as progress_bar
-from ...sweeps.place import check_packages, check_place, cluster, local
+from ...sweeps.place import check_packages, check_place, cluster, local, resumable
 from ...sweeps.worker import job_of
 from . import study as studies
 from .found import Files, found_of
@@ -57,23 +57,18 @@ def optimize(
     job = replace(job_of(study), errors="none")  # a search goes up to the bounds
     files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
     fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
-    try:
-        with ExitStack() as stack:
-            own = own_point(study)
-            try:  # what could not be run or written is refused now, not after the search
-                files.check(study, own)
-                verdicts = evaluate(study.scene, flavour=study.flavour, errors="none").claims
-            except LoomfmuError as error:
-                raise LoomfmuError(f"{path}: {error}") from None
-            limits = limits_of(study, verdicts, path)
-            inputs = [path, *files_of(study.scene)]
-            stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
-            place = cluster(scheduler) if scheduler else local(study, processes, generation(study))
-            pool = stack.enter_context(place)
-            advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
-            runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance)))
-            return found_of(runs, searched(runs, own, path), verdicts, files)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            f"interrupted; finished runs are kept in {files.directory}; run the same command to continue"
-        ) from None
+    with resumable(files.directory, "runs"), ExitStack() as stack:
+        own = own_point(study)
+        try:  # what could not be run or written is refused now, not after the search
+            files.check(study, own)
+            verdicts = evaluate(study.scene, flavour=study.flavour, errors="none").claims
+        except LoomfmuError as error:
+            raise LoomfmuError(f"{path}: {error}") from None
+        limits = limits_of(study, verdicts, path)
+        inputs = [path, *files_of(study.scene)]
+        stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
+        place = cluster(scheduler) if scheduler else local(study, processes, generation(study))
+        pool = stack.enter_context(place)
+        advance = stack.enter_context(progress_bar(study.title, expected(study), wanted=progress))
+        runs = stack.enter_context(closing(Runs(study, job, pool, files.runs, limits, advance)))
+        return found_of(runs, searched(runs, own, path), verdicts, files)
