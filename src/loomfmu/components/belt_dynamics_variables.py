@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from ..arrays import array
 from ..variables import Component, Problem, Terminal, at_step_end, auxiliary, input_, output, parameter, state
+from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .terminals import HEAD
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
@@ -91,20 +92,10 @@ class BeltDynamicsVariables(Component):
         minimum=1, maximum=6,
     )  # fmt: skip
     inputs_at_step_end: bool = at_step_end()
-    travel: float = input_(
-        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
-        minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
-    acceleration: float = input_(
-        "m/s2", 0.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
-    )
-    yarn_tension: float = input_(
-        "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
-        display="cN", minimum=-1e6, maximum=1e6, source="yarn.tension",
-    )  # fmt: skip
+    travel: float = head_travel()
+    velocity: float = head_velocity()
+    acceleration: float = head_acceleration()
+    yarn_tension: float = yarn_tension()
     length_factor: float = input_(
         "1", 0.8, "Column length factor mu: the belt is a pinned one of stiffness EI / mu^2",
         minimum=0.1, maximum=2.0, source="belt_#.length_factor",

@@ -5,6 +5,7 @@ from math import inf
 from typing import ClassVar
 
 from ..variables import EXTREMES, Problem, Terminal, auxiliary, input_, output, parameter
+from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -55,20 +56,10 @@ class BeltVariables(ShaftDriven):
     taker: bool = parameter(
         "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in"
     )
-    travel: float = input_(
-        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
-        minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
-    acceleration: float = input_(
-        "m/s2", 398.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
-    )
-    yarn_tension: float = input_(
-        "N", 0.0, "Weft tension; acts on the belt while the head carries the weft: see taker",
-        display="cN", minimum=-1e6, maximum=1e6, source="yarn.tension",
-    )  # fmt: skip
+    travel: float = head_travel()
+    velocity: float = head_velocity()
+    acceleration: float = head_acceleration(398.0)
+    yarn_tension: float = yarn_tension()
     guide_clearance: float = input_(
         "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",
         minimum=0.0, maximum=0.05, nominal=1e-3, unless="prescribe_length_factor",

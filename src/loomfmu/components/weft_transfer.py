@@ -11,11 +11,13 @@ from ..variables import (
     Terminal,
     at_step_end,
     indicator,
-    input_,
     output,
     parameter,
 )
+from .head_inputs import head_acceleration, head_travel, head_velocity
 from .terminals import GIVER, TAKER
+
+BRINGS, TAKES = "the head that brings the weft", "the head that takes the weft"
 
 
 @dataclass(slots=True)
@@ -38,30 +40,12 @@ class WeftTransfer(Component):
         display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     inputs_at_step_end: bool = at_step_end()
-    giver_travel: float = input_(
-        "m", 2.0953, "Travel of the head that brings the weft", rate="giver_velocity",
-        minimum=-1e5, maximum=1e5, source="weft.travel",
-    )  # fmt: skip
-    giver_velocity: float = input_(
-        "m/s", 0.0, "Velocity of the head that brings the weft", nominal=10.0, rate="giver_acceleration",
-        minimum=-1e9, maximum=1e9, source="weft.velocity",
-    )  # fmt: skip
-    giver_acceleration: float = input_(
-        "m/s2", 0.0, "Acceleration of the head that brings the weft", nominal=1000.0,
-        minimum=-1e15, maximum=1e15, source="weft.acceleration",
-    )  # fmt: skip
-    taker_travel: float = input_(
-        "m", 2.0953, "Travel of the head that takes the weft", rate="taker_velocity",
-        minimum=-1e5, maximum=1e5, source="weft_2.travel",
-    )  # fmt: skip
-    taker_velocity: float = input_(
-        "m/s", 0.0, "Velocity of the head that takes the weft", nominal=10.0, rate="taker_acceleration",
-        minimum=-1e9, maximum=1e9, source="weft_2.velocity",
-    )  # fmt: skip
-    taker_acceleration: float = input_(
-        "m/s2", 0.0, "Acceleration of the head that takes the weft", nominal=1000.0,
-        minimum=-1e15, maximum=1e15, source="weft_2.acceleration",
-    )  # fmt: skip
+    giver_travel: float = head_travel(2.0953, BRINGS, "giver_", "weft")
+    giver_velocity: float = head_velocity(BRINGS, "giver_", "weft")
+    giver_acceleration: float = head_acceleration(0.0, BRINGS, "weft")
+    taker_travel: float = head_travel(2.0953, TAKES, "taker_", "weft_2")
+    taker_velocity: float = head_velocity(TAKES, "taker_", "weft_2")
+    taker_acceleration: float = head_acceleration(0.0, TAKES, "weft_2")
     overlap: float = output(
         "m", "How far the heads have passed each other; negative while they are apart", display="mm",
         rate="closing_velocity",

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..arrays import array
-from ..variables import Problem, Terminal, auxiliary, input_, output, parameter, state
+from ..variables import Problem, Terminal, auxiliary, output, parameter, state
+from .head_inputs import head_acceleration, head_travel, head_velocity
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -74,16 +75,9 @@ class WeftVariables(ShaftDriven):
         "m", 0.1, "Travel at which the giver takes the weft, and the taker releases it (assumed)",
         display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
-    travel: float = input_(
-        "m", 0.9667, "Travel of the rapier head", rate="velocity", minimum=-1e5, maximum=1e5
-    )
-    velocity: float = input_(
-        "m/s", 0.0, "Velocity of the rapier head", nominal=10.0, rate="acceleration",
-        minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
-    acceleration: float = input_(
-        "m/s2", 0.0, "Acceleration of the rapier head", nominal=1000.0, minimum=-1e15, maximum=1e15
-    )
+    travel: float = head_travel()
+    velocity: float = head_velocity()
+    acceleration: float = head_acceleration()
     tension: float = output("N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5)
     highest_tension: float = output(
         "N", "Highest tension so far, on the continuous curve", display="cN", nominal=0.5,
