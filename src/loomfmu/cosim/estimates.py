@@ -29,9 +29,9 @@ MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 class Method(NamedTuple):
     """What the differences between resolutions say about the error of the finest one.
 
-    The error is no more than `halved` times what half of the steps change, nor than `quartered` times what a
-    quarter of them changes further: the second one counts where the first is small by chance. `floor` is a
-    share of the value, below which rounding, and what iterations leave, hide the order. Numbers farther from
+    The estimate is `halved` times the change from all steps to half of them, or `quartered` times the further
+    change to a quarter if that is more: it counts where the first one is small by chance. `floor` is a share
+    of the value, below which rounding, and what iterations leave, hide the order. Numbers farther from
     their bound than the share `near` of it are not estimated where only near ones are: it is far above what
     errors are with a few dozen steps in a revolution.
     """

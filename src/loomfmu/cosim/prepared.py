@@ -121,9 +121,9 @@ class Pattern:
         target = target_of(plan, path, overwrite, progress)
         everything = range(len(self.claims))
         coarser = known
-        if any(instance.fmu.component is None for instance in scene.instances.values()):
+        if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
-            coarser = known or self._estimates.coarser(scene, plan.grid, everything)
+            coarser = self._estimates.coarser(scene, plan.grid, everything)
         with stepping.stepped(plan) as master:
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")

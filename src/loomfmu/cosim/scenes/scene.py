@@ -295,7 +295,7 @@ def _outputs(instances: Iterable[Instance]) -> Iterable[str]:
 
 
 def _check_tolerances(scene: Scene) -> None:
-    """Refuse tolerances of what cannot be set, as `--set` does, and ends that are no values of it."""
+    """Refuse tolerances of what `--set` cannot set either, and ends that are not among its values."""
     for key, ends in scene.tolerances.items():
         try:
             pairs = overridden(scene.instances, key, components(scene.instances))
