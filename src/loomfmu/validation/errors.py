@@ -207,8 +207,9 @@ def chapter() -> Chapter:
     total = dict(zip(HEADS, rows[-1], strict=True))
     intro = (
         f"{SCENES} random scenes (seed {SEED}) with {min(STEPS)} to {max(STEPS)} steps in a revolution:"
-        " speeds, clearances, laws, strokes, start angles, ramps, inertias and bounds are drawn at random. The"
-        f" true error is the difference from the same scene with {FINER} times the steps. An estimate covers it if"
+        " speeds, clearances, laws, strokes, start angles, ramps, inertias and bounds are drawn at random."
+        f" The true error is the difference from the same scene with {FINER} times the steps. An estimate"
+        " covers it if"
         f" it is no smaller, or if the true error is below {ROUNDING:.0e} of value or bound, which may be the"
         " reference's own. The ratio of estimate and true error is taken where the latter is above"
         f" {HIDDEN:.0e}, in {total['compared']} of {total['verdicts']} verdicts: below, iterations and noise"
