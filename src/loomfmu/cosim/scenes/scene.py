@@ -34,11 +34,11 @@ class Scene:
     A period is a revolution of the main shaft, or a second in a scene that runs by seconds and has a `step`:
     the run takes `periods` of them. `coupling` is how loops are closed, `grid` where the steps are, with
     `coarse_steps_per_revolution` outside of the windows that the claims look into. With an `accuracy` a run
-    chooses its steps. `file` or the system
-    package `package` is what it was read from, `package_sha256` is the package's, `texts` are those of the
-    other files that its text names, `overrides` the values that differ from it, `notes` what the user is to
-    be warned of. `tolerances` are the ends between which values may lie, as the scene states them. `isolated`
-    says whether FMUs run in processes of their own; by default third-party ones do.
+    chooses its steps. `file` or the system package `package` is what it was read from, `package_sha256` is
+    the package's, `texts` are those of the other files that its text names, `overrides` the values that
+    differ from it, `notes` what the user is to be warned of. `tolerances` are the ends between which values
+    may lie, as the scene states them. `isolated` says whether FMUs run in processes of their own; by default
+    third-party ones do.
     A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s].
     """
 
