@@ -54,9 +54,14 @@ class Logged:
         """Call a function of the FMU; its status, a warning without a message being recorded."""
         logged = self.logged.value
         status = function(*arguments)
-        if status == WARNING and self.logged.value == logged:
-            self.silent_of(name).note(time)
+        if status == WARNING:
+            self.warned(name, time, logged)
         return status
+
+    def warned(self, name: str, time: float, logged: int) -> None:
+        """Record a warning of a function if nothing was logged since there were so many warnings."""
+        if self.logged.value == logged:
+            self.silent_of(name).note(time)
 
     @property
     def silent(self) -> dict[str, tuple[int, float]]:

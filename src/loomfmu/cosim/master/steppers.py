@@ -133,6 +133,8 @@ class PythonStepper:
         self, actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double
     ):
         self._actions = actions
+        # at hand for the loop over them, where looking them up would take longer than the calls themselves
+        self._calls = [(each.call.function, each.call.arguments, each.slave.logged) for each in actions]
         self._memory = memory
         self._time, self._size = time, size
 
@@ -145,9 +147,14 @@ class PythonStepper:
             time.value, size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
             start = time.value
-            for place, action in enumerate(self._actions):
-                if not OK <= (status := action.make(start)) <= WARNING:
+            for place, (function, arguments, logged) in enumerate(self._calls):
+                before = logged.value
+                status = function(*arguments)
+                if status == OK:
+                    continue
+                if status != WARNING:
                     return stopped(self._actions[place:], status, span, step, memory, reals, integers)
+                self._actions[place].slave.warned(self._actions[place].call.name, start, before)
             reals[step] = memory.reals
             integers[step] = memory.integers
         return len(span), None
