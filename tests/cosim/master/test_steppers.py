@@ -70,6 +70,25 @@ def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: s
     equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
 
 
+def test_the_python_loop_calls_the_fmus_without_a_call_of_its_own_around_each() -> None:
+    """A call in Python around each call of an FMU made a step three times as long."""
+    calls = 0
+
+    def count(_frame: object, event: str, _argument: object) -> None:
+        nonlocal calls
+        calls += event == "call"
+
+    scene = in_flavour(small(180), "native")
+    with Master(scene, compiled=False) as master:
+        master.initialize()
+        sys.setprofile(count)
+        try:
+            master.run(scene.steps, lambda *_parts: None, lambda _step: None)
+        finally:
+            sys.setprofile(None)
+    assert calls < 3 * scene.steps + 200  # the driven inputs of a step, and what a run does once
+
+
 def test_fmus_of_fmi_3_are_stepped_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
     files = {
         instance: build_native(name, tmp_path, (host(),), fmi=3)
