@@ -23,9 +23,14 @@ BELT, SPAN = 1, 2
 
 def standing(belt_class, **given):
     """A straight belt of constant length that only the weft compresses."""
-    belt = belt_class(bow=0.0, **given)
+    belt = belt_class(bow=0.0, inputs_at_step_end=True, **given)
     assert belt.initialize(0.0) == 0
     return belt
+
+
+def press(belt, tension):
+    """Compress it from now on, by a load that was there at the last sample, too."""
+    belt.yarn_tension = belt.sampled_tension = tension
 
 
 def euler(belt):
@@ -36,7 +41,7 @@ def euler(belt):
 @pytest.mark.parametrize("excess", [-1e-6, 1e-6])
 def test_a_light_belt_loses_its_stability_at_the_load_of_euler(belt_in_c, belt_mass, excess):
     belt = standing(belt_in_c, belt_mass=belt_mass)
-    belt.yarn_tension = (1.0 + excess) * euler(belt)
+    press(belt, (1.0 + excess) * euler(belt))
     belt.mode = (1e-12, 0.0, 0.0, 0.0, 0.0, 0.0)
     # within 1e-6 of the load the first mode neither grows nor turns faster than this
     rate = (pi / LENGTH) ** 2 * sqrt(belt.bending_stiffness / 0.64 / belt_mass) * 1e-3
@@ -68,18 +73,15 @@ def test_a_slow_load_bends_the_belt_as_the_elastica(belt_in_c, ratio):
 @pytest.mark.parametrize("number", [1, 2, 3, 6])
 @pytest.mark.parametrize("share", [-1.0, 0.0, 0.5, 0.9])
 def test_frequencies_of_a_compressed_beam(belt_in_c, number, share):
-    # of a pinned beam: w_n^2 = (n pi / L)^4 B / rho (1 - P / (n^2 P_1)); tension by a taker that goes back
-    belt = standing(belt_in_c, taker=share < 0.0)
-    load = share * euler(belt)
+    # of a pinned beam: w_n^2 = (n pi / L)^4 B / rho (1 - P / (n^2 P_1))
+    belt = standing(belt_in_c)
     belt.head_mass = 1e-6
-    belt.yarn_tension = abs(load)
-    if share < 0.0:
-        belt.velocity = -1e-300
+    press(belt, share * euler(belt))
     start = tuple(1e-8 * (n + 1 == number) for n in range(6))
     belt.mode = start
     stiffness = belt.bending_stiffness / belt.length_factor**2
     square = (number * pi / LENGTH) ** 4 * stiffness / belt.belt_mass
-    period = 2.0 * pi / sqrt(square * (1.0 - load / (number**2 * euler(belt))))
+    period = 2.0 * pi / sqrt(square * (1.0 - share / number**2))
     for n in range(40):
         assert belt.step(n * period / 40, period / 40) == 0
     # (w h)^7 / 2e6 a step of Gauss's method, and amplitudes of 1e-8 that bend by 1e-13 of themselves
@@ -303,6 +305,41 @@ def test_the_energy_is_balanced_over_both_strokes(belt_in_c, bow_of, damping):
     assert (belt.deflection, belt.energy, belt.mode_1) == (0.0, 0.0, 0.0)
 
 
+def test_a_belt_that_is_held_adds_nothing_to_what_its_work_leaves_unexplained(belt_in_c):
+    folds = Loom(belt_in_c, 600.0, steps=720, machine="WL450-5400")
+    lost = Loom(belt_in_c, 100.0, steps=720, machine="WL450-4600", damping=20.0)
+    for loom, problem in ((folds, 1), (lost, 2)):
+        through = []
+        for stroke in (1, 2):  # both strokes of the next revolution are balanced as those before
+            assert problem in loom.turn_to(360.0 * stroke)
+            assert abs(loom.belt.energy_residual) <= 1e-8 * loom.belt.energy_through
+            through.append(loom.belt.energy_through)
+        assert through[1] > 1.5 * through[0]
+
+
+@pytest.mark.parametrize("steps", [60, 360])
+def test_inputs_at_the_start_of_a_step_move_the_belt_as_those_at_its_end_one_step_later(belt_in_c, steps):
+    loom = Loom(belt_in_c, 600.0, steps=steps)
+    late = Loom(belt_in_c, 600.0).belt
+    late.inputs_at_step_end = False
+    late.initialize(0.0)
+    longest, number = loom.step_size, 0
+    while loom.motion(loom.time)[0] < 0.7:  # of the free length, up to which nothing is said of it
+        number += 1
+        loom.step_size = longest * (1.0 if number % 3 else 0.5)  # steps need not be equal
+        late.travel, late.velocity, late.acceleration = (
+            loom.belt.travel, loom.belt.velocity, loom.belt.acceleration,
+        )  # fmt: skip
+        assert late.step(loom.time, loom.step_size) == 0
+        for name in ("free_length", "compression", "deflection", "energy", "largest_deflection", "margin"):
+            assert getattr(late, name) == getattr(loom.belt, name)
+        loom.turn_to(math.degrees((loom.time + 0.5 * loom.step_size) * loom.weft.speed))
+    fine = Loom(belt_in_c, 600.0, steps=1440)
+    fine.turn_to(130.0)
+    # the quintic follows the head to 1e-5 of its motion, at 6 deg a step as at 1 deg
+    assert late.largest_at_risk == pytest.approx(fine.belt.largest_at_risk, rel=5e-5)
+
+
 def test_the_largest_deflection_is_that_of_the_continuous_curve(belt_in_c):
     coarse, fine = (Loom(belt_in_c, 682.0, steps=steps) for steps in (240, 2880))
     for loom in (coarse, fine):
@@ -360,7 +397,7 @@ def test_a_belt_too_long_for_its_modes_says_so_and_does_not_count(belt_in_c, bey
     assert (belt.largest_deflection, belt.largest_at_risk, belt.too_long) == (0.0, 0.0, True)
     belt.travel = 0.793 + 0.7  # a jump, after which it is at rest
     assert belt.step(1e-3, 1e-3) == 0
-    assert belt.largest_deflection == counted
+    assert belt.largest_deflection == pytest.approx(counted, rel=1e-14)  # the length is rounded
     span = belt_in_c(travel=0.793 + beyond, bow_of=SPAN)
     assert span.initialize(0.0) == 0
     assert span.largest_deflection == span.deflection > 0.0

@@ -48,6 +48,7 @@ class BeltDynamics(BeltRest):
         self.lost_work = 0.0
         self.energy_through = 0.0
         self.energy_residual = 0.0
+        self.sampled_step = 0.0
         self.forget()
         self.remember()
         self.lay_path(0.0)
@@ -56,16 +57,21 @@ class BeltDynamics(BeltRest):
         return self.show()
 
     def step(self, time: float, step_size: float) -> int:
-        """Move the belt over the step: out of the guide, on, and back into it."""
+        """Move the belt from the last sample of its inputs to this one: out of the guide, on, and back into it.
+
+        Inputs that are values at the start of the step were sampled then, as those before were a step earlier.
+        """
         if step_size < SHORTEST_STEP:
             return 0
-        jumped = self.jumps(step_size if self.inputs_at_step_end else self.path_step)
-        self.lay_path(step_size)
+        since = step_size if self.inputs_at_step_end else self.sampled_step
+        self.sampled_step = step_size
+        jumped = self.jumps(since)
+        self.lay_path(since)
         ends_outside = self.length_at(1.0) > self.shortest_length
         share = 0.0
         if jumped:
             self.go_in()
-            share = 1.0 if self.inputs_at_step_end else 0.0
+            share = 1.0
         if not self.outside and ends_outside:
             if share == 0.0 and self.length_at(0.0) < self.shortest_length:
                 share = self.crossing()
@@ -147,7 +153,7 @@ class BeltDynamics(BeltRest):
 
     def move(self, start: float, end: float) -> None:
         """Integrate over a part of the step, in equal steps; one that does not settle is halved."""
-        if self.held or self.rests(start):
+        if self.held or self.path_step <= 0.0 or self.rests(start):
             return
         self.push_before = self.pushed_at(start)
         duration = (end - start) * self.path_step

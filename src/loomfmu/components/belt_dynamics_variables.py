@@ -135,8 +135,7 @@ class BeltDynamicsVariables(Component):
     lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
     energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1)
     energy_residual: float = output(
-        "J", "Energy that all work so far does not explain; without meaning once the belt has been held",
-        nominal=1e-9,
+        "J", "Energy that all work so far does not explain; a belt that is held adds none", nominal=1e-9
     )  # fmt: skip
     folded: bool = output(
         "1",
@@ -166,6 +165,7 @@ class BeltDynamicsVariables(Component):
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_tension: float = state("N", "Weft tension at the last sample")
+    sampled_step: float = state("s", "Duration of the last step")
     path: tuple[float, ...] = array(
         state("m", f"Free length over the step, {each} coefficient") for each in NUMBERS
     )

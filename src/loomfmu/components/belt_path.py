@@ -13,12 +13,12 @@ class BeltPath(BeltDynamicsVariables):
     """Free length, velocity and load over a step, and the accelerations of the modes."""
 
     def lay_path(self, duration: float) -> None:
-        """The free length over the step, from the last sample or with the acceleration of this one."""
+        """The free length over a time, from the last sample of the inputs to this one."""
         guide = self.idle_travel + self.head_length
         square = duration * duration
         self.path_step = duration
         self.stiffness = self.bending_stiffness / (self.length_factor * self.length_factor)
-        if self.inputs_at_step_end and duration > 0.0:
+        if duration > 0.0:
             a0, a1, a2, a3 = joined(
                 self.sampled_travel, duration * self.sampled_velocity, square * self.sampled_acceleration,
                 self.travel, duration * self.velocity, square * self.acceleration,
@@ -27,8 +27,7 @@ class BeltPath(BeltDynamicsVariables):
             self.path = (start, duration * self.sampled_velocity, a0, a1, a2, a3)
             self.start_tension = self.sampled_tension
         else:
-            start = self.travel - guide
-            self.path = (start, duration * self.velocity, square * self.acceleration, 0.0, 0.0, 0.0)
+            self.path = (self.travel - guide, 0.0, 0.0, 0.0, 0.0, 0.0)
             self.start_tension = self.yarn_tension
 
     def joined_at(self, share: float) -> tuple[float, float]:
