@@ -447,11 +447,26 @@ def _summarise(trace: "Trace") -> None:
             values = values / factor
             shown = (f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
             rows.append((printed.safe(name), *shown, unit))
-    say(*printed.in_columns(rows), "")
+    say(*printed.in_columns(rows), *_unknown(trace), "")
     if trace.judged:
         _print_verdicts(trace.verdicts)
     else:
         say("claims not judged: the run did not finish")
+
+
+def _unknown(trace: "Trace") -> list[str]:
+    """Lines on the signals that are not known at all samples, by the signals that say so."""
+    vouching: dict[str, list[str]] = {}
+    for name in trace:
+        if flag := trace.validity(name):
+            vouching.setdefault(flag, []).append(printed.safe(name))
+    no = {flag: trace.rows - int(trace.read(flag).sum()) for flag in vouching}
+    return [
+        f"{printed.safe(flag)} is no at {no[flag]} of {trace.rows} samples; not known there: "
+        + ", ".join(names)
+        for flag, names in vouching.items()
+        if no[flag]
+    ]
 
 
 def _revolutions(count: str) -> str:

@@ -40,7 +40,7 @@ class Variable:
     name the yes-or-no parameter with which, or without which alone, it has an effect; `pole` says that an
     output grows without bound at the edges of its component's windows; `element` is its place in an array,
     such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
-    before the step.
+    before the step; `valid_if` names the yes-or-no output that says when an output can be relied on.
     """
 
     name: str
@@ -68,6 +68,7 @@ class Variable:
     pole: bool = False
     element: str = ""
     carried: bool = False
+    valid_if: str | None = None
 
     @property
     def member(self) -> str:
@@ -269,13 +270,14 @@ def output(
     lowest_of: str | None = None,
     highest_of: str | None = None,
     pole: bool = False,
+    valid_if: str | None = None,
 ) -> Any:
     """A value that the component computes; integers and booleans are discrete by default."""
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "output", variability or usual, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of, pole=pole,
+        lowest_of=lowest_of, highest_of=highest_of, pole=pole, valid_if=valid_if,
     )  # fmt: skip
 
 

@@ -57,9 +57,9 @@ class BeltDynamics(BeltRest):
         return self.show()
 
     def step(self, time: float, step_size: float) -> int:
-        """Move the belt from the last sample of its inputs to this one: out of the guide, on, and back into it.
+        """Move the belt from the last sample of its inputs to this one: out of its guide, on, back into it.
 
-        Inputs that are values at the start of the step were sampled then, as those before were a step earlier.
+        Where inputs are values at the start of the step, this one is the start of the step.
         """
         if step_size < SHORTEST_STEP:
             return 0
@@ -268,8 +268,9 @@ class BeltDynamics(BeltRest):
             excess = self.compression + own - self.stiffness * wave * wave
             self.growth_rate = wave * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
             self.shortening = shortening(self.free_length, *self.mode)
+        self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
         if self.held:
             return 2 if self.lost else 1
-        return 3 if self.outside and not self.follows(self.free_length) else 0
+        return 0

@@ -9,6 +9,7 @@ from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_ten
 from .terminals import HEAD
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
+KNOWN, FOLLOWED = "deflection_known", "followed"  # what says when other outputs are known
 
 
 @dataclass(slots=True)
@@ -24,12 +25,6 @@ class BeltDynamicsVariables(Component):
         Problem(
             "the belt's motion could not be followed at a free length of {free_length}: until it is back in"
             " its guide, nothing counts for the largest deflections; take more steps",
-            warning=True,
-        ),
-        Problem(
-            "the free length of {free_length} is more than 5 times bow_length = {bow_length}: the deflection"
-            " is too small, since six modes cannot follow the bow, and does not count for the largest"
-            " deflections",
             warning=True,
         ),
     )
@@ -107,29 +102,47 @@ class BeltDynamicsVariables(Component):
     compression: float = output(
         "N", "Compression of the belt at the head, relieved by the head's lag", nominal=100.0
     )
-    deflection: float = output("m", "Largest deflection along the belt", display="mm", nominal=5e-3)
-    deflection_rate: float = output("m/s", "Rate of the deflection where it is largest")
+    deflection: float = output(
+        "m", "Largest deflection along the belt", display="mm", nominal=5e-3, valid_if=KNOWN
+    )
+    deflection_rate: float = output("m/s", "Rate of the deflection where it is largest", valid_if=KNOWN)
     deflection_place: float = output(
-        "m", "Distance of the largest deflection from the guide", display="mm", nominal=0.1
+        "m", "Distance of the largest deflection from the guide", display="mm", nominal=0.1, valid_if=KNOWN
+    )
+    deflection_known: bool = output(
+        "1",
+        "The deflection is known now: its motion is followed, and the free length is at most 5 times"
+        " bow_length if the belt has the bow",
+        start=True,
+        variability="discrete",
     )
     largest_deflection: float = output(
         "m", "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow",
-        display="mm", nominal=5e-3, highest_of="deflection",
+        display="mm", nominal=5e-3, highest_of="deflection", valid_if=FOLLOWED,
     )  # fmt: skip
     largest_at_risk: float = output(
-        "m", "That of largest_deflection while the head was pushed", display="mm", nominal=5e-3
+        "m", "That of largest_deflection while the head was pushed", display="mm", nominal=5e-3,
+        valid_if=FOLLOWED,
+    )  # fmt: skip
+    margin: float = output("1", "Dynamic margin, 1 - deflection / allowed_deflection", valid_if=KNOWN)
+    lowest_margin: float = output(
+        "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=FOLLOWED
     )
-    margin: float = output("1", "Dynamic margin, 1 - deflection / allowed_deflection")
-    lowest_margin: float = output("1", "Lowest dynamic margin so far", lowest_of="margin")
     growth_rate: float = output(
-        "1/s", "Rate at which the first mode alone would grow; 0 while it is stable", nominal=100.0
+        "1/s", "Rate at which the first mode alone would grow; 0 while it is stable", nominal=100.0,
+        valid_if=KNOWN,
+    )  # fmt: skip
+    bending_strain: float = output(
+        "1", "Largest strain by bending, on the surface of the belt", nominal=1e-3, valid_if=KNOWN
     )
-    bending_strain: float = output("1", "Largest strain by bending, on the surface of the belt", nominal=1e-3)
-    steepness: float = output("1", "Sine of the largest slope of the belt", nominal=0.1)
+    steepness: float = output("1", "Sine of the largest slope of the belt", nominal=0.1, valid_if=KNOWN)
     shortening: float = output(
-        "m", "Way by which the head lags behind because the belt is bent", display="mm", nominal=1e-3
+        "m", "Way by which the head lags behind because the belt is bent", display="mm", nominal=1e-3,
+        valid_if=KNOWN,
+    )  # fmt: skip
+    energy: float = output(
+        "J", "Energy of the deflection, against the belt held straight", nominal=0.1, valid_if=KNOWN
     )
-    energy: float = output("J", "Energy of the deflection, against the belt held straight", nominal=0.1)
     push_work: float = output("J", "Work of the compression on the shortening so far", nominal=0.1)
     guide_work: float = output("J", "Work done on the deflection at the guide so far", nominal=0.1)
     lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
@@ -145,7 +158,7 @@ class BeltDynamicsVariables(Component):
     )
     followed: bool = output(
         "1",
-        "The belt's motion could always be followed; if not, it may have been deflected farther",
+        "The belt's motion could always be followed; if not, take more steps",
         start=True,
         variability="discrete",
     )

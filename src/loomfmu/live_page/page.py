@@ -110,6 +110,7 @@ def _signal(trace: Trace, name: str, row: int, variable: Variable) -> dict[str, 
     return {
         "row": row,
         "rate": trace.rate(name),
+        "validity": trace.validity(name),
         "unit": "" if display == "1" else display,
         "factor": units.unit(display).factor,
         "about": trace.description(name),

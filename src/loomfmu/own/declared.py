@@ -108,6 +108,7 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
             ("rate", variable.rate, variable.causality),
             ("lowest_of", variable.lowest_of, "output"),
             ("highest_of", variable.highest_of, "output"),
+            ("valid_if", variable.valid_if, "output"),
             ("when", variable.when, "parameter"),
             ("unless", variable.unless, "parameter"),
             *(("depends", name, "input") for name in variable.depends or ()),
@@ -116,6 +117,9 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
                 fitting = [other for other, each in known.items() if each.causality == causality]
                 text = f"{variable.name}: {key} = {name!r} is not one of its {causality}s"
                 yield Fault(variable.name, text + suggestion(name, fitting))
+        if variable.valid_if in known and known[variable.valid_if].type is not bool:
+            text = f"{variable.name}: valid_if = {variable.valid_if!r} is not a yes-or-no output"
+            yield Fault(variable.name, text)
         if variable.rate is not None:
             yield from _of_rate(variable, known[variable.rate])
     for terminal in component.terminals:

@@ -302,6 +302,12 @@ class Trace(Signals):
         rate = f"{signal.split('.')[0]}.{name}"
         return rate if name and rate in self else None
 
+    def validity(self, signal: str) -> str | None:
+        """The recorded yes-or-no signal that says when this one is known, if there is one."""
+        name = self._text(signal, "ancillary_variables")
+        flag = f"{signal.split('.')[0]}.{name}"
+        return flag if name and flag in self else None
+
     def is_real(self, signal: str) -> bool:
         """Whether a signal holds real numbers; whole numbers, choices and yes or no do not vary smoothly."""
         with self._dataset(signal) as dataset:

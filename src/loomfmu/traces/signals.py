@@ -33,6 +33,7 @@ class Channel:
     meanings: tuple[str, ...] = ()
     first_flag: int = 0
     boolean: bool = False
+    valid_if: str | None = None
 
     @cached_property
     def signal(self) -> str:
@@ -111,6 +112,10 @@ class Signals(ABC):
     @abstractmethod
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
+
+    @abstractmethod
+    def validity(self, signal: str) -> str | None:
+        """The recorded yes-or-no signal that says when this one is known, if there is one."""
 
     @abstractmethod
     def parameter(self, signal: str) -> float:
@@ -259,6 +264,11 @@ class Recording(Signals):
         """The recorded signal that is this one's time derivative, if there is one."""
         rate = f"{signal.split('.')[0]}.{self._channel(signal).rate}"
         return rate if rate in self._channels else None
+
+    def validity(self, signal: str) -> str | None:
+        """The recorded yes-or-no signal that says when this one is known, if there is one."""
+        flag = f"{signal.split('.')[0]}.{self._channel(signal).valid_if}"
+        return flag if flag in self._channels else None
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""

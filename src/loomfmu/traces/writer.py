@@ -206,6 +206,8 @@ def _about_channel(channel: Channel) -> dict[str, Any]:
         about["DISPLAY_UNIT"] = channel.display
     if channel.rate:
         about["rate"] = channel.rate
+    if channel.valid_if:
+        about["ancillary_variables"] = channel.valid_if  # by CF
     if channel.meanings:
         flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
         about["flag_values"] = np.array(flags, dtype="i4")

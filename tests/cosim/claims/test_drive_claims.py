@@ -114,6 +114,9 @@ class Altered(Signals):
     def display(self, signal):
         return self._trace.display(signal)
 
+    def validity(self, signal):
+        return self._trace.validity(signal)
+
     def rate(self, signal):
         return self._trace.rate(signal)
 

@@ -3,14 +3,15 @@
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple, dataclass_transform
 
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import COARSE_NOTE, motion_of
+from .curves import COARSE_NOTE, Stretch, motion_of
+from .validity import gaps, unknown_note
 
 AT_LEAST, AT_MOST = 1, -1
 
@@ -101,24 +102,32 @@ class Claim(ABC):
     def verdict(
         self, trace: Signals, text: str, signal: str, bound: float, worst: float, time: float, *notes: str,
         holds: bool | None = None, unit: tuple[str, str] | None = None, sense: int | None = None,
+        unknown: Sequence[Stretch] | None = None,
     ) -> Verdict:  # fmt: skip
         """The verdict, with the place on the shaft at its time.
 
         Unless `holds` says so, the worst value decides; none, NaN, fails. No claim holds on samples that are
-        too far apart.
+        too far apart. Where all that is known of the signal keeps the bound, but it is `unknown` in some
+        stretches of time, by default those of the whole run, the claim is undecided.
         """
         turning = shaft.angle(trace)
-        angle, revolution = math.nan, None
-        if turning is not None and math.isfinite(time):
-            angle, revolution = shaft.place(turning, time)
         if turning is not None and shaft.too_coarse(turning):
             notes = (*notes, COARSE_NOTE)
         if holds is None:
             holds = self.sense * worst >= self.sense * bound
         holds = bool(holds) and COARSE_NOTE not in notes
+        unknown = gaps(trace, signal) if unknown is None else unknown
+        if unknown:
+            notes = (unknown_note(trace, signal, unknown[0]), *notes)
+        decided = not (holds and unknown)
+        if not decided:
+            holds, worst, time = False, math.nan, math.nan
+        angle, revolution = math.nan, None
+        if turning is not None and math.isfinite(time):
+            angle, revolution = shaft.place(turning, time)
         note = "; ".join(dict.fromkeys(note for note in notes if note))
         claim = f"{self.name}: {text}" if self.name else text
         return Verdict(
             claim, signal, holds, bound, worst, *(unit or self.unit), time, angle, revolution, note,
-            sense=sense or self.sense,
+            sense=sense or self.sense, decided=decided,
         )  # fmt: skip

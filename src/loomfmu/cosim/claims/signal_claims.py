@@ -11,7 +11,8 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Bound, Edges, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
-from .curves import motion_of
+from .curves import Extreme, motion_of
+from .validity import gaps, known_within
 
 
 class Bounded(Claim, kind=False):
@@ -43,11 +44,14 @@ class Bounded(Claim, kind=False):
             if not within:
                 reason = "the run never enters that window"
                 return self.verdict(trace, text, self.signal, limit, math.nan, math.nan, reason, unit=unit)
-        motion = motion_of(trace, self.signal)
-        worst = motion.lowest(self.sense, within)
+        motion, unknown = motion_of(trace, self.signal), gaps(trace, self.signal, within)
+        if unknown:
+            within = known_within(trace, unknown, within)
+        nowhere = within == []
+        worst = Extreme(math.nan, math.nan) if nowhere else motion.lowest(self.sense, within)
         found = self.verdict(
             trace, text, self.signal, limit, worst.value, worst.time, motion.note, worst.note,
-            holds=self.sense * worst.sure >= self.sense * limit, unit=unit,
+            holds=nowhere or self.sense * worst.sure >= self.sense * limit, unit=unit, unknown=unknown,
         )  # fmt: skip
         if found and found.distance < 0.0:
             doubt = found.displayed(motion.doubt_at(worst.time))

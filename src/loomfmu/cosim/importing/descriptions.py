@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Collection, Iterable
+from dataclasses import replace
 from typing import Any
 
 from ... import units
@@ -44,7 +45,8 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     rates = _rates(description, names, component)
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
-    return {port.name: port for port in ports}
+    vouching = {v.name: v.valid_if for v in variables_of(component)} if component else {}
+    return {port.name: replace(port, valid_if=vouching.get(port.name)) for port in ports}
 
 
 def declared_ports(component: type[Component]) -> dict[str, Port]:
@@ -78,6 +80,7 @@ def _declared(variable: Variable, reference: int) -> Port:
         discrete=variable.variability == "discrete",
         definition=own_definition(unit),
         nominal=variable.nominal if real else None,
+        valid_if=variable.valid_if,
     )
 
 

@@ -106,6 +106,7 @@ class Port:
     has_unit: bool = True
     definition: Definition | None = None
     nominal: float | None = None
+    valid_if: str | None = None
 
     def doubt(self, given: Any, where: str) -> str:
         """What is odd about a number without unit, as `units.doubt` tells it, or an empty text."""

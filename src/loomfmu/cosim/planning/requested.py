@@ -138,12 +138,15 @@ def recorded(scene: Scene) -> list[str]:
 
 
 def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
-    """Signals, each followed by its rate, if it has one that is an output, and so on."""
+    """Signals, each with what says when it is known, and followed by its rate, if that is an output."""
     names: dict[str, None] = {}
     for signal in wanted:
         while signal and signal not in names:
             names[signal] = None
             port = output_port(scene, signal, "record")
             rate = port.rate if port.causality == "output" else None
-            signal = f"{signal.split('.')[0]}.{rate}" if rate else ""
+            owner = signal.split(".")[0]
+            if port.valid_if:
+                names[f"{owner}.{port.valid_if}"] = None
+            signal = f"{owner}.{rate}" if rate else ""
     return list(names)

@@ -1,6 +1,6 @@
 /* The FMUs of the page, compiled to WebAssembly: `loomfmu.live.follow(part, run => ...)` is called after every run.
- * Of a run there are `time`, `positions`, `signal(name)`, `rate(name)` and `parameter(name)`, all in SI; it is
- * null where the values cannot be run. */
+ * Of a run there are `time`, `positions`, `signal(name)`, `rate(name)`, `validity(name)` and `parameter(name)`, all in
+ * SI; it is null where the values cannot be run. */
 loomfmu.live = (() => {
   const plan = loomfmu.data("live"), names = Object.keys(plan.signals), listeners = new Map();
   const form = document.getElementById("live-knobs"), problem = document.getElementById("live-problem");
@@ -29,6 +29,7 @@ loomfmu.live = (() => {
     const parameters = new Map();
     return {
       time, has: name => table.has(name), signal: name => table.get(name), rate: name => plan.signals[name].rate,
+      validity: name => plan.signals[name]?.validity,
       positions: plan.turns ? table.get("shaft.angle") : time,
       parameter: name => {
         if (!parameters.has(name))

@@ -100,7 +100,16 @@
     return { worst, bound: claim.at_least, time: spans.find(each => each.turned <= worst + 1e-11).time };
   }
 
+  /* Whether a signal is not known somewhere, or in some stretches of time: a signal of its own says so. */
+  function gaps(run, signal, within) {
+    const flag = run.validity(signal), { time } = run;
+    return Boolean(flag) && run.signal(flag).some((known, k) => !known && (within || [{ start: time[0], end: last(time) }])
+      .some(({ start, end }) => (time[k - 1] ?? time[0]) < end && start < (time[k + 1] ?? last(time))));
+  }
+  const gap = (run, signal) => unknown(`${signal} is not known: ${run.validity(signal)} is no; ${NOT_HERE}`);
+
   function extreme(run, signal, bound, sense, within) {
+    if (gaps(run, signal, within)) return gap(run, signal);
     const found = motion(run, signal).lowest(sense, within);
     const between = sense * found.value < sense * bound && sense * found.sample >= sense * bound;
     if (found.coarse || between) return unknown(`it is decided between the samples; ${NOT_HERE}`);
@@ -126,12 +135,11 @@
     },
     belt_deflection: (run, claim) => {
       const latch = run.signal(`${claim.belt}.largest_deflection`);
-      if (!last(run.signal(`${claim.belt}.followed`)) && last(latch) <= claim.at_most) {
-        return unknown("the belt's motion could not be followed: take more steps");
-      }
       const deflection = run.signal(`${claim.belt}.deflection`).map(each => -each);
       return { worst: last(latch), bound: claim.at_most, time: reached(run, latch, deflection),
-               note: last(run.signal(`${claim.belt}.folded`)) ? "the belt folded" : "" };
+               note: [last(run.signal(`${claim.belt}.folded`)) ? "the belt folded" : "",
+                      last(run.signal(`${claim.belt}.too_long`)) ? "free lengths above 5 times bow_length do not count" : ""]
+                 .filter(Boolean).join("; ") };
     },
     peak_load: (run, claim) => {
       const latch = run.signal(`${claim.damper}.peak_load`);
@@ -223,8 +231,11 @@
     const found = judge(run, claim);
     if (found.holds !== undefined) return found;
     if (!Number.isFinite(found.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
+    const holds = claim.sense * found.worst >= claim.sense * found.bound, signal = found.signal || claim.signal;
+    // a part of a run that is not known cannot bring a claim back that fails
+    if (holds && !claim.window && gaps(run, signal)) return gap(run, signal);
     if (tooNear(claim, found)) return unknown(`it is nearer to its bound, ${shownIn(claim, found.bound)}, than the page can tell; ${NOT_HERE}`);
-    return { ...found, holds: claim.sense * found.worst >= claim.sense * found.bound };
+    return { ...found, holds };
   }
 
   /* Whether the numerical error may decide a verdict: the page knows it at the scene's own values only. */

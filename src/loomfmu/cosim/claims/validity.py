@@ -1,0 +1,59 @@
+"""Where a signal is not known: where the yes-or-no signal that vouches for it says no."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ... import units
+from ...traces import Signals
+from .curves import Stretch
+from .shaft import angle, place
+
+
+def gaps(trace: Signals, signal: str, within: Sequence[Stretch] | None = None) -> list[Stretch]:
+    """Stretches of time in which a signal is not known, from the last sample at which it is to the next one.
+
+    With `within` they are those that overlap these stretches.
+    """
+    flag = trace.validity(signal) if signal in trace else None
+    if flag is None:
+        return []
+    known = np.concatenate([[True], np.asarray(trace[flag], dtype=bool), [True]])
+    changes = np.flatnonzero(known[1:] != known[:-1])  # a gap begins at a sample, and ends before one
+    time, last = trace.time, len(trace.time) - 1
+    found = [
+        Stretch(float(time[max(start - 1, 0)]), float(time[min(end, last)]))
+        for start, end in zip(changes[::2], changes[1::2], strict=True)
+    ]
+    if within is None:
+        return found
+    return [gap for gap in found if any(gap.start < each.end and each.start < gap.end for each in within)]
+
+
+def known_within(
+    trace: Signals, without: Sequence[Stretch], within: Sequence[Stretch] | None
+) -> list[Stretch]:
+    """What is left of some stretches of time, or of the whole run, without others."""
+    left = list(within) if within is not None else [Stretch(float(trace.time[0]), float(trace.time[-1]))]
+    for gap in without:
+        pieces = [
+            piece
+            for each in left
+            for piece in (
+                each._replace(end=min(each.end, gap.start)),
+                each._replace(start=max(each.start, gap.end)),
+            )
+        ]
+        left = [piece for piece in pieces if piece.start <= piece.end]
+    return left
+
+
+def unknown_note(trace: Signals, signal: str, first: Stretch) -> str:
+    """A note that a signal is not known, from when on, and who says so."""
+    flag, turning = trace.validity(signal), angle(trace)
+    at = f"{first.start:.6g} s"
+    if turning is not None:
+        degrees, revolution = place(turning, first.start)
+        at += f", {units.show(degrees, 'deg')}, rev. {revolution}"
+    about = trace.description(str(flag))
+    return f"not known from {at} on: {flag} is no ({about[:1].lower()}{about[1:]})"
