@@ -153,8 +153,8 @@ def weft_insertion() -> Drawing:
     )
     weft = WeftInsertion()
     assert weft.initialize(0.0) == 0
-    chi, _first, _second = weft.sector(pi / 3 + weft.crank_phase)
-    alpha, _first, _second = spherical_rocker(pi / 3 + weft.crank_phase, weft.rocker_angle, weft.crank_cone)
+    chi, _first, _second = weft.sector(weft.crank(pi / 3))
+    alpha, _first, _second = spherical_rocker(weft.crank(pi / 3), weft.rocker_angle, weft.crank_cone)
     psi = alpha + weft.rocker_offset
     scale, c = 430.0, (210.0, 240.0)
     g = (c[0] + scale * weft.pivot_x, c[1] - scale * weft.pivot_y)

@@ -113,7 +113,7 @@ def test_so_are_those_of_a_loom_with_every_mechanism(
 
 def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_path: Path) -> None:
     """The taker comes so late that the hooks never meet: there is no speed to judge."""
-    scene, late = SIMS / "both_rapiers.toml", "weft_2.crank_phase"
+    scene, late = SIMS / "both_rapiers.toml", "weft_2.lead"
     page = running(opened(live_page.write(scene, [f"{late}=-50deg..5deg"], tmp_path / "page.html")))
     turned(page, -40.0)
     result = loomfmu.run(scene, set={late: "-40 deg"}, output=tmp_path / "run.h5")

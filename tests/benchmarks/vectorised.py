@@ -70,7 +70,7 @@ def _wrapped(angle: Any) -> Any:
 
 def sector(given: Any, theta: Floats) -> tuple[Floats, Floats, Floats]:
     """Angle of the sector gear with its derivatives: spherical crank-rocker, then four-bar."""
-    theta = theta + given.crank_phase
+    theta = theta + given.crank_phase + given.lead
     cosine, sine = math.cos(given.crank_cone), math.sin(given.crank_cone)
     b, turned = sine * np.cos(theta), sine * np.sin(theta)
     alpha = np.arccos(math.cos(given.rocker_angle) / np.sqrt(cosine * cosine + b * b)) - np.arctan2(b, cosine)

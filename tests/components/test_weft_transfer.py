@@ -31,7 +31,7 @@ def met(transfer, giver, taker):
 def head(name="WL680-3600", lead=0.0):
     """A rapier at 1 rad/s, whose crank leads by an angle; its motion at a shaft angle."""
     given = parameters("WeftInsertion", machine=name)
-    weft = WeftInsertion(**given | {"crank_phase": given["crank_phase"] + lead}, speed=1.0)
+    weft = WeftInsertion(**given, lead=lead, speed=1.0)
     assert weft.initialize(0.0) == 0
 
     def motion(theta):

@@ -1,7 +1,7 @@
 """WeftInsertion: from the main shaft to the travel of the rapier head."""
 
 from dataclasses import dataclass
-from math import floor, inf, pi
+from math import fabs, floor, inf, pi
 from typing import ClassVar
 
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
@@ -9,6 +9,8 @@ from ..physics.shaft import too_far
 from ..variables import NOTHING, Problem, Terminal, auxiliary, output, parameter
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
+
+FARTHEST_PHASE = pi / 3.0 + 1e-9  # of the crank from a dead centre that it is sure to belong to
 
 
 @dataclass(slots=True)
@@ -28,6 +30,10 @@ class WeftInsertion(ShaftDriven):
         ),
         Problem("assembly = {assembly} must be -1 or 1"),
         TOO_FAR,
+        Problem(
+            "crank_phase = {crank_phase} is more than 60 deg from a multiple of 180 deg and does not say"
+            " which dead centre is the outer one; set lead to shift the rapier against the shaft"
+        ),
     )
     keeps: ClassVar[str] = NOTHING
     longest_turn: ClassVar[float] = inf
@@ -46,6 +52,10 @@ class WeftInsertion(ShaftDriven):
     )  # fmt: skip
     crank_phase: float = parameter(
         "rad", 0.0, "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre",
+        display="deg", minimum=-7.0, maximum=7.0,
+    )  # fmt: skip
+    lead: float = parameter(
+        "rad", 0.0, "Angle by which the rapier leads the shaft, on top of crank_phase; negative if late",
         display="deg", minimum=-7.0, maximum=7.0,
     )  # fmt: skip
     rocker_offset: float = parameter(
@@ -107,6 +117,14 @@ class WeftInsertion(ShaftDriven):
     sector_start: float = auxiliary("rad", "Angle of the sector gear at the outer dead centre")
     closure: float = auxiliary("m", "Margin by which the four-bar closes over the rocker's swing")
 
+    def outer_crank(self) -> float:
+        """The angle of the crank at the outer dead centre."""
+        return pi * floor(self.crank_phase / pi + 0.5)
+
+    def crank(self, theta: float) -> float:
+        """The angle of the crank at an angle of the shaft."""
+        return theta + self.crank_phase + self.lead
+
     def sector(self, crank: float) -> tuple[float, float, float]:
         """Angle of the sector gear at an angle of the crank, with its derivatives."""
         return weft_motion(
@@ -121,6 +139,8 @@ class WeftInsertion(ShaftDriven):
             return 1
         if self.assembly == 0:
             return 3
+        if fabs(self.crank_phase - self.outer_crank()) > FARTHEST_PHASE:
+            return 5
         if self.planar_linkage:
             one_end, _first, _second = spherical_rocker(0.0, self.rocker_angle, self.crank_cone)
             other_end, _first, _second = spherical_rocker(pi, self.rocker_angle, self.crank_cone)
@@ -139,7 +159,7 @@ class WeftInsertion(ShaftDriven):
         problem = self.check()
         if problem != 0:
             return problem
-        outer = pi * floor(self.crank_phase / pi + 0.5)
+        outer = self.outer_crank()
         self.sector_start, _first, _second = self.sector(outer)
         middle, _first, _second = self.sector(pi + outer)
         swing = wrapped(middle - self.sector_start)
@@ -154,7 +174,7 @@ class WeftInsertion(ShaftDriven):
         theta, speed, acceleration = self.shaft(time, step_size)
         if too_far(theta):
             return 4
-        angle, first, second = self.sector(theta + self.crank_phase)
+        angle, first, second = self.sector(self.crank(theta))
         first = self.travel_per_angle * first
         second = self.travel_per_angle * second
         self.travel = self.travel_per_angle * wrapped(angle - self.sector_start)

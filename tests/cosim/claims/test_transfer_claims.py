@@ -129,7 +129,7 @@ steps_per_revolution = 720
 [loom]
 both_rapiers = true
 [weft_2]
-crank_phase = "-6 deg"
+lead = "-6 deg"
 [[claims]]
 kind = "transfer_in_time"
 window = ["170 deg", "190 deg"]

@@ -138,7 +138,7 @@ wheel_inertia = "0.03 kg.m2"
 [weft_2]
 belt_mass = "0.05 kg/m"
 wheel_inertia = "0.02 kg.m2"
-crank_phase = "5 deg"
+lead = "5 deg"
 [[claims]]
 kind = "energy_balance"
 """

@@ -24,7 +24,7 @@ def spherical(weft: WeftInsertion, angle: float) -> list[Place]:
 
     It is an arc about C, which is the origin; the shaft OC lies on x.
     """
-    turned = angle + weft.crank_phase
+    turned = weft.crank(angle)
     alpha, _first, _second = spherical_rocker(turned, weft.rocker_angle, weft.crank_cone)
     crank = cos(weft.crank_cone), -sin(weft.crank_cone) * cos(turned)
     rocker = cos(alpha), sin(alpha)
@@ -40,8 +40,8 @@ def spherical(weft: WeftInsertion, angle: float) -> list[Place]:
 
 def planar(weft: WeftInsertion, angle: float) -> list[Place]:
     """Joints D and K of the four-bar [mm]; C is the origin."""
-    alpha, _first, _second = spherical_rocker(angle + weft.crank_phase, weft.rocker_angle, weft.crank_cone)
-    chi, _first, _second = weft.sector(angle + weft.crank_phase)
+    alpha, _first, _second = spherical_rocker(weft.crank(angle), weft.rocker_angle, weft.crank_cone)
+    chi, _first, _second = weft.sector(weft.crank(angle))
     psi = alpha + weft.rocker_offset
     return [
         (1000.0 * weft.crank_length * cos(psi), 1000.0 * weft.crank_length * sin(psi)),
@@ -111,7 +111,7 @@ def _sector(sketch: Sketch, weft: WeftInsertion, name: str, hub: Place) -> None:
     """The sector gear, whose middle meets the pinion in the middle of its swing."""
     swing = weft.stroke / weft.travel_per_angle
     turns = [
-        wrapped(weft.sector(angle + weft.crank_phase)[0] - weft.sector_start) - 0.5 * swing
+        wrapped(weft.sector(weft.crank(angle))[0] - weft.sector_start) - 0.5 * swing
         for angle in TURN * sketch.tracks.shares
     ]
     turn = sketch.tracks.cycle(f"{name}.sector", np.degrees(turns))
