@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from loomfmu import Trace
+from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.standard_loom import COMPONENT_OF
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted(path.relative_to(SIMS).as_posix() for path in SIMS.glob("*.toml"))
@@ -23,10 +25,18 @@ def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
     done = run(scene, tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "FAILS" not in done.stdout
+    assert "warning" not in done.stderr
     with Trace(tmp_path / "results" / f"{Path(scene).stem}.h5") as trace:
         assert trace.status == "complete"
         assert trace.verdicts, "a scene claims something"
         assert all(trace.verdicts)
+
+
+def test_the_full_loom_has_every_mechanism_of_a_loom() -> None:
+    instances = scenes.load(SIMS / "full_loom.toml").instances
+    combing = {"DetachingRoller"}  # of another machine
+    assert {each.fmu.name for each in instances.values()} == set(COMPONENT_OF.values()) - combing
+    assert {"weft_2", "belt_2", "belt_motion_2"} <= set(instances)
 
 
 def test_the_readme_shows_what_the_demonstration_prints(tmp_path: Path) -> None:

@@ -307,10 +307,11 @@
     outcome.className = `outcome ${failed || !all ? "unknown" : failing ? "fails" : open ? "unknown" : "holds"}`;
   }
 
-  /* Bounds of the claims on a signal, as the plots draw them. */
+  /* Bounds of the claims on a signal, as the plots draw them: a line for each, empty where it is not judged. */
   loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, holds }, number) => {
     const { signal, drawn, shown: { factor, unit } } = claims[number];
-    if (signal !== name || !drawn || holds === null) return [];
+    if (signal !== name || !drawn) return [];
+    if (holds === null) return [{ value: null, text: "", holds }];
     return [{ value: bound * factor, text: `bound ${short(bound * factor)}${unit && ` ${unit}`}`, holds }];
   });
 
