@@ -62,6 +62,9 @@ MISTAKES = {
     ),
     "a taken name": ("pitch", "machine", "line 14: a variable cannot be called machine"),
     "a key of every instance": ("pitch", "isolated", "line 14: a variable cannot be called isolated"),
+    "a number that vouches": (
+        '"Rate")', '"Rate", valid_if="sound")', "rate: valid_if = 'sound' is not a yes-or-no output",
+    ),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',

@@ -32,8 +32,8 @@ class Verdict:
     and `bound` are in `unit`, which is SI unless a third-party FMU has its own; texts show them in
     `display_unit`, where "1" means `unit`. `sense` is 1 if the worst value must be at least the bound,
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
-    alone, in the same unit; NaN where nothing was estimated. Where the bound is that near, the claim is not
-    `decided`, and does not hold.
+    alone, in the same unit; NaN where nothing was estimated. Where the bound is that near, or the signal is
+    not known in part of the run, the claim is not `decided`, and does not hold.
     """
 
     claim: str
@@ -78,8 +78,8 @@ class Verdict:
 
     @property
     def reason(self) -> str:
-        """Why it is undecided, as the end of a sentence."""
-        if self.decided:
+        """Why it is undecided, as the end of a sentence; where there is no value, the note says why."""
+        if self.decided or not math.isfinite(self.worst):
             return ""
         known = math.isfinite(self.error)
         return f", numerical error {self.shown_error}" if known else ", numerical error unknown"
