@@ -146,16 +146,6 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
     assert "free lengths above 5 times bow_length do not count" in found[2]["note"]
 
 
-def test_the_signal_that_is_named_is_that_of_the_frame_judged_worst(
-    written_whole: Path, opened: Open, tmp_path: Path
-) -> None:
-    page = running(opened(written_whole))
-    turned(page, 500.0)
-    result = loomfmu.run(WHOLE, set={"shaft.speed": "500 rpm"}, output=tmp_path / "run.h5")
-    found = page.locator("#claims tbody code").all_inner_texts()
-    assert found == [each.signal for each in result.claims]
-
-
 def test_a_claim_that_the_page_would_judge_otherwise_is_left_out(
     written: Path, tmp_path: Path, opened: Open
 ) -> None:

@@ -33,7 +33,7 @@ from .knobs import Knob, knobs
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 POLICY = " 'wasm-unsafe-eval'"
-SCRIPTS = ("live.js", "live_rules.js", "live_curves.js", "live_judge.js")
+SCRIPTS = ("live.js", "live_rules.js", "live_curves.js", "live_judge.js", "live_claims.js")
 
 
 def write(

@@ -1,10 +1,15 @@
 /* Signals between their samples, as the claims of loomfmu take them: on each interval the polynomial that a
  * signal and its recorded rates give, by its Bernstein points. See cosim/claims/curves.py and bernstein.py. */
-loomfmu.motion = (run, name) => {
+loomfmu.motion = (run, name, rates = 2) => {
   const { time } = run, count = time.length, SAME = 1e-11, COARSE = 0.2, NOISE = 4 * 2 ** -52, HALVINGS = 60;
   const values = [];
-  for (let each = name; each && values.length < 3; each = run.rate(each)) values.push(run.signal(each));
-  const own = values[0], largest = own.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  for (let each = name; each && values.length <= rates; each = run.rate(each)) values.push(run.signal(each));
+  const own = values[0], finite = values.every(each => each.reduce((sum, value) => sum + 0 * value, 0) === 0);
+  const oneWay = sign => { for (let k = 1; k < count; k++) if (sign * (own[k] - own[k - 1]) < 0) return false; return true; };
+  const steady = values.length > 1 || oneWay(1) || oneWay(-1);
+  const note = !finite ? `${name} or its rate is not finite everywhere`
+    : steady ? "" : `${name} is known only at the samples: its rate is not recorded`;
+  const largest = own.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
 
   function points(i) {
     const h = time[i + 1] - time[i], y0 = own[i], y1 = own[i + 1];
@@ -84,6 +89,7 @@ loomfmu.motion = (run, name) => {
   /* Stretches of time above a level, or with a negative sign below it: start, end, whether both are in the run. */
   function beyond(level, sign) {
     const found = [];
+    if (!finite) return found;
     let inside = (own[0] >= level) === (sign > 0), begin = time[0], whole = false;
     for (const when of passages(level)) {
       if (inside) found.push({ start: begin, end: when, whole });
@@ -146,5 +152,5 @@ loomfmu.motion = (run, name) => {
     return found.sort((one, other) => one.value - other.value)[0];
   }
 
-  return { time, values: own, at, passages, beyond, lowest, nearest };
+  return { values: own, note, at, passages, beyond, lowest, nearest };
 };
