@@ -91,6 +91,46 @@ def test_signals_claims_values_and_lengths_that_changed(tmp_path: Path) -> None:
     assert changes["run"].row == ("run", "shaft angle", "0 to 720 deg", "0 to 540 deg")
 
 
+def judged(path: Path, *verdicts: tuple[str, str, float]) -> Path:
+    """A trace of two signals with verdicts on claims: text, signal, worst value."""
+    channels = [Channel("belt", name, "m", "m", name, place) for place, name in enumerate("xy")]
+    writer = TraceWriter(path, {"title": "made"}, channels, {})
+    writer.append(np.arange(2.0), np.arange(2.0), np.zeros((2, 2)), np.zeros((2, 0), dtype="i4"))
+    found = (
+        Verdict(*each[:2], each[2] > 0.0, 0.0, each[2], "m", "m", 0.1, 1.0, 1, sense=1) for each in verdicts
+    )
+    writer.complete([each.as_dict() for each in found])
+    return path
+
+
+def test_a_claim_whose_worst_frame_changes_is_listed_once(tmp_path: Path) -> None:
+    text, frames = (
+        "room: the shed is open for the rapier head",
+        ("2 |heald_1.warp_height|", "2 |heald_2.warp_height|"),
+    )
+    a, b, near = (
+        judged(tmp_path / f"{place}.h5", (text, frames[place > 0], worst))
+        for place, worst in enumerate((0.017, -0.016, 0.01701))
+    )
+    (change,) = loomfmu.compare(a, b).changes
+    assert change.row == (
+        "claim", text, "holds (2 |heald_1.warp_height|), 0.017 m, bound 0 m",
+        "FAILS (2 |heald_2.warp_height|), -0.016 m, bound 0 m",
+    )  # fmt: skip
+    assert loomfmu.compare(a, near, tolerance=1e-3)  # which frame it is is not a value of its own
+
+
+def test_claims_of_one_text_belong_together_by_their_signals(tmp_path: Path) -> None:
+    both = judged(tmp_path / "both.h5", ("stays below", "belt.x", 1.0), ("stays below", "belt.y", 1.0))
+    swapped = judged(tmp_path / "swapped.h5", ("stays below", "belt.y", 1.0), ("stays below", "belt.x", 1.0))
+    assert loomfmu.compare(both, swapped)
+    one = judged(tmp_path / "one.h5", ("stays below", "belt.y", 1.0))
+    (change,) = loomfmu.compare(both, one).changes
+    assert change.row == ("claim", "stays below", "holds, 1 m, bound 0 m", "missing")
+    (change,) = loomfmu.compare(one, judged(tmp_path / "x.h5", ("stays below", "belt.x", 1.0))).changes
+    assert change.row[2:] == ("holds (belt.y), 1 m, bound 0 m", "holds (belt.x), 1 m, bound 0 m")
+
+
 def test_causes_are_listed_first_and_few_signals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The value that was set, before those that follow from it; then claims; then the ten worst signals."""
     paths = []

@@ -5,6 +5,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, Literal
 
@@ -193,22 +194,30 @@ def _is_real(trace: Trace, signal: str) -> bool:
 
 def _claims(first: Trace, second: Trace, tolerance: Tolerance) -> Iterator[Change]:
     """Claims that only one run has or judged, and those with another outcome."""
-    found = [_by_name(trace.verdicts) for trace in (first, second)]
-    for name in dict.fromkeys([*found[0], *found[1]]):
-        a, b = (each.get(name) for each in found)
-        if a is None or b is None or not _alike(a, b, tolerance):
-            yield Change(
-                "claim", name[0], *("missing" if each is None else _outcome(each) for each in (a, b))
-            )
+    for pair in _paired(first.verdicts, second.verdicts):
+        known = [each for each in pair if each is not None]
+        named = len({each.signal for each in known}) > 1
+        # what several frames are judged by together is no recorded signal, and may be of another one in each run
+        other = named and any(each.signal in trace for each in known for trace in (first, second))
+        if len(known) < 2 or other or not _alike(known[0], known[-1], tolerance):
+            outcomes = ("missing" if each is None else _outcome(each, named) for each in pair)
+            yield Change("claim", known[0].claim, *outcomes)
 
 
-def _by_name(verdicts: Sequence[Verdict]) -> dict[tuple[str, str, int], Verdict]:
-    """Verdicts by their claim and signal; equal ones are counted."""
-    found: dict[tuple[str, str, int], Verdict] = {}
-    for verdict in verdicts:
-        number = sum((verdict.claim, verdict.signal) == name[:2] for name in found)
-        found[verdict.claim, verdict.signal, number] = verdict
-    return found
+def _paired(
+    first: Sequence[Verdict], second: Sequence[Verdict]
+) -> Iterator[tuple[Verdict | None, Verdict | None]]:
+    """The verdicts on the same claim: those of one text and signal, of the others those of one text."""
+    found: dict[int, Verdict] = {}
+    left = list(second)
+    for wanted in (("claim", "signal"), ("claim",)):
+        same = attrgetter(*wanted)
+        for number, one in enumerate(first):
+            of_it = (place for place, other in enumerate(left) if same(other) == same(one))
+            if number not in found and (place := next(of_it, None)) is not None:
+                found[number] = left.pop(place)
+    yield from ((one, found.get(number)) for number, one in enumerate(first))
+    yield from ((None, other) for other in left)
 
 
 def _alike(a: Verdict, b: Verdict, tolerance: Tolerance) -> bool:
@@ -221,8 +230,9 @@ def _alike(a: Verdict, b: Verdict, tolerance: Tolerance) -> bool:
     return near and (a.word, a.unit) == (b.word, b.unit)
 
 
-def _outcome(verdict: Verdict) -> str:
-    return f"{verdict.word}, {verdict.shown(verdict.worst)}, bound {verdict.shown(verdict.bound)}"
+def _outcome(verdict: Verdict, named: bool) -> str:
+    signal = f" ({verdict.signal})" if named else ""
+    return f"{verdict.word}{signal}, {verdict.shown(verdict.worst)}, bound {verdict.shown(verdict.bound)}"
 
 
 def _values(

@@ -151,7 +151,9 @@ class Verdict:
         """One of the verdict's values as text, with its unit."""
         if not math.isfinite(value):
             return "no value"
-        return f"{self.displayed(value) + 0.0:.7g}" + ("" if self.label == "1" else f" {self.label}")  # not -0
+        return f"{self.displayed(value) + 0.0:.7g}" + (
+            "" if self.label == "1" else f" {self.label}"
+        )  # not -0
 
     @property
     def label(self) -> str:

@@ -73,7 +73,9 @@ class _Span(_Lifted, kind=False):
             missed = self._missed(motions[0], stroke, *ends)
             if missed is not None:
                 worst, time, notes[0] = missed
-        notes += [f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:] if math.isfinite(turn)]
+        notes += [
+            f"its frame: {units.show(turn, 'deg')}" for turn, *_rest in found[1:] if math.isfinite(turn)
+        ]
         signal = signals[0] if found[1:] else f"{self.heald}.{of}"
         return self.verdict(trace, text, signal, self.at_least, worst, time, *notes)
 
