@@ -50,20 +50,23 @@ def check(scene: Scene) -> Path:
     return scene.file
 
 
-def write(scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool = False) -> Path:
+def write(
+    scene: Scene, values: Mapping[str, Any], path: Path, overwrite: bool = False, description: str = ""
+) -> Path:
     """Write a scene's text with these values, those that it was read with among them, and return its path.
 
     Raises LoomfmuError as `text_for`, and for a file that may not be written.
     """
     inputs = [check(scene)]
     check_target(path, KIND, inputs, overwrite)
-    return write_file(path, text_for(scene, values, path).encode(), KIND, inputs, overwrite)
+    return write_file(path, text_for(scene, values, path, description).encode(), KIND, inputs, overwrite)
 
 
-def text_for(scene: Scene, values: Mapping[str, Any], path: Path) -> str:
+def text_for(scene: Scene, values: Mapping[str, Any], path: Path, description: str = "") -> str:
     """A scene's text with these values, those that it was read with among them, as it may stand at a path.
 
-    It is read again first: it must be the same scene with the same values there.
+    It is read again first: it must be the same scene with the same values there. A `description` replaces the
+    scene's own, which may not hold with other values.
 
     Raises:
         LoomfmuError: not from a TOML file, files that the scene names by paths that do not lead there from
@@ -72,7 +75,7 @@ def text_for(scene: Scene, values: Mapping[str, Any], path: Path) -> str:
     check(scene)
     every = {**scene.overrides, **values}
     expected = scenes.parse(scene.text, scene.name, every, scene.directory)
-    text = rewritten(scene, every)
+    text = rewritten(scene, every, description)
     try:
         again = scenes.parse(text, path.stem, None, path.parent)
     except LoomfmuError as error:
@@ -84,10 +87,12 @@ def text_for(scene: Scene, values: Mapping[str, Any], path: Path) -> str:
     return text
 
 
-def rewritten(scene: Scene, values: Mapping[str, Any]) -> str:
-    """The scene's text with values as `--set` takes them."""
+def rewritten(scene: Scene, values: Mapping[str, Any], description: str = "") -> str:
+    """The scene's text with values as `--set` takes them, and with another description if there is one."""
     tomlkit = _tomlkit()
     document = tomlkit.parse(scene.text)
+    if description:
+        document["description"] = description
     for key in scenes.replaced(values):
         document.pop(key, None)
     for key, value in values.items():

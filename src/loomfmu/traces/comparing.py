@@ -197,7 +197,7 @@ def _claims(first: Trace, second: Trace, tolerance: Tolerance) -> Iterator[Chang
     for pair in _paired(first.verdicts, second.verdicts):
         known = [each for each in pair if each is not None]
         named = len({each.signal for each in known}) > 1
-        # what several frames are judged by together is no recorded signal, and may be of another one in each run
+        # a worst frame of several is not a recorded signal, and may be another one in each run
         other = named and any(each.signal in trace for each in known for trace in (first, second))
         if len(known) < 2 or other or not _alike(known[0], known[-1], tolerance):
             outcomes = ("missing" if each is None else _outcome(each, named) for each in pair)

@@ -131,6 +131,7 @@ def test_the_scene_with_the_fitted_values_runs_and_keeps_its_comments(tmp_path: 
     found = fit(scene, data, vary="belt.prescribed_length_factor=0.5..2")
     path = found.write(tmp_path / "fitted.toml")
     assert "[belt] # the new one" in path.read_text()
+    assert f"{found.scene.file.name} with " in path.read_text() and "fitted to data.csv." in path.read_text()
     again = loomfmu.prepare(path).scene.instances["belt"].effective()["prescribed_length_factor"]
     assert again == found.parameters[0].value
     assert scene.read_text() == BELT.replace("[belt]", "[belt] # the new one")

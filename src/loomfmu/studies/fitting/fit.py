@@ -74,7 +74,9 @@ class Fit:
 
     def write(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the scene with the fitted values as a TOML file. Raises LoomfmuError."""
-        return rewritten.write(self.scene, self.values, Path(path), overwrite)
+        keys = listed(each.span.key for each in self.parameters)
+        origin = f"{rewritten.check(self.scene).name} with {keys} fitted to {self.data.path.name}."
+        return rewritten.write(self.scene, self.values, Path(path), overwrite, origin)
 
     def __repr__(self) -> str:
         found = ", ".join(f"{each.span.key} = {each.span.show(each.value)}" for each in self.parameters)

@@ -1,7 +1,10 @@
 """What keeps a design from being better: claims that are as near to their bounds as they may be, and ends of
-ranges."""
+ranges; and what it would gain if they were relaxed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +14,25 @@ from .runs import Design, Floats, Runs, about
 NEAR = 1e-6  # of a claim's scale or of a range: what is as near to its end may bind
 STEP = 1e-3  # of the ranges, within which a better design is looked for
 PRICE = 1e-9  # of the goal: what is gained by less room does not bind
+RELAXED = 0.01  # of a bound, or of a range
+STILL, NOISE = 0.1, 1e-6  # of a gain, and of the goal: what tangents may promise without it; more is a kink
 
 
-def binding(runs: Runs, design: Design, names: Sequence[str]) -> list[str]:
-    """The claims, by their names, and the values at an end of their range that limit a design.
+@dataclass(frozen=True)
+class Limit:
+    """A claim, counted from 0, or a variable at an end of its range, that limits a design, by its name.
+
+    `gain` is about the share of itself by which the goal improves if it alone is relaxed by 1 % of its bound
+    or range; NaN where that is not known, as where a claim jumps, and with several goals.
+    """
+
+    name: str
+    claim: int | None
+    gain: float
+
+
+def binding(runs: Runs, design: Design, names: Sequence[str], bounds: Floats) -> list[Limit]:
+    """The claims, by their names and bounds, and the values at an end of their range that limit a design.
 
     A linear program asks for a step that is better in all goals; what has a price in it binds. Where a claim
     jumps, it has no slope: it binds if it fails after that step.
@@ -29,27 +47,60 @@ def binding(runs: Runs, design: Design, names: Sequence[str]) -> list[str]:
         return []
     step, claims, ends = _priced(here)
     near = design.room <= NEAR
-    found = [name for name, price, close in zip(names, claims, near, strict=True) if close and price > PRICE]
+    binds = near & (claims > PRICE)
     (after,) = function([np.clip(x + step, 0.0, 1.0)])
-    if after is not None:
-        fails = near & (after.room < 0.0)
-        found += [name for name, fail in zip(names, fails, strict=True) if fail and name not in found]
+    jumps = near & ~binds & (after.room < 0.0) if after is not None else np.zeros_like(near)
+    relaxed = RELAXED * np.where(bounds == 0.0, 1.0, np.abs(bounds) / runs.limits.scales)
+    found = [
+        Limit(names[number], number, _gain(here, np.eye(len(names))[number] * relaxed, 0.0 * x))
+        for number in np.flatnonzero(binds).tolist()
+    ]
+    found += [Limit(names[number], number, nan) for number in np.flatnonzero(jumps).tolist()]
     at_end = (x <= NEAR) | (x >= 1.0 - NEAR)
     return found + [
-        key for key, price, end in zip(ranges, ends, at_end, strict=True) if end and price > PRICE
+        Limit(ranges[place], None, _gain(here, 0.0 * here.room, RELAXED * np.eye(len(x))[place]))
+        for place in np.flatnonzero(at_end & (ends > PRICE)).tolist()
     ]
 
 
 def _priced(here: Tangent) -> tuple[Floats, Floats, Floats]:
     """The best step, and what room at each claim and at the ends of each range would gain."""
-    from scipy.optimize import linprog
-
-    goals, claims, size = len(here.heights), len(here.room), len(here.x)
-    matrix = np.block([[here.slopes, -np.ones((goals, 1))], [-here.changes, np.zeros((claims, 1))]])
-    room = np.concatenate([np.zeros(goals), np.maximum(here.room, 0.0)])
-    bounds = [*((max(-STEP, -each), min(STEP, 1.0 - each)) for each in here.x.tolist()), (None, None)]
-    found = linprog(np.array([*np.zeros(size), 1.0]), A_ub=matrix, b_ub=room, bounds=bounds, method="highs")
-    if found.status != 0:
-        return np.zeros(size), np.zeros(claims), np.zeros(size)
+    goals, size = len(here.heights), len(here.x)
+    found = _solved(
+        here, np.maximum(here.room, 0.0), np.maximum(-STEP, -here.x), np.minimum(STEP, 1.0 - here.x)
+    )
+    if found is None:
+        return np.zeros(size), np.zeros(len(here.room)), np.zeros(size)
     ends = np.maximum(np.abs(found.lower.marginals[:size]), np.abs(found.upper.marginals[:size]))
     return np.asarray(found.x[:size]), np.abs(found.ineqlin.marginals[goals:]), ends
+
+
+def _gain(here: Tangent, room: Floats, wider: Floats) -> float:
+    """What more room at claims, or wider ranges, would gain by the tangents: others may then bind as well."""
+    if len(here.heights) > 1:
+        return nan
+    before, after = (
+        _solved(
+            here,
+            np.maximum(here.room, 0.0) + share * room,
+            -here.x - share * wider,
+            1.0 - here.x + share * wider,
+        )
+        for share in (0.0, 1.0)
+    )
+    if before is None or after is None:
+        return nan
+    gain = before.fun - after.fun if before.fun - after.fun > PRICE else 0.0
+    return float(gain) if -before.fun <= max(STILL * gain, NOISE) else nan
+
+
+def _solved(here: Tangent, room: Floats, low: Floats, high: Floats) -> Any:
+    """The linear program for the best step from here; None where it has no solution."""
+    from scipy.optimize import linprog
+
+    goals, claims = len(here.heights), len(here.room)
+    matrix = np.block([[here.slopes, -np.ones((goals, 1))], [-here.changes, np.zeros((claims, 1))]])
+    costs, limits = np.array([*np.zeros(len(here.x)), 1.0]), np.concatenate([np.zeros(goals), room])
+    bounds = [*zip(low.tolist(), high.tolist(), strict=True), (None, None)]
+    found = linprog(costs, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs")
+    return found if found.status == 0 else None

@@ -16,6 +16,7 @@ import numpy as np
 from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.run import evaluate
+from ...errors import listed
 from ...files import ANY, write_file
 from ...printed import as_csv
 from ...sweeps.directory import files
@@ -96,11 +97,20 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
 def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Best:
     """A best design, written as a scene and judged as that scene runs."""
     study = runs.study
-    rewritten.write(study.scene, study.written(design.values), path, overwrite=True)
+    rewritten.write(study.scene, study.written(design.values), path, True, _origin(study, path))
     verdicts = evaluate(path, flavour=study.flavour).claims  # with their errors, as any run of it has them
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
-    return Best(values, tuple(goals), verdicts, tuple(binding(runs, design, names)), path)
+    limits = binding(runs, design, names, np.array([each.bound for each in verdicts]))
+    return Best(values, tuple(goals), verdicts, tuple(limits), path)
+
+
+def _origin(study: Study, path: Path) -> str:
+    """The description of a scene that is written: where it comes from."""
+    which = "The best design" if len(study.goals) == 1 else f"{path.stem}: a design of the front"
+    goals = listed(goal.words for goal in study.goals)
+    changed = listed([*study.fixed, *(each.key for each in study.variables)])
+    return f"{which} of {study.name}.toml ({goals}): {study.path.name} with other values of {changed}."
 
 
 def _constant(study: Study, designs: Sequence[Design]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from ...cosim.claims.claims import called
 from ...errors import listed
 from ...sweeps.varied import Value
 from ...traces import Verdict
+from .binding import Limit
 from .study import Goal, Study
 
 HEADINGS = ("", "best", "may be", "")
@@ -22,15 +23,20 @@ CLAIMS = ("verdict", "claim", "worst", "bound", "distance", "")
 class Best:
     """A best design: the values (SI) of what varies by their keys, its goals, and the verdicts on its claims.
 
-    `binding` names what keeps it from being better: claims that are as near to their bounds as they may be,
-    and values that are at an end of their range. `scene` is the file that has it.
+    `limits` are what keeps it from being better: claims that are as near to their bounds as they may be, and
+    values that are at an end of their range. `scene` is the file that has it.
     """
 
     values: dict[str, Value]
     goals: tuple[float, ...]
     verdicts: tuple[Verdict, ...]
-    binding: tuple[str, ...]
+    limits: tuple[Limit, ...]
     scene: Path
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """The names of what keeps it from being better."""
+        return tuple(each.name for each in self.limits)
 
 
 @dataclass(frozen=True, repr=False)
@@ -105,12 +111,38 @@ class Optimum:
 
 def shown_goal(goal: Goal, best: Best, place: int) -> str:
     """A goal of a design with its unit."""
-    value = best.goals[place]
     if goal.kind == "claim":
         return best.verdicts[goal.place].shown_distance
-    if goal.display != "1":
-        return units.show(value, goal.display)
-    return f"{value:.7g}" + ("" if goal.unit == "1" else f" {goal.unit}")
+    return _shown(goal, best.goals[place])
+
+
+def _shown(goal: Goal, value: float, digits: int = 7) -> str:
+    """A value of a goal with its unit."""
+    shown, unit = value / units.unit(goal.display).factor, goal.unit if goal.display == "1" else goal.display
+    return f"{shown:.{digits}g}" + ("" if unit == "1" else f" {unit}")
+
+
+def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
+    """What relaxing a limit by 1 % is worth, in the goal's unit; an empty text where that is not known."""
+    if not math.isfinite(limit.gain):
+        return ""
+    if not limit.gain > 0.0:
+        return "nothing alone"
+    (goal,), (value,) = found.study.goals, best.goals
+    gain = -goal.sign * limit.gain * abs(value)
+    text = best.verdicts[goal.place].shown(gain) if goal.kind == "claim" else _shown(goal, gain, 3)
+    return f"about {text if text.startswith('-') else f'+{text}'}"
+
+
+def _note(found: Optimum, best: Best, key: str | int) -> str:
+    """What a table says of a variable, by its name, or a claim, by its number: whether it binds, its gain."""
+    if isinstance(key, int) and not found.study.required[key]:
+        return "may fail"
+    for limit in best.limits:
+        if key == (limit.name if limit.claim is None else limit.claim):
+            gain, way = shown_gain(found, best, limit), "wider" if limit.claim is None else "looser"
+            return f"binds; 1 % {way}: {gain}" if gain else "binds"
+    return ""
 
 
 def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
@@ -122,7 +154,7 @@ def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     return goals + [
         (
             each.key, each.varied.show(best.values[each.key]), each.text,
-            "binds" if each.range and each.key in best.binding else "",
+            _note(found, best, each.key),
         )
         for each in found.study.variables
     ]  # fmt: skip
@@ -133,9 +165,9 @@ def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     return [
         (
             each.word, each.claim, each.shown(each.worst), each.shown(each.bound), each.shown_distance,
-            "binds" if called(claim, each) in best.binding else "",
+            _note(found, best, number),
         )
-        for claim, each in zip(found.study.scene.claims, best.verdicts, strict=True)
+        for number, each in enumerate(best.verdicts)
     ]  # fmt: skip
 
 
@@ -144,7 +176,11 @@ def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
     study = found.study
     goals = [goal.name for goal in study.goals]
     others = [each for each in study.variables if each.key not in goals]
-    headings = (*(goal.words for goal in study.goals), *(each.key for each in others), "binding")
+    headings = (
+        *(goal.words for goal in study.goals),
+        *(each.key for each in others),
+        "binding",
+    )
     rows = [
         (
             *(shown_goal(goal, best, place) for place, goal in enumerate(study.goals)),
@@ -159,19 +195,16 @@ def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
 def conclusion(found: Optimum) -> Iterator[str]:
     """What was found, in sentences."""
     if not found.front:
-        yield f"None of the {found.runs} designs that were tried meets all claims."
+        yield f"None of the {found.runs} designs that were tried meets {found.study.wanted}."
         for claim in found.nowhere:
             yield f"No design {claim}."
     elif len(found.study.goals) == 1:
         (best,) = found.front
         goal = found.study.goals[0]
         yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}."
-        keys = [each.key for each in found.study.variables]
-        names = " and ".join(
-            f"the end of the range of {each}" if each in keys else f"'{each}'" for each in best.binding
-        )
-        if names:
-            yield f"It is limited by {names}."
+        if best.limits:
+            yield f"It is limited by {' and '.join(map(_in_words, best.limits))}."
+            yield from _gains(found, best)
         elif not found.constant and found.study.continuous:
             yield "No claim and no end of a range limits it."
     else:
@@ -194,12 +227,24 @@ def conclusion(found: Optimum) -> Iterator[str]:
         yield f"{found.failed} of {found.runs} designs could not be run."
 
 
+def _in_words(limit: Limit, of: str = "the end of the range of ") -> str:
+    return f"{of}{limit.name}" if limit.claim is None else f"'{limit.name}'"
+
+
+def _gains(found: Optimum, best: Best) -> Iterator[str]:
+    """What it is worth to relax each limit, in a sentence."""
+    gains = [(_in_words(each, "the range of "), shown_gain(found, best, each)) for each in best.limits]
+    if known := [f"{name} is worth {gain}" for name, gain in gains if gain]:
+        yield f"Relaxed by 1 %, {listed(known)}."
+
+
 def _undecided(found: Optimum) -> dict[str, float]:
     """The claims that are undecided in a best design, with their largest errors as shares of the bound."""
     errors: dict[str, float] = {}
     for best in found.front:
-        for claim, each in zip(found.study.scene.claims, best.verdicts, strict=True):
-            if not each.decided:
+        verdicts = zip(found.study.scene.claims, best.verdicts, found.study.required, strict=True)
+        for claim, each, needed in verdicts:
+            if needed and not each.decided:
                 name, share = called(claim, each), each.error / abs(each.bound or each.worst or 1.0)
                 errors[name] = max(share, errors.get(name, 0.0))
     return errors

@@ -10,7 +10,7 @@ def show(found: Optimum) -> None:
     study = found.study
     before = found.runs - found.ran
     again = f" ({before} of them run before)" if before > 0 else ""
-    say(f"{study.title}: {found.runs} designs{again}, {found.allowed} of which meet all claims")
+    say(f"{study.title}: {found.runs} designs{again}, {found.allowed} of which meet {study.wanted}")
     if found.front and len(study.goals) == 1:
         (best,) = found.front
         rows = value_rows(found, best)

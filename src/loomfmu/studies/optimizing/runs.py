@@ -62,7 +62,7 @@ class Runs:
         self.study = study
         self.designs: dict[tuple[Value, ...], Design] = {}  # in the order in which they were first wanted
         self.ran = 0  # now, and not in an earlier search
-        self._job, self._pool, self._limits, self._advance = job, pool, limits, advance
+        self._job, self._pool, self.limits, self._advance = job, pool, limits, advance
         self._results = _read(path)
         try:
             self._file: BufferedRandom = path.open("r+b" if path.exists() else "w+b")
@@ -109,11 +109,11 @@ class Runs:
         size = len(ClaimResult._fields)
         parts = range(0, size * len(study.scene.claims), size)
         found = [ClaimResult(*claims[part : part + size]) for part in parts]
-        holds = [bool(each.holds) for each in found]
+        holds = [bool(each.holds) or not needed for each, needed in zip(found, study.required, strict=True)]
         bounds, distances = _numbers(each.bound for each in found), _numbers(each.distance for each in found)
         of_kind: dict[str, Any] = {"signal": _numbers(signals), "claim": distances, "variable": values}
         heights = np.array([goal.sign * float(of_kind[goal.kind][goal.place]) for goal in study.goals])
-        room = self._limits.room(holds, bounds, distances)
+        room = self.limits.room(holds, bounds, distances)
         error = result[-1] or ""
         return Design(point, values, heights, room, distances, bool(all(holds) and not error), error)
 
@@ -152,8 +152,12 @@ def about(runs: Runs, design: Design, pieces: Pieces) -> Function:
 
 @dataclass(frozen=True)
 class Limits:
-    """How far claims must stay from their bounds: shares of these, and amounts; `scales` make them alike."""
+    """How far claims must stay from their bounds: shares of these, and amounts; `scales` make them alike.
 
+    Those that are not `required` always have room.
+    """
+
+    required: NDArray[np.bool_]
     shares: Floats
     amounts: Floats
     scales: Floats
@@ -161,7 +165,8 @@ class Limits:
     def room(self, holds: Sequence[bool], bounds: Floats, distances: Floats) -> Floats:
         """How much farther each claim is from its bound than it must be, as a share of its scale."""
         rest = (distances - self.shares * np.abs(bounds) - self.amounts) / self.scales
-        return np.where(np.isnan(distances), np.where(holds, 0.0, np.nan), rest)
+        known = np.where(np.isnan(distances), np.where(holds, 0.0, np.nan), rest)
+        return np.where(self.required, known, 1.0)
 
 
 def _numbers(given: Any) -> Floats:

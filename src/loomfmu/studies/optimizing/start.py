@@ -53,7 +53,7 @@ def limits_of(study: Study, verdicts: Sequence[Verdict], path: Path) -> Limits:
             )
         known = (abs(each) for each in (verdict.bound, verdict.worst) if math.isfinite(each))
         scales.append(next(filter(None, known), 1.0))
-    return Limits(np.array(study.shares), np.array(amounts), np.array(scales))
+    return Limits(np.array(study.required), np.array(study.shares), np.array(amounts), np.array(scales))
 
 
 def check_effects(runs: Runs, points: Sequence[Point], path: Path) -> None:

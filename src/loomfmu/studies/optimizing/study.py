@@ -7,19 +7,19 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from ... import units
 from ...cosim.importing.fmus import Flavour
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
 from ...cosim.scenes.tables import toml
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 from ...files import text_of
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
 from ...sweeps.header import HEAD, Header, check_by_scene, header, variables
 from ...sweeps.varied import Value, Varied
+from .constraints import names_of, required_of, safety_of
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
-KEYS = (*HEAD, *WAYS, "safety", "ranges", "choices", "search")
+KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "search")
 SEARCH = {"runs": 2000, "seed": 1, "points": 11}  # of the search, and what they are by default
 LEAST = {"runs": 50, "seed": 0, "points": 3}
 MOST_GOALS = 3
@@ -83,7 +83,8 @@ class Goal:
 class Study:
     """What is searched: a scene, what may vary in it, goals, and how far claims stay from their bounds.
 
-    `shares` and `amounts` are those distances for each claim: as a share of its bound, and in its unit.
+    `required` says of each claim whether it must hold; `shares` and `amounts` are those distances: as a share
+    of its bound, and in its unit.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Study:
     variables: tuple[Variable, ...]
     goals: tuple[Goal, ...]
     values: tuple[str, ...]
+    required: tuple[bool, ...]
     shares: tuple[float, ...]
     amounts: tuple[str, ...]
     search: dict[str, int]
@@ -137,6 +139,16 @@ class Study:
         return not self.continuous and self.combinations <= self.search["runs"]
 
     @property
+    def wanted(self) -> str:
+        """Which claims must hold, in words."""
+        free = [
+            f"'{name}'"
+            for name, needed in zip(names_of(self.scene), self.required, strict=True)
+            if not needed
+        ]
+        return f"all claims but {listed(free)}" if free else "all claims"
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What the user is to be warned of."""
         doubts = (doubt for each in self.variables if each.range for doubt in each.range.doubts)
@@ -170,10 +182,11 @@ def _parse(text: str, path: Path) -> Study:
     head = header(tables, path, KEYS, "study")
     found = _variables(head, tables)
     goals = _goals(head.scene, tables, found)
-    shares, amounts = _safety(head.scene, tables.get("safety", 0.0))
+    required = required_of(head.scene, tables.get("except", []))
+    shares, amounts = safety_of(head.scene, tables.get("safety", 0.0), required)
     signals = tuple(goal.name for goal in goals if goal.kind == "signal")
     return Study(
-        path.stem, text, head, tuple(found), tuple(goals), signals, shares, amounts,
+        path.stem, text, head, tuple(found), tuple(goals), signals, required, shares, amounts,
         _search(tables.get("search", {})),
     )  # fmt: skip
 
@@ -245,36 +258,6 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
         near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
         raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None
     return Goal(name, sign, "signal", signals, port.unit, port.display)
-
-
-def _safety(scene: Scene, given: Any) -> tuple[tuple[float, ...], tuple[str, ...]]:
-    """How far each claim stays from its bound: a share of the bound, or a quantity in the claim's unit."""
-    names = [str(claim.get("name") or f"claim_{number + 1}") for number, claim in enumerate(scene.claims)]
-    if not scene.claims and given:
-        raise LoomfmuError(f"safety = {shown(given)}, but the scene has no claims")
-    table = given if isinstance(given, dict) else dict.fromkeys(names, given)
-    for name in table:
-        if name not in names:
-            raise LoomfmuError(f"safety: the scene has no claim {name!r}{suggestion(name, names)}")
-    shares, amounts = [], []
-    for name in names:
-        share, amount = _distance(table.get(name, 0.0), name if isinstance(given, dict) else "")
-        shares.append(share)
-        amounts.append(amount)
-    return tuple(shares), tuple(amounts)
-
-
-def _distance(given: Any, name: str) -> tuple[float, str]:
-    where = f"safety.{name!r}" if name else "safety"
-    try:
-        share, amount = units.parse(given, "1"), ""
-    except units.UnitError as error:
-        if not isinstance(given, str) or not name:
-            raise LoomfmuError(f"{where}: {error}; give a share of the bound, such as '2 %'") from None
-        share, amount = 0.0, given
-    if not 0.0 <= share < 1000.0:
-        raise LoomfmuError(f"{where} = {share:g} is outside [0, 1000]")
-    return share, amount
 
 
 def _search(given: Any) -> dict[str, int]:
