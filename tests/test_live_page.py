@@ -16,6 +16,7 @@ import loomfmu
 from loomfmu import LoomfmuError, live_page
 from loomfmu.cli import main
 from loomfmu.fmi.native import compiler
+from loomfmu.report import diagram
 from loomfmu.report.occasions import Occasions
 from loomfmu.report.section import Subject
 
@@ -173,6 +174,11 @@ def test_its_diagram_is_that_of_the_report(written: Path, opened: Open, tmp_path
         for bar, intervals in zip(row.bars, bars, strict=True):
             assert np.shape(intervals) == np.shape(expected[row.name, bar.label]), (row.name, bar.label)
             np.testing.assert_allclose(intervals, expected[row.name, bar.label], atol=1e-9)
+    (without,) = {1, 2, 3} - {each.revolution for each in result.claims}
+    page.evaluate(f"loomfmu.seek({without - 0.5} * 2 * Math.PI)")
+    elsewhere = page.locator("#diagram-straight .elsewhere").text_content()
+    drawn = diagram.section(occasions.subject)
+    assert drawn is not None and f">{elsewhere}</text>" in drawn.html
 
 
 def test_the_slider_past_the_safe_speed_turns_the_verdicts(written: Path, opened: Open) -> None:

@@ -20,3 +20,9 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Trace:
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Trace:
     """The trace of a loom with every mechanism."""
     return loomfmu.run(SIMS / "full_loom.toml", output=tmp_path_factory.mktemp("whole") / "whole.h5").trace
+
+
+@pytest.fixture(scope="session")
+def yarn(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """The trace of a loom with its weft, over two revolutions."""
+    return loomfmu.run(SIMS / "weft_tension.toml", output=tmp_path_factory.mktemp("yarn") / "yarn.h5").trace

@@ -127,6 +127,17 @@ def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
     assert heights[True] - heights[False] == diagram.ROW
 
 
+def test_a_revolution_without_worst_values_says_where_they_are(
+    yarn: Trace, tmp_path: Path, opened: Open
+) -> None:
+    assert {each.revolution for each in yarn.verdicts} == {1}
+    page = opened(report.write([yarn], tmp_path / "yarn.html"))
+    text = page.locator("#diagram-straight .elsewhere")
+    assert text.is_hidden()
+    page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")
+    assert text.is_visible() and text.text_content() == "worst values in revolution 1"
+
+
 def test_a_report_without_claims_has_no_row_for_them(tmp_path: Path) -> None:
     lines = (SIMS / "wl680_3600.toml").read_text().partition("[[claims]]")[0]
     (tmp_path / "plain.toml").write_text(lines)

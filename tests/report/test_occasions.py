@@ -52,6 +52,15 @@ def test_the_hand_over_is_that_of_its_claim(whole: Trace) -> None:
     assert 0.5 * (low + high) == pytest.approx(180.0, abs=0.01)
 
 
+def test_the_brake_is_opened_where_its_program_says_so(yarn: Trace, demo: Trace) -> None:
+    opened = degrees(Occasions(Subject([yarn])).revolution(1).intervals["yarn", "brake opened"])
+    # from 45 to 135 deg, where the share is 1 (a thousandth of the force is passed within a degree), and from
+    # between 180 deg (1.5) and 195 deg (0.3) to between 255 deg (0.3) and 270 deg (2.5)
+    assert opened[0] == pytest.approx((45.0, 135.0), abs=1.0)
+    assert 180.0 < opened[1][0] < 195.0 and 255.0 < opened[1][1] < 270.0 and len(opened) == 2
+    assert "yarn" not in {row.name for row in Occasions(Subject([demo])).rows}
+
+
 def test_each_rapier_is_in_the_shed_by_its_own_belt(whole: Trace) -> None:
     occasions = Occasions(Subject([whole]))
     labels = {row.name: row.label for row in occasions.rows}

@@ -274,3 +274,16 @@ def test_what_cannot_be_plotted_is_said(demo: Trace, tmp_path: Path) -> None:
         demo.plot("heald_1.lift", "belt.axial_force")
     with pytest.raises(LoomfmuError, match='choose "angle" or "time"'):
         demo.plot("heald_1.lift", over="speed")
+
+
+def test_the_last_tick_is_that_of_the_end_of_the_run(yarn: Trace, tmp_path: Path, opened: Open) -> None:
+    """Two revolutions are 719.9999999999999 deg by rounding."""
+    assert np.degrees(yarn.shaft_angle[-1]) < 720.0
+    page = opened(report.write([yarn], tmp_path / "yarn.html"))
+    page.add_init_script(
+        "window.drawn = []; const { prototype } = CanvasRenderingContext2D, { fillText } = prototype;"
+        "prototype.fillText = function (...given) { drawn.push(given[0]); fillText.apply(this, given); }"
+    )
+    page.reload()
+    until(page, lambda: page.evaluate("drawn.includes('360')"))
+    assert page.evaluate("drawn.includes('720')")

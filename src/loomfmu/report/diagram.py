@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, listed
 from ..files import write_file
 from ..traces import Trace, Verdict
 from . import pictures
@@ -52,12 +52,14 @@ def section(subject: Subject) -> Section | None:
             marks.append(its)
         shown[revolution.number] = place
     claims = subject.live or any(marks)
+    elsewhere = _elsewhere(subject.trace.verdicts)
     height = straight_size(occasions.rows, claims)[1]
     html = template("diagram.html.j2").render(
         width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
         centre=CENTRE, outer=OUTER + 8.0, inner=INNER - 8.0,
         straight=[
-            svg(straight(occasions.rows, each, its, claims)) for each, its in zip(drawn, marks, strict=True)
+            svg(straight(occasions.rows, each, its, claims, elsewhere))
+            for each, its in zip(drawn, marks, strict=True)
         ],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
@@ -133,6 +135,12 @@ def _degrees(interval: tuple[float, float]) -> str:
     return " to ".join(f"{math.degrees(edge):.1f}°" for edge in interval)
 
 
+def _elsewhere(verdicts: Sequence[Verdict]) -> str:
+    """What the row of the claims says in a revolution that has none of their worst values."""
+    found = sorted({each.revolution for each in verdicts if each.revolution is not None})
+    return f"worst values in revolution{'s' * (len(found) > 1)} {listed(found)}" if found else ""
+
+
 def table(rows: Sequence[Row], revolution: Revolution) -> list[tuple[str, str, str]]:
     """The same in words: row, what, from where to where."""
     return [
@@ -162,8 +170,13 @@ def _x(angle: float) -> float:
     return LEFT + (WIDTH - RIGHT - LEFT) * angle / TURN
 
 
-def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark], claims: bool) -> Drawing:
-    """Rows over 0 to 360 deg, one below the other, at last that of the claims if there is one."""
+def straight(
+    rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark], claims: bool, elsewhere: str = ""
+) -> Drawing:
+    """Rows over 0 to 360 deg, one below the other, at last that of the claims if there is one.
+
+    Without a mark in this revolution it says that they are `elsewhere`.
+    """
     drawing: list[Shape | Text] = []
     bottom = TOP + ROW * (len(rows) + claims)
     for degrees in range(0, 361, 30):
@@ -185,6 +198,8 @@ def straight(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark],
     top = TOP + ROW * len(rows)
     if claims:
         drawing.append(Text((LEFT - 8.0, top + 0.65 * ROW), "Claims", "text", "end"))
+    if claims and not marks:
+        drawing.append(Text((LEFT + 8.0, top + 0.65 * ROW), elsewhere, "faint elsewhere"))
     for mark in marks:
         x = _x(mark.angle)
         tip = [(x, top + 4.0), (x + 6.0, top + ROW - 6.0), (x - 6.0, top + ROW - 6.0)]

@@ -241,6 +241,17 @@ def _transfer(trace: Trace, transfer: str) -> Iterator[Row]:
     yield Row(transfer, "Transfer", (enough,), ["/", passed, ["highest", ["max", passed, SMALL]]])
 
 
+def _brake(trace: Trace, yarn: str) -> Iterator[Row]:
+    brake, program = f"{yarn}.brake", f"{yarn}.brake_program_"
+    if (
+        brake not in trace
+        or len({trace.parameters[name] for name in trace.parameters if program in name}) < 2
+    ):
+        return
+    opened = Bar("brake opened", "reed", ["-", ["*", 0.999, f"{yarn}.brake_force"], brake])
+    yield Row(yarn, "Weft brake", (opened,), _scaled(brake))
+
+
 def _frame(trace: Trace, heald: str) -> Iterator[Row]:
     if not _has(trace, heald, "lift"):
         return
@@ -283,6 +294,7 @@ def _lock(trace: Trace, lock: str) -> Iterator[Row]:
 MAKERS: tuple[tuple[str, Callable[[Trace, str], Iterator[Row]]], ...] = (
     ("WeftInsertion", _rapier),
     ("WeftTransfer", _transfer),
+    ("WeftTension", _brake),
     ("BeltMonitor", _belt),
     ("DobbyDrive", _shed),
     ("HealdFrame", _frame),

@@ -71,7 +71,9 @@
       const points = angles.flatMap((angle, k) => k % every ? [] : [[x(angle), low + 6 + (height - 10) * (1 - values[k])]]);
       straight.push(shape(points, "curve"));
     });
-    for (const [verdict, at] of marks(number)) {
+    const found = marks(number);
+    if (!found.length) straight.push(elsewhere());
+    for (const [verdict, at] of found) {
       const low = top + height * rows.length, role = verdict.holds ? "holds" : "fails", text = verdict.holds ? "holds" : "FAILS";
       straight.push(shape([[x(at), low + 4], [x(at) + 6, low + height - 6], [x(at) - 6, low + height - 6]], role, text));
       round.push(shape([onCircle(outer + 2, at), onCircle(outer + 14, at - 0.02), onCircle(outer + 14, at + 0.02)], role, text));
@@ -84,6 +86,18 @@
   function marks(number) {
     return (loomfmu.live.verdicts || []).filter(each => each.place)
       .map(each => [each, each.place.position - (number - 1) * TURN]).filter(([, at]) => at >= 0 && at < TURN);
+  }
+
+  /* What the row of the claims says in a revolution that has none of their worst values. */
+  function elsewhere() {
+    const all = (loomfmu.live.verdicts || []).filter(each => each.place).map(each => loomfmu.revolution(each.place.position));
+    const numbers = [...new Set(all)].sort((one, other) => one - other), made = document.createElementNS(SVG, "text");
+    const listed = [numbers.slice(0, -1).join(", "), ...numbers.slice(-1)].filter(String).join(" and ");
+    made.setAttribute("class", "faint elsewhere");
+    made.setAttribute("x", left + 8);
+    made.setAttribute("y", top + height * (rows.length + 0.65));
+    made.textContent = listed && `worst values in revolution${numbers.length > 1 ? "s" : ""} ${listed}`;
+    return made;
   }
 
   function tell(words, number) {
@@ -101,7 +115,7 @@
     for (const picture of pictures) {
       const groups = picture.querySelectorAll("g[data-drawing]"), kept = groups[0], live = document.createElementNS(SVG, "g");
       for (const group of groups) if (group !== kept) group.remove();
-      for (const old of kept.querySelectorAll("polygon, polyline.curve")) old.remove();
+      for (const old of kept.querySelectorAll("polygon, polyline.curve, .elsewhere")) old.remove();
       kept.removeAttribute("data-drawing");
       kept.removeAttribute("hidden");
       picture.insertBefore(live, kept.querySelector("text.text") && picture.id === "diagram-round" ? kept : kept.nextSibling);

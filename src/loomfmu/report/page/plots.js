@@ -21,7 +21,8 @@
     : trace.turns ? loomfmu.interpolate(trace.positions, trace.times, position) : position;
   const placed = x => over === "angle" ? x * DEGREE
     : traces[0].turns ? loomfmu.interpolate(traces[0].times, traces[0].positions, x) : x;
-  const whole = () => [shown(traces[0], loomfmu.first), shown(traces[0], loomfmu.last)];
+  const even = x => Number(x.toPrecision(12)); // without rounding, so that the tick at the end is drawn
+  const whole = () => [loomfmu.first, loomfmu.last].map(position => even(shown(traces[0], position)));
 
   function tables(name) {
     return curves(name).map((curve, number) => {
