@@ -150,7 +150,7 @@ def _run_here(options: argparse.Namespace) -> int:
         flavour="live" if options.live else "native", overwrite=options.force,
     )  # fmt: skip
     # before anything is printed: the reader of our output may have had enough
-    page = _page_of(result.trace, options.force) if options.report else None
+    page = _page_of(result.trace, result.path, options.force) if options.report else None
     for warning in result.warnings:
         complain(f"warning: {warning}")
     scene = result.scene
@@ -182,10 +182,10 @@ def _run_here(options: argparse.Namespace) -> int:
     return 0 if result.holds else 1
 
 
-def _page_of(trace: "Trace", overwrite: bool) -> Path:
+def _page_of(trace: "Trace", path: Path, overwrite: bool) -> Path:
     from . import report
 
-    return report.write([trace], overwrite=overwrite)
+    return report.write([trace], path.with_suffix(".html"), overwrite)
 
 
 def _print_pace(result: "Result") -> None:

@@ -62,6 +62,15 @@ def test_nothing_stands_out_at_the_side_of_a_narrow_screen(written: Path, opened
     assert found.evaluate("document.documentElement.scrollWidth") == NARROW[0]
 
 
+def test_the_command_names_its_page_as_the_trace_was_named(
+    demo: Trace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    os.link(demo.path, tmp_path / "demo.h5")
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", "demo.h5"]) == 0
+    assert capsys.readouterr().out == "demo.html\n"
+
+
 def test_it_is_small_enough_to_mail(written: Path) -> None:
     assert written.stat().st_size < MAIL
 

@@ -95,11 +95,11 @@ def write(
     occasions = Occasions(subject)
     reason = _not_drawn(subject, occasions) if subject.turns else "no shaft turns"
     if reason:
-        raise LoomfmuError(f"{trace.path}: there is no timing diagram: {reason}")
+        raise LoomfmuError(f"{trace.given}: there is no timing diagram: {reason}")
     numbers = occasions.numbers
     number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
     if number not in numbers:
-        raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.path}")
+        raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.given}")
     its, marks = occasions.revolution(number), marks_in(trace.verdicts, number)
     if circular:
         drawing, size = round_(occasions.rows, its, marks), (SQUARE, SQUARE)

@@ -50,8 +50,10 @@ def write(
         raise LoomfmuError("a report needs a trace: name at least one")
     for trace in opened:
         if not trace.rows:
-            raise LoomfmuError(f"{trace.path}: there is nothing to show: the trace has no samples")
-    path = Path(output) if output is not None else opened[0].path.with_suffix(".html")
+            raise LoomfmuError(f"{trace.given}: there is nothing to show: the trace has no samples")
+    first = traces[0]
+    beside = first.path if isinstance(first, Trace) else Path(first)
+    path = Path(output) if output is not None else beside.with_suffix(".html")
     inputs = [trace.path for trace in opened]
     check_target(path, REPORT, inputs, overwrite)
     with ExitStack() as files:

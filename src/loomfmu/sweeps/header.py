@@ -1,5 +1,6 @@
 """What files of sweeps and of searches have in common: the scene, what is fixed in it, and what varies."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,10 +52,16 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
     flavour = tables.get("flavour", "native")
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
-    scene_path = (path.parent / tables["scene"]).resolve()
+    scene_path = _beside(path, tables["scene"])
     fixed = flattened(tables.get("set", {}), "set")
     scene = checked_claims(read_scene(scene_path, fixed))
     return Header(text_in(tables, "title", path.stem), scene_path, scene, flavour, fixed)
+
+
+def _beside(path: Path, name: str) -> Path:
+    """Where a file is that another one names; relative to the current folder, for messages, if both are."""
+    place = path.parent / name
+    return place.resolve() if place.is_absolute() else Path(os.path.relpath(place.resolve()))
 
 
 def variables(head: Header, tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Varied]:

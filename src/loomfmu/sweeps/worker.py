@@ -103,9 +103,8 @@ class Planned(Protocol):
 
 def job_of(plan: Planned) -> Job:
     """What workers need of a plan."""
-    return Job(
-        plan.path, tuple(plan.fixed.items()), plan.flavour, plan.values, identity(plan.scene, plan.flavour)
-    )
+    known = identity(plan.scene, plan.flavour)
+    return Job(plan.path.absolute(), tuple(plan.fixed.items()), plan.flavour, plan.values, known)
 
 
 def identity(scene: Scene, flavour: str) -> str:

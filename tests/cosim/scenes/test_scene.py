@@ -370,9 +370,13 @@ def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
         ({"kind": "rapier_in_open_shed", "head_height": 18},
          "claim 'rapier_in_open_shed': head_height = 18 is read as 18 m = 18000 mm;"
          ' write "18 mm" if that is meant'),
+        ({"kind": "below", "signal": "belt.deflection", "bound": "2 mm", "window": ["210 deg", "150 deg"]},
+         "claim 'below': window = [210 deg, 150 deg] covers 300 deg, through 360 deg;"
+         ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
+         " if this one is meant"),
     ],
 )  # fmt: skip
-def test_claims_with_numbers_meant_in_another_unit_are_doubted(claim: dict[str, Any], note: str) -> None:
+def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, Any], note: str) -> None:
     scene = replace(scenes.parse(LOOM), claims=[claim])
     assert checked_claims(scene).notes == (note,)
     assert checked_claims(checked_claims(scene)).notes == (note,)  # told once
@@ -385,6 +389,8 @@ def test_claims_with_numbers_meant_in_another_unit_are_doubted(claim: dict[str, 
         {"kind": "below", "signal": "belt.deflection", "bound": "2 m"},
         {"kind": "dwell", "heald": "heald_1", "at_least": 1.5},
         {"kind": "above", "signal": "belt.margin", "bound": 0, "window": [0, 6.283185307179586]},
+        {"kind": "above", "signal": "belt.margin", "bound": 0, "window": ["330 deg", "30 deg"]},
+        {"kind": "above", "signal": "belt.margin", "bound": 0, "window": ["-150 deg", "150 deg"]},
         {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
     ],
 )

@@ -115,3 +115,12 @@ def test_what_changes_nothing_or_cannot_be_run_is_refused(
     with pytest.raises(LoomfmuError) as caught:
         optimize(path, processes=1)
     assert said in str(caught.value) and str(caught.value).startswith(f"{path}: ")
+
+
+def test_the_scene_is_named_as_the_study_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Relative to the current folder, as in the rest of the line."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "studies").mkdir()
+    path = study(Path("studies"), GOAL + SPEED, Path("../none.toml"))
+    with pytest.raises(LoomfmuError, match=r"^studies/study\.toml: none\.toml: cannot be read"):
+        load(path)

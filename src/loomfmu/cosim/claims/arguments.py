@@ -157,6 +157,22 @@ class Edges(Quantity):
             raise LoomfmuError(f"{where} = {window} is empty; a whole revolution is [0 deg, 360 deg]")
         return window
 
+    def doubts(self, given: Any, where: str) -> Iterator[str]:
+        yield from super().doubts(given, where)
+        window = self.read(given, where, lambda: self.unit)
+        if window.end < window.start and window.width > 0.5 * TURN:  # both edges may have been swapped
+            other, same = map(_quoted, (window[::-1], (window.start - TURN, window.end)))
+            width = units.show(window.width, "deg")
+            yield (
+                f"{where} = {window} covers {width}, through 360 deg; write {other} for the other part of the"
+                f" revolution, or {same} if this one is meant"
+            )
+
+
+def _quoted(angles: Sequence[float]) -> str:
+    """Shaft angles as a scene states them."""
+    return "[" + ", ".join(f'"{units.show(angle, "deg")}"' for angle in angles) + "]"
+
 
 def angles_text(angles: Sequence[float]) -> str:
     """Shaft angles as people read them.
