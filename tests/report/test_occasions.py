@@ -82,6 +82,13 @@ def test_dwells_and_changes_fill_the_revolution(demo: Trace) -> None:
     assert sum(high - low for low, high in parts) == pytest.approx(2.0 * math.pi, rel=1e-12)
 
 
+def test_curves_go_from_end_to_end_of_a_revolution(demo: Trace, whole: Trace) -> None:
+    """A curve shows every eighth of 1440 samples; it ended before the last of them."""
+    for trace in (demo, whole):
+        found = Occasions(Subject([trace])).revolution(2)
+        assert {(curve[0][0], curve[0][-1]) for curve in found.curves.values()} == {found.covered}
+
+
 def test_frames_come_in_the_order_of_their_numbers(whole: Trace) -> None:
     names = [row.name for row in Occasions(Subject([whole])).rows if row.name.startswith("heald_")]
     assert names == [f"heald_{number}" for number in range(1, len(names) + 1)]

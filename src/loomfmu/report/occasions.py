@@ -131,7 +131,7 @@ class Occasions:
             found = np.asarray(evaluated(rule, read), dtype=float)
             return np.asarray(np.interp(places, positions, np.broadcast_to(found, positions.shape)))
 
-        shown = along[:: max(1, len(along) // CURVE)]
+        shown = np.append(along[: -1 : max(1, len(along) // CURVE)], last)
         curves = {row: (shown - start, on(rule, shown)) for row, rule in self._curves.items()}
         return Revolution(
             number,

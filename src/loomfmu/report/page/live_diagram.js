@@ -68,7 +68,8 @@
       });
       const [angles, values] = along(curves[place], number), every = Math.max(1, Math.floor(angles.length / CURVE_POINTS));
       if (!values.every(Number.isFinite)) return;
-      const points = angles.flatMap((angle, k) => k % every ? [] : [[x(angle), low + 6 + (height - 10) * (1 - values[k])]]);
+      const kept = angles.map((_, k) => k).filter(k => k % every === 0 || k === angles.length - 1);
+      const points = kept.map(k => [x(angles[k]), low + 6 + (height - 10) * (1 - values[k])]);
       straight.push(shape(points, "curve"));
     });
     const found = marks(number);
