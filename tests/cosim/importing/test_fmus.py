@@ -1,6 +1,7 @@
 """FMUs of our own: known from their declarations, built when they are needed, native where they can be."""
 
 import io
+import os
 import zipfile
 from pathlib import Path
 
@@ -8,10 +9,12 @@ import fmpy
 import pytest
 
 import loomfmu
+from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.fmi.cache import cache_directory
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.native import platforms
 from loomfmu.sweeps.plan import load
@@ -85,3 +88,43 @@ def test_what_is_needed_is_built_at_once(monkeypatch: pytest.MonkeyPatch, tmp_pa
     fmus.build(missing)
     assert fmus.unbuilt(wanted) == []
     assert {path.name for path in tmp_path.glob("fmus/*/*.fmu")} == {f"{name}.fmu" for name in names}
+
+
+def test_files_that_are_no_fmus_are_told_in_one_line(tmp_path: Path) -> None:
+    whole = fmus.of_component("MainShaft").path.read_bytes()
+    path = tmp_path / "wrong.fmu"
+    for content in (b"", b"no zip", whole[: len(whole) // 2], whole[:-30]):
+        path.write_bytes(content)
+        with pytest.raises(LoomfmuError) as raised:
+            fmus.load(path)
+        assert str(raised.value) == f"{path}: not a readable FMU (File is not a zip file)"
+    with pytest.raises(LoomfmuError, match=r"none\.fmu: there is no such FMU$"):
+        fmus.load(tmp_path / "none.fmu")
+    with pytest.raises(LoomfmuError, match=r": not a readable FMU \(Is a directory"):
+        fmus.load(tmp_path)
+    unpacked = cache_directory() / "unpacked"
+    assert all(len(entry.name) == 64 for entry in unpacked.iterdir())  # nothing half unpacked is left
+
+
+def test_a_zip_that_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
+    def packed(**files: str) -> Path:
+        path = tmp_path / f"{len(os.listdir(tmp_path))}.fmu"
+        with zipfile.ZipFile(path, "w") as zipped:
+            for name, text in files.items():
+                zipped.writestr(f"{name}.xml", text)
+        return path
+
+    start = '<fmiModelDescription fmiVersion="{}" modelName="M" guid="g"{}>'
+    model_exchange = start.format("2.0", "") + '<ModelExchange modelIdentifier="M"/>'
+    cases = {
+        packed(): "not a readable FMU",
+        packed(other="<a/>"): "not a readable FMU",
+        packed(modelDescription="<a"): "its modelDescription.xml cannot be read",
+        packed(modelDescription="<a/>"): "its modelDescription.xml cannot be read",
+        packed(modelDescription=model_exchange + "<ModelVariables/></fmiModelDescription>"): "only FMI 2.0",
+    }
+    for path, said in cases.items():
+        with pytest.raises(LoomfmuError) as raised:
+            fmus.load(path)
+        assert str(raised.value).startswith(f"{path}: ")
+        assert said in str(raised.value) and "\n" not in str(raised.value)

@@ -1,0 +1,134 @@
+"""The commands that take a scene: `run`, `export`, `page`."""
+
+import argparse
+import shlex
+import shutil
+import sys
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from .. import units
+from ..errors import LoomfmuError
+from ..printed import complain, say
+from .options import pairs, platforms
+from .printing import print_verdicts, revolutions
+from .status import BEGUN, status_of
+
+if TYPE_CHECKING:
+    from ..cosim.results import Result
+    from ..traces import Trace
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a scene and judge its claims."""
+    from ..cosim.master.guards import supervised
+    from ..cosim.reading import checked
+
+    if options.report:
+        from .. import report
+
+        report.check()  # before the run, not after it
+    options.scene = checked(options.scene, pairs(options.overrides), "live" if options.live else "native")
+    if unprotected := options.scene.unprotected:
+        return supervised(lambda: status_of(lambda: _run_here(options), options), unprotected)
+    return _run_here(options)
+
+
+def _run_here(options: argparse.Namespace) -> int:
+    """Run a scene that was read, in this process, and print what came of it."""
+    from ..cosim.run import run as run_scene
+
+    result = run_scene(
+        options.scene, output=options.output, progress=True,
+        flavour="live" if options.live else "native", overwrite=options.force,
+    )  # fmt: skip
+    # before anything is printed: the reader of our output may have had enough
+    page = _page_of(result.trace, result.path, options.force) if options.report else None
+    for warning in result.warnings:
+        complain(f"warning: {warning}")
+    _print_title(result)
+    if result.chosen:
+        say(result.chosen)
+    if options.explain:
+        say("skipped:", *(f"  {line}" for line in result.skipped))
+    print_verdicts(result.claims)
+    scene = result.scene
+    if scene.description and not scene.overrides:  # it is about the values that the scene has
+        say(*scene.description.splitlines(), "")
+    _print_pace(result)
+    _print_trace(str(result.path))
+    if page:
+        say(f"report: {page}")
+    return 0 if result.holds else 1
+
+
+def _print_title(result: "Result") -> None:
+    """What was run, and how far."""
+    scene = result.scene
+    if result.ended:
+        say(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
+    elif scene.step is None:
+        turned, speed = result.trace.turned_otherwise(scene.periods), units.show(scene.speed, "rev/min")
+        count = f"{scene.periods:g} nominal" if turned else f"{scene.periods:g}"
+        parts = f"{revolutions(count)} at {speed}", turned, f"{result.steps} steps"
+        say(f"{scene.title}: {', '.join(filter(None, parts))}")
+    else:
+        say(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
+
+
+def _print_trace(path: str) -> None:
+    """Where the trace is, and the command that summarises it."""
+    command = "loomfmu"
+    if Path(sys.argv[0]).name == command and shutil.which(command) != shutil.which(sys.argv[0]):
+        command = sys.argv[0]  # it is not on the PATH, or another one is
+    summary = [command, "show", *(["--"] if path.startswith("-") else []), path]
+    say(f"trace: {path}    summary: {shlex.join(summary)}")
+
+
+def _page_of(trace: "Trace", path: Path, overwrite: bool) -> Path:
+    from .. import report
+
+    return report.write([trace], path.with_suffix(".html"), overwrite)
+
+
+def _print_pace(result: "Result") -> None:
+    """How fast the steps were, with FMUs of which flavour, and how long the command took until now."""
+    flavours = {each.fmu.flavour for each in result.scene.instances.values()} - {""}
+    pace = f"{1e6 * result.seconds / result.steps:.3g} us each" if result.steps else "none"
+    kind = f"{' and '.join(sorted(flavours, reverse=True))} FMUs".lstrip()
+    say(f"{result.steps} steps with {kind}, {pace}; {perf_counter() - BEGUN:.2f} s in total")
+
+
+def export(options: argparse.Namespace) -> int:
+    """Write a scene as one FMU or as a system package."""
+    from ..cosim import whole
+    from ..cosim.scenes import scene
+    from ..cosim.ssp import export as ssp
+
+    if options.fmu and options.flavour:
+        raise LoomfmuError("--flavour is for --ssp: one FMU of a whole scene is always native")
+    if options.ssp and options.fmi:
+        raise LoomfmuError("--fmi is for --fmu: a system package holds FMUs of FMI 2.0")
+    built_for = platforms(options)
+    loaded = scene.load(options.scene, pairs(options.overrides))
+    if options.fmu:
+        warnings = whole.export(loaded, options.fmu, built_for, options.fmi or 2, options.force)
+    else:
+        warnings = ssp.export(loaded, options.ssp, options.flavour, built_for, options.force)
+    for warning in warnings:
+        complain(f"warning: {warning}")
+    say(options.fmu or options.ssp)
+    return 0
+
+
+def page(options: argparse.Namespace) -> int:
+    """Write a scene as a page in which its FMUs run."""
+    from ..live_page import write
+
+    def warn(warning: str) -> None:
+        complain(f"warning: {warning}")
+
+    given = pairs(options.overrides)
+    say(write(options.scene, options.vary, options.output, given, options.force, warn))
+    return 0

@@ -1,0 +1,138 @@
+"""`run` and `export`: what they print, write and return."""
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from small_scenes import CLAIM, HEAD, LOOM, SHAFT, one_line, scene
+
+from loomfmu import Trace
+from loomfmu.cli import main
+
+
+@pytest.mark.parametrize(("bound", "status", "word"), [(0.1, 0, "holds"), (0.9, 1, "FAILS")])
+def test_run_prints_the_verdicts_and_returns_whether_all_hold(
+    capsys: pytest.CaptureFixture[str], bound: float, status: int, word: str
+) -> None:
+    text = HEAD + 'description = "To be read after the run."\n' + LOOM + CLAIM.format(bound=bound)
+    assert main(["run", scene(text)]) == status
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    lines = printed.out.splitlines()
+    assert lines[0] == "Small: 1 revolution at 400 rev/min, 90 steps"
+    place = lines.index(f"{word}  lowest margin (belt.lowest_margin)")
+    assert lines[place + 1].startswith("  0.6558")
+    away = {0.1: "+555.8 %", 0.9: "-27.13 %"}[bound]
+    assert f", bound {bound} ({away}), error 2e-05, at 0.0" in lines[place + 1]
+    assert lines[place + 1].endswith(" deg,") and lines[place + 2] == "  rev. 1"
+    assert "To be read after the run." in lines
+    assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"
+    assert main(["run", "scene.toml", "--set", "shaft.speed=300rpm", "--output", "other.h5"]) == status
+    assert "To be read after the run." not in capsys.readouterr().out  # it is about the values of the scene
+    with Trace("results/scene.h5") as trace:
+        assert trace.rows == 91
+        assert [verdict.holds for verdict in trace.verdicts] == [status == 0]
+
+
+@pytest.mark.parametrize("name", ["a b.h5", "-x.h5", "plain.h5", "it's.h5"])
+def test_the_summary_that_a_run_names_can_be_pasted(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD + SHAFT), f"--output={name}"]) == 0
+    command = capsys.readouterr().out.rpartition("summary: ")[2]
+    assert main(shlex.split(command)[1:]) == 0
+
+
+def test_run_without_claims_holds(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD + SHAFT), "--output", "deep/down/there.h5"]) == 0
+    assert "no claims" in capsys.readouterr().out
+    assert os.listdir("deep/down") == ["there.h5"]
+
+
+def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [
+        "--set",
+        "shaft.speed=685rpm",
+        "--set",
+        "belt.guide_clearance = 0.5 mm",
+        "--set",
+        "heald.stroke=50mm",
+    ]
+    assert main(["run", scene(HEAD + LOOM), *arguments, "--set", "revolutions=0.5"]) == 0
+    assert "0.5 revolutions at 685 rev/min" in capsys.readouterr().out
+    with Trace("results/scene.h5") as trace:
+        assert trace["belt.length_factor"][-1] == 0.9
+        assert trace.parameter("heald_2.stroke") == 0.05
+        assert trace.rows == 46
+
+
+def test_a_run_up_turns_the_shaft_less_than_the_nominal_revolutions(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It rises to its speed over one of the two revolutions: half a revolution less."""
+    ramp = HEAD.replace("revolutions = 1", "revolutions = 2") + '[shaft]\nspeed = "600rpm"\n'
+    assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n')]) == 0
+    printed = capsys.readouterr().out
+    assert ": 2 nominal revolutions at 600 rev/min, the shaft turned 1.5 revolutions, 180 steps" in printed
+    assert main(["run", scene(ramp)]) == 0
+    assert ": 2 revolutions at 600 rev/min, 180 steps" in capsys.readouterr().out
+    trace = Path("results/scene.h5")
+    assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n'), "--report"]) == 0
+    assert "2.0 nominal; the shaft turned 1.5 revolutions" in trace.with_suffix(".html").read_text()
+
+
+def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (
+        HEAD
+        + LOOM
+        + '[belt]\nguide_clearance = "1.2 mm"\n[wires]\nbelt.yarn_tension = "belt.inertia_force"\n'
+    )
+    assert main(["run", scene(text)]) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        "warning: belt: guide_clearance = 1.2 mm: above 1 mm replace the belt or slow the loom down",
+        "warning: loop: belt.inertia_force -> belt.yarn_tension carries the value of the step before",
+    ]
+
+
+def test_a_finished_run_replaces_an_older_one() -> None:
+    shaft = HEAD + SHAFT
+    assert main(["run", scene(shaft.replace("revolutions = 1", "revolutions = 2"))]) == 0
+    assert main(["run", scene(shaft)]) == 0
+    with Trace("results/scene.h5") as trace:
+        assert (trace.status, trace.rows) == ("complete", 91)
+
+
+def test_a_failed_run_leaves_an_older_one() -> None:
+    assert main(["run", scene(HEAD + SHAFT)]) == 0
+    older = Path("results/scene.h5").read_bytes()
+    assert main(["run", scene(HEAD + LOOM + '[weft]\ncrank_cone = "80 deg"\n')]) == 2
+    assert Path("results/scene.h5").read_bytes() == older
+    assert os.listdir("results") == ["scene.h5"]
+
+
+def test_options_of_one_kind_of_export_are_refused_for_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(HEAD + SHAFT)
+    assert main(["export", path, "--fmu", "loom.fmu", "--flavour", "live"]) == 2
+    assert "--flavour is for --ssp: one FMU of a whole scene is always native" in capsys.readouterr().err
+    assert main(["export", path, "--ssp", "loom.ssp", "--fmi", "3"]) == 2
+    assert "--fmi is for --fmu: a system package holds FMUs of FMI 2.0" in capsys.readouterr().err
+    assert not list(Path().glob("loom.*"))
+
+
+def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(HEAD + LOOM)
+    assert main(["run", path, "--set", "shaft.speed=400rpm", "--set", "shaft.speed=500rpm"]) == 2
+    assert one_line(capsys) == "--set shaft.speed is given twice: 400rpm and 500rpm"
+    assert main(["run", path, "--output", "x.csv"]) == 2
+    assert one_line(capsys) == "x.csv: a trace of loomfmu ends in .h5; name it x.h5"
+    assert not Path("x.csv").exists()
+
+
+def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
+    # pythonfmu's wrapper decodes no escape but that of a space and crashes where it finds no resources
+    for name in ("with space", "Jürgen", "50% #1 +ä"):
+        environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / name)}
+        command = [sys.executable, "-m", "loomfmu.cli", "run", scene(HEAD + SHAFT)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
