@@ -1,5 +1,9 @@
 """What all tests share."""
 
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+
 import pytest
 from browser import chromium, opened
 from compiled import belt_in_c
@@ -16,9 +20,31 @@ settings.register_profile("loomfmu", derandomize=True, database=None, deadline=N
 settings.load_profile("loomfmu")
 
 
+# beside the tests that mirror the source: what they run through, these cover; tracing takes most of their time
+UNTRACED = [Path(__file__).parent / folder for folder in ("attack", "benchmarks", "foreign", "stress")]
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """What takes minutes runs on demand."""
-    if "slow" not in config.option.markexpr:
-        for item in items:
-            if item.get_closest_marker("slow"):
-                item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))
+    """What takes minutes runs on demand; what others cover, without the tracing of coverage."""
+    for item in items:
+        if item.get_closest_marker("slow") and "slow" not in config.option.markexpr:
+            item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))
+        if any(item.path.is_relative_to(folder) for folder in UNTRACED):
+            item.add_marker(pytest.mark.no_cover)
+
+
+@pytest.fixture(scope="session")
+def untraced(request: pytest.FixtureRequest) -> Callable[[], AbstractContextManager[None]]:
+    """Stops the tracing of coverage for what a fixture makes, as `no_cover` does for a test."""
+
+    @contextmanager
+    def stopped() -> Iterator[None]:
+        plugin = request.config.pluginmanager.get_plugin("_cov")
+        tracing = plugin and plugin.cov_controller
+        if tracing:
+            tracing.pause()
+        yield
+        if tracing:
+            tracing.resume()
+
+    return stopped

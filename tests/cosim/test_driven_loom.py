@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import loomfmu
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.validation import driven
 from loomfmu.validation.driven import Monolith
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +31,7 @@ def largest_errors(text, steps, coupling="iterated"):
     """Largest errors of velocity and angle in the revolution, and at its end."""
     scene = scenes.parse(text.format(steps=steps, coupling=coupling), "driven")
     signals = ["shaft.velocity", "shaft.angle"]
-    trace = loomfmu.evaluate(scene, values=signals, flavour="live").trace
+    trace = loomfmu.evaluate(scene, values=signals).trace
     exact = Monolith(scene).solved(trace.time)
     errors = [np.abs(trace[signal] - each) for signal, each in zip(signals, exact, strict=True)]
     return (*(float(e.max()) for e in errors), *(float(e[-1]) for e in errors))
@@ -45,18 +44,6 @@ def test_a_whole_loom_follows_one_integration_of_its_equations():
         assert coarse[0] / fine[0] > 6.0
     assert found[-1][0] < 1e-6
     assert found[-1][1] < 1e-8
-
-
-def test_the_report_compares_looms_with_carriers_and_warp_to_one_integration():
-    for name, fittings, shaft in driven.LOOMS:
-        coarse, middle, fine = driven.compared(fittings, shaft)
-        # 256 times less by the order; the jumps of the dobby's third derivative leave some of the coarse ones
-        assert coarse.velocity / middle.velocity > 40.0, name
-        assert coarse.velocity < 2e-6
-        assert middle.velocity < 2e-8
-        assert fine.velocity < 1e-9
-        assert max(each.missing for each in (coarse, middle, fine)) < 1e-10
-        assert fine.power == pytest.approx(fine.exact_power, rel=1e-9)
 
 
 TABLE = re.compile(r"\| (\d+) \| (repeated|previous step) \| (\S+) \| (\S+) \| (\S+) \| (\S+) \|")
@@ -86,7 +73,7 @@ def test_the_readme_has_that_table():
 def test_no_energy_is_lost_in_a_revolution(steps):
     text = LOOM.format(steps=steps, coupling="iterated").replace("revolutions = 1", "revolutions = 2")
     text += '[[claims]]\nkind = "energy_balance"\n'
-    found = loomfmu.evaluate(scenes.parse(text), flavour="live")
+    found = loomfmu.evaluate(scenes.parse(text))
     # what two ends of the loop differ by, 1e-11 of the largest work, and rounding
     assert found.claims[0].holds
     assert found.claims[0].worst < 1e-10
@@ -138,7 +125,7 @@ def ledger(fittings, steps):
         for book in BOOKS
         if book in each.fmu.ports and each.fmu.ports[book].causality == "output"
     ]
-    return loomfmu.prepare(scene, flavour="live", values=kept)
+    return loomfmu.prepare(scene, values=kept)
 
 
 SHAFTS = st.fixed_dictionaries(
@@ -189,7 +176,7 @@ def test_the_work_of_the_shaft_is_stored_or_dissipated_by_carriers_and_threads()
 
 def test_torques_that_are_a_step_late_do_not_balance():
     text = LOOM.format(steps=360, coupling="lagged") + '[[claims]]\nkind = "energy_balance"\n'
-    claim = loomfmu.evaluate(scenes.parse(text), flavour="live").claims[0]
+    claim = loomfmu.evaluate(scenes.parse(text)).claims[0]
     assert not claim.holds
     assert claim.worst > 1e-4
 
@@ -203,7 +190,7 @@ def test_the_work_is_the_integral_of_torque_and_velocity():
         "shaft.motor_power",
         "shaft.motor_work",
     ]
-    trace = loomfmu.evaluate(scenes.parse(text), values=values, flavour="live").trace
+    trace = loomfmu.evaluate(scenes.parse(text), values=values).trace
     size = trace.time[1]
     for power, work in (
         (trace["shaft.load_torque"] * trace["shaft.velocity"], trace["shaft.load_work"]),

@@ -7,7 +7,7 @@ import pytest
 
 from loomfmu import cli
 from loomfmu.machines import MACHINES, table
-from loomfmu.validation import accuracy, plots, report, sections
+from loomfmu.validation import accuracy, belt_motion, driven, findings, plots, report, sections
 from loomfmu.validation.sections import USED, Pair, Row, Section, number
 
 RESULTS = Path(__file__).parents[2] / "results"
@@ -15,7 +15,7 @@ LARGEST = 60_000  # bytes of a figure
 
 
 @pytest.fixture(scope="module")
-def generated():
+def generated(untraced):
     """A fresh report, and every number that was rounded for it."""
     seen = []
     original = sections.rounded
@@ -24,8 +24,17 @@ def generated():
         seen.append((value, digits))
         return original(value, digits)
 
+    def long(function):
+        def run(*given, **named):
+            with untraced():
+                return function(*given, **named)
+
+        return run
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sections, "rounded", rounded)
+        for module, name in ((belt_motion, "moved"), (findings, "carrier"), (accuracy, "damper_errors")):
+            patch.setattr(module, name, long(getattr(module, name)))
         return report.text(), seen
 
 
@@ -296,11 +305,23 @@ def test_every_erratum_says_what_fails():
 
 def test_damper_is_exact_from_144_steps_on():
     for _name, law, rpm, given in accuracy.CASES:
-        errors = accuracy.damper_errors(law, rpm, given)
+        errors = accuracy.damper_errors(law, rpm, **given)
         # at 144 steps the quintic's own error is left; both solutions are exact to about 1e-12 of the peak
         assert max(errors[4:]) < 1e-10
         assert max(errors[5:]) < 1e-11
         assert errors[0] > 1e-8  # and with 9 steps they differ: the comparison is one
+
+
+def test_looms_with_carriers_and_warp_follow_one_integration():
+    for name, fittings, shaft in driven.LOOMS:
+        coarse, middle, fine = driven.compared(fittings, shaft)
+        # 256 times less by the order; the jumps of the dobby's third derivative leave some of the coarse ones
+        assert coarse.velocity / middle.velocity > 40.0, name
+        assert coarse.velocity < 2e-6
+        assert middle.velocity < 2e-8
+        assert fine.velocity < 1e-9
+        assert max(each.missing for each in (coarse, middle, fine)) < 1e-10
+        assert fine.power == pytest.approx(fine.exact_power, rel=1e-9)
 
 
 # The command

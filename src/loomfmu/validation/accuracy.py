@@ -1,6 +1,8 @@
 """Accuracy of the components: damper, belt and dwell over the number of steps in a revolution."""
 
 import math
+from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -38,7 +40,8 @@ def chapter() -> Chapter:
     )
 
 
-def damper_errors(law: int, rpm: float, given: dict[str, float]) -> list[float]:
+@cache
+def damper_errors(law: int, rpm: float, **given: float) -> tuple[float, ...]:
     """Largest error of the displacement for each number of steps, over the largest displacement."""
     finest = max(DAMPER_STEPS)
     exact = reference(rpm, finest, law, **given).displacement
@@ -47,10 +50,10 @@ def damper_errors(law: int, rpm: float, given: dict[str, float]) -> list[float]:
     for steps in DAMPER_STEPS:
         found = simulated(rpm, steps, law, **given).displacement
         errors.append(float(np.max(np.abs(found - exact[:: finest // steps]))) / peak)
-    return errors
+    return tuple(errors)
 
 
-def _order(errors: list[float], index: int) -> str:
+def _order(errors: Sequence[float], index: int) -> str:
     """Order seen from one number of steps to the next."""
     if index == 0 or errors[index] < ORDER_FLOOR:
         return "-"
@@ -59,7 +62,7 @@ def _order(errors: list[float], index: int) -> str:
 
 def damper() -> Section:
     """HealdDamper compared with an integration."""
-    found = [damper_errors(law, rpm, given) for _name, law, rpm, given in CASES]
+    found = [damper_errors(law, rpm, **given) for _name, law, rpm, given in CASES]
     rows = []
     for index, steps in enumerate(DAMPER_STEPS):
         cells = [str(steps)]

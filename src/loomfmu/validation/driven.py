@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -186,13 +187,14 @@ class Comparison(NamedTuple):
     exact_power: float
 
 
-def compared(fittings: str, shaft: str) -> list[Comparison]:
+@cache
+def compared(fittings: str, shaft: str) -> tuple[Comparison, ...]:
     """A loom with each number of steps against its integration."""
     found, exact = [], None
     for steps in reversed(STEPS):
         scene = parse(LOOM.format(steps=steps, fittings=fittings, shaft=shaft), "driven")
         signals = ["shaft.velocity", "shaft.angle", "shaft.motor_power"]
-        run = evaluate(scene, values=signals, flavour="live")
+        run = evaluate(scene, values=signals)
         if exact is None:  # of the finest steps, which the others are among
             monolith = Monolith(scene)
             exact = monolith.solved(run.trace.time)
@@ -202,7 +204,7 @@ def compared(fittings: str, shaft: str) -> list[Comparison]:
         off, turned_off = (float(error.max()) for error in errors)
         peak = float(run.trace["shaft.motor_power"].max())
         found.append(Comparison(off, turned_off, run.claims[0].worst, peak, float(power.max())))
-    return found[::-1]
+    return tuple(found[::-1])
 
 
 def section() -> Section:

@@ -66,7 +66,7 @@ def convergence(figure: "Figure") -> None:
     """Errors of the damper over the steps."""
     axes = figure.subplots()
     for (name, law, rpm, given), colour in zip(accuracy.CASES, (GREEN, BLUE, PURPLE, ORANGE), strict=True):
-        errors = np.maximum(accuracy.damper_errors(law, rpm, given), accuracy.DAMPER_FLOOR)
+        errors = np.maximum(accuracy.damper_errors(law, rpm, **given), accuracy.DAMPER_FLOOR)
         axes.loglog(accuracy.DAMPER_STEPS, errors, "o-", color=colour, ms=5, label=name)
     steps = np.array([9.0, 72.0])
     axes.loglog(steps, 2e-2 * (steps / 9.0) ** -4, color=BLACK, ls=":", label="fourth order")
