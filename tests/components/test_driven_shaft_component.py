@@ -162,6 +162,7 @@ def test_stable_and_exact_at_every_step_size(slope, inertia, size, at_end):
     assert abs(shaft.acceleration) <= (slope * FULL + 7.0) / inertia * (1.0 + 1e-14)
 
 
+@pytest.mark.no_cover
 def test_nothing_is_lost_in_steps_that_are_too_small_to_be_seen():
     # 1e-6 N m take 5e-16 rad/s in 1 ns, of 42 rad/s: a plain sum rounds each of them away
     shaft = started(1e-6)
@@ -350,6 +351,7 @@ def integrated(mass, turns=1.0, inertia=2.0):
     return solve_ivp(law, (0.0, end), [0.0, FULL], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
 
 
+@pytest.mark.no_cover
 def test_a_mechanisms_torque_makes_its_mass_a_part_of_the_inertia():
     # a weft insertion of five times the mass: up to half the inertia that the shaft has itself
     exact = integrated(5.0 * MASS, 0.3)

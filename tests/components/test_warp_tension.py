@@ -215,6 +215,7 @@ def integrated(rpm, turns):
     return 0.15 + run.y[0]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("steps", "error", "peak_error"),
     [(18, 1e-7, 1e-7), (36, 2e-9, 1e-8), (72, 3e-10, 1e-8), (180, 2e-12, 3e-12), (360, 1e-12, 3e-12)],

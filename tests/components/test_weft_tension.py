@@ -144,6 +144,7 @@ def test_everything_together(steps, error):
     assert weft.highest_tension >= max(seen) * (1.0 - 1e-15)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("at_end", [True, False])
 def test_extremes_do_not_depend_on_the_step(at_end):
     def on_a_loom(steps):
@@ -172,12 +173,14 @@ def peak(**parameters):
     return drawn(steps=90, **parameters).highest_tension
 
 
+@pytest.mark.no_cover
 @settings(max_examples=15)
 @given(positive, positive)
 def test_a_stronger_brake_never_lowers_the_highest_tension(force, more):
     assert peak(brake_force=force + more) >= peak(brake_force=force) - 1e-12
 
 
+@pytest.mark.no_cover
 @settings(max_examples=15)
 @given(positive, st.floats(0.0, 0.6), st.floats(0.0, 4.0))
 def test_eyes_multiply_what_is_behind_them(force, friction, angle):
@@ -202,6 +205,7 @@ def test_yarn_never_pushes(force, density, stiffness, retardation, pick_up):
     )  # fmt: skip
 
 
+@pytest.mark.no_cover
 @settings(max_examples=10)
 @given(st.floats(0.1, 10.0))
 def test_all_forces_scale_together(scale):
@@ -258,6 +262,7 @@ def test_slack_is_timed_exactly(steps):
     assert weft.slack
 
 
+@pytest.mark.no_cover
 def test_the_brake_holds_and_yields_without_chatter():
     """Strain and tension behind the eyes are continuous while the brake closes and opens again."""
     closing = {f"brake_program_{n}": 5.0 if 6 < n < 10 else 1.0 for n in range(1, 25)}

@@ -23,6 +23,7 @@ from loomfmu.fmi.builder import guid
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.variables import variables_of
 
+pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 solved = pytest.mark.parametrize("name", MEMORYLESS)
 

@@ -21,6 +21,7 @@ from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
 from loomfmu.fmi.native.platforms import check_platforms
 from loomfmu.variables import variables_of
 
+pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 

@@ -12,6 +12,7 @@ from natives import ERROR, OK, Native
 
 from loomfmu.components import COMPONENTS
 
+pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 
 

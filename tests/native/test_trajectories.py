@@ -17,6 +17,7 @@ import loomfmu
 from loomfmu.components import COMPONENTS
 from loomfmu.variables import Component, Variable, variables_of
 
+pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 # the same operations in the same order; pow() of a square is a product in C, which may round otherwise
 SAME = 1e-12

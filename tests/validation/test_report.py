@@ -303,6 +303,7 @@ def test_every_erratum_says_what_fails():
 # Accuracy that the report promises
 
 
+@pytest.mark.no_cover
 def test_damper_is_exact_from_144_steps_on():
     for _name, law, rpm, given in accuracy.CASES:
         errors = accuracy.damper_errors(law, rpm, **given)

@@ -74,6 +74,7 @@ def test_a_zero_that_is_touched_is_not_passed() -> None:
     assert bernstein.sign_changes(touching) == []  # (1 - 2 u)^2
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("rates", [0, 1, 2])
 def test_c_and_python_find_the_same_bits(rates: int) -> None:
     for size in (2, 3, 50):

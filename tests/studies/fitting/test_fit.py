@@ -78,6 +78,7 @@ def test_values_that_made_the_data_are_found_again(tmp_path: Path) -> None:
     assert loomfmu.evaluate(SIMS / "wl680_3600.toml", set=fixed | found.values)
 
 
+@pytest.mark.no_cover
 def test_intervals_cover_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     random = np.random.default_rng(2026)
     lengths = np.linspace(0.3, 0.9, 25)
