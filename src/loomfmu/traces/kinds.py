@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..files import Kind
-from .reader import is_trace
+from .opened import is_trace
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from threading import RLock
 from types import TracebackType
 from typing import Any, Self
 
@@ -16,16 +15,13 @@ from numpy.typing import NDArray
 from .. import notebook, units
 from ..components import COMPONENTS
 from ..errors import LoomfmuError, shown
-from ..files import source
 from ..units import UnitError
 from ..variables import SHARED, variables_of
-from .disk import superblock
-from .layout import Foreign, check_link, column, has, member
-from .places import place_of
+from .layout import check_link, column, has, member
+from .opened import TraceFile
 from .signals import Floats, Signals
 from .verdict import HEADINGS, Verdict
 
-REQUIRED = ("title", "status", "software")  # attributes that every trace has
 ABOUT = ("parameter_units", "NX_class", "signal", "axes")  # attributes of a group that are not values
 
 
@@ -41,19 +37,11 @@ class Trace(Signals):
     """
 
     def __init__(self, path: str | Path):
-        self._place = place_of(Path(path))
+        self._file = TraceFile(Path(path))
         self.given = Path(path)  # what messages call it
         self.name = self.given.name
-        self._file: Any = None
-        self._turn = RLock()  # threads may share a trace
-        self._state: tuple[int, ...] = ()
         self._cache: dict[str, NDArray[Any]] = {}
         self._texts: dict[tuple[str, str], str | None] = {}
-        with self._opened() as file:
-            if lacking := _lacking(file):
-                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {lacking} is missing")
-            if file.attrs["status"] != "running":  # else it grows
-                self._state = _state(self.path)
 
     def __reduce__(self) -> tuple[type["Trace"], tuple[Path]]:
         return Trace, (self.path,)
@@ -78,37 +66,10 @@ class Trace(Signals):
     @property
     def path(self) -> Path:
         """Where the file is now."""
-        return self._place.path
-
-    def _open(self) -> Any:
-        try:
-            if self._state and _state(self.path) != self._state:
-                raise LoomfmuError(f"{self.given}: another trace has replaced it since it was opened")
-            return _hdf5(self.path)
-        except FileNotFoundError:
-            raise LoomfmuError(f"{self.given}: there is no such file") from None
-        except (OSError, RuntimeError) as error:
-            reason = getattr(error, "strerror", None) or _damage(self.path) or error
-            raise LoomfmuError(f"{self.given}: cannot be read as a trace ({reason})") from None
-
-    @contextmanager
-    def _opened(self) -> Iterator[Any]:
-        """The file, opened unless it is. What h5py raises where it meets nonsense names the file."""
-        with self._turn:
-            kept = self._file is not None
-            self._file = self._file or self._open()
-            try:
-                yield self._file
-            except Foreign as error:
-                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {error}") from None
-            except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
-                raise LoomfmuError(f"{self.given}: the file is damaged ({error.args[0]})") from None
-            finally:
-                if not kept:
-                    self.close()
+        return self._file.path
 
     def __enter__(self) -> Self:
-        self._file = self._file or self._open()
+        self._file.keep_open()
         return self
 
     def __exit__(
@@ -118,9 +79,7 @@ class Trace(Signals):
 
     def close(self) -> None:
         """Close the file, if it is open."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        self._file.close()
 
     def __getitem__(self, signal: str) -> NDArray[Any]:
         if not isinstance(signal, str):
@@ -158,7 +117,7 @@ class Trace(Signals):
     @cached_property
     def _signals(self) -> dict[str, None]:
         """The signals, in their order. A group that cannot be opened is not left out: KeyError says so."""
-        with self._opened() as file:
+        with self._file.opened() as file:
             members = {name: member(file, name) for name in file}
             groups = {name: each for name, each in members.items() if isinstance(each, h5py.Group)}
             found = [(name, variable) for name, group in groups.items() for variable in group]
@@ -169,7 +128,7 @@ class Trace(Signals):
     def check(self) -> None:
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
 
-        with self._opened() as file:
+        with self._file.opened() as file:
             dict(file.attrs)
             for signal in (*SHARED, *self):
                 dict(self._item(file, signal).attrs)
@@ -178,7 +137,7 @@ class Trace(Signals):
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
-        with self._opened() as file:
+        with self._file.opened() as file:
             if signal not in SHARED and signal not in self:
                 raise self._unknown(signal)
             yield self._item(file, signal)
@@ -200,7 +159,7 @@ class Trace(Signals):
     @cached_property
     def rows(self) -> int:
         """Number of samples when first read; of a run that was cut off, those that all signals have."""
-        with self._opened() as file:
+        with self._file.opened() as file:
             return min(len(self._item(file, signal)) for signal in (*SHARED, *self))
 
     @cached_property
@@ -216,7 +175,7 @@ class Trace(Signals):
     @property
     def attributes(self) -> dict[str, Any]:
         """What the file says of the run."""
-        with self._opened() as file:
+        with self._file.opened() as file:
             return dict(file.attrs)
 
     @property
@@ -264,7 +223,7 @@ class Trace(Signals):
     @cached_property
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
-        with self._opened() as file:
+        with self._file.opened() as file:
             names = dict.fromkeys(signal.partition(".")[0] for signal in self)
             return {name: str(member(file, name).attrs.get("fmu", "")) for name in names}
 
@@ -317,7 +276,7 @@ class Trace(Signals):
     def parameters(self) -> dict[str, float | int | str]:
         """The values of all instances by names such as `heald_1.stroke`: numbers in SI, and texts such as
         `belt.head`."""
-        with self._opened() as file:
+        with self._file.opened() as file:
             groups = {name: member(file, name) for name in file if name not in SHARED}
             return {
                 f"{name}.{key}": value.item() if isinstance(value, np.generic) else str(value)
@@ -329,7 +288,7 @@ class Trace(Signals):
     def parameter_unit(self, name: str) -> str:
         """Unit of a value in `parameters`; "1" for one without."""
         instance, _, key = name.partition(".")
-        with self._opened() as file:
+        with self._file.opened() as file:
             known = json.loads(member(file, instance).attrs.get("parameter_units", "{}"))
             return str(known.get(key, "1"))
 
@@ -345,7 +304,7 @@ class Trace(Signals):
     def _parameter_display(self, name: str) -> str:
         """The unit in which people read a value; that of its FMU if it is not one of ours."""
         instance, _, key = name.partition(".")
-        with self._opened() as file:
+        with self._file.opened() as file:
             component = COMPONENTS.get(str(member(file, instance).attrs.get("fmu", "")))
         declared = {each.name: each.display for each in variables_of(component)} if component else {}
         unit = self.parameter_unit(name)
@@ -357,54 +316,8 @@ class Trace(Signals):
     def parameter(self, signal: str) -> float:
         """A parameter of an instance, or an input that was left at its start, such as `heald_1.stroke`."""
         instance, _, name = signal.partition(".")
-        with self._opened() as file:
+        with self._file.opened() as file:
             value = member(file, instance).attrs.get(name) if has(file, instance) else None
         if not isinstance(value, np.number | np.bool_):
             raise LoomfmuError(f"{self.name}: parameter {signal!r} is not recorded")
         return float(value)
-
-
-def is_trace(path: Path) -> bool:
-    """Whether a file is a trace by the names in it: no value is read, which damage can make endless."""
-    try:
-        with _hdf5(path) as file:
-            return not _lacking(file)
-    except (KeyError, LoomfmuError, OSError, RuntimeError):
-        return False
-
-
-def _hdf5(path: Path) -> Any:
-    source(path)
-    try:
-        return h5py.File(path, "r")
-    except OSError:
-        begun, marked, length = superblock(path)
-        if begun and not marked:
-            raise LoomfmuError(f"{path}: the run ended before it wrote a sample") from None
-        if not marked or path.stat().st_size < length:
-            raise  # HDF5 would look for the rest of a file that was cut off again and again
-    return h5py.File(path, "r", swmr=True)
-
-
-def _damage(path: Path) -> str:
-    """Why HDF5 cannot open a file, where that can be seen; empty elsewhere."""
-    try:
-        size, length = path.stat().st_size, superblock(path)[2]
-        if not h5py.is_hdf5(path):
-            return "it is not an HDF5 file" if size else "it is empty"
-    except (OSError, RuntimeError):
-        return ""
-    return f"it is cut off: {size} of its {length} bytes are left" if size < length else ""
-
-
-def _lacking(file: Any) -> str:
-    """What every trace has and a file does not; empty for a trace."""
-    datasets = (f"the dataset /{name}" for name in SHARED if not has(file, name))
-    attributes = (f"the attribute {name!r}" for name in REQUIRED if name not in file.attrs)
-    return next(iter((*datasets, *attributes)), "")
-
-
-def _state(path: Path) -> tuple[int, ...]:
-    """What tells a file from another one under its name."""
-    found = path.stat()
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
