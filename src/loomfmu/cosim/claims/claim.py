@@ -10,7 +10,8 @@ from typing import ClassVar, NamedTuple, dataclass_transform
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import COARSE_NOTE, Stretch, motion_of
+from .curves import Stretch, motion_of
+from .extremes import COARSE_NOTE
 from .validity import gaps, unknown_note
 
 AT_LEAST, AT_MOST = 1, -1

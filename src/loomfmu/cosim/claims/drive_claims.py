@@ -14,6 +14,7 @@ from . import shaft
 from .arguments import TURN, Name, Quantity, argument
 from .claim import AT_MOST, ONE, PERCENT, POWER, Claim
 from .curves import Floats, Motion, Stretch
+from .extremes import lowest
 
 # what a mechanism calls the work that it has taken from the shaft, its torque, and the part of it whose work
 # it does not know
@@ -32,7 +33,7 @@ class MotorPower(Claim):
     def judge(self, trace: Signals) -> Verdict:
         signal = f"{self.motor}.motor_power"
         power = Motion(trace, signal)
-        most = power.lowest(-1.0)
+        most = lowest(power, -1.0)
         notes = (power.note, most.note)
         return self.verdict(trace, "motor power", signal, self.at_most, most.value, most.time, *notes)
 
@@ -58,7 +59,7 @@ class SpeedFluctuation(Claim):
         times = shaft.times_at(trace, float(turning.values[0][0]))
         worst, time, notes = math.nan, math.nan, [velocity.note]
         for start, end in list(pairwise(times))[math.ceil(self.skip) :]:
-            low, high = (velocity.lowest(sign, [Stretch(start, end)]) for sign in (1.0, -1.0))
+            low, high = (lowest(velocity, sign, [Stretch(start, end)]) for sign in (1.0, -1.0))
             fluctuation = (high.value - low.value) * (end - start) / TURN
             notes += [low.note, high.note]
             if not fluctuation <= worst:

@@ -15,7 +15,8 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
-from .curves import Floats, Motion, Stretch, first_lowest, motion_of
+from .curves import Floats, Motion, Stretch, motion_of
+from .extremes import first_lowest
 from .lifted import check_lifted_by, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise

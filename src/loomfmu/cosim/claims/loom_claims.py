@@ -12,7 +12,8 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Edges, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
-from .curves import SAME, Motion, Stretch, first_lowest, motion_of
+from .curves import SAME, Motion, Stretch, motion_of
+from .extremes import first_lowest, lowest, nearest
 from .lifted import check_lifted_by, lift_of
 
 NEVER = "the head never enters the shed in this run"
@@ -79,9 +80,9 @@ class RapierInOpenShed(_InShed):
         for frame, signal in warps.items():
             lift = motion_of(trace, signal)
             stroke, ratio = trace.parameter(f"{frame}.stroke"), trace.parameter(f"{frame}.warp_ratio")
-            nearest = lift.nearest(0.5 * stroke, in_shed)
-            openings.append((2.0 * ratio * nearest.value, nearest.time, _opening(frame, signal)))
-            notes += [lift.note, nearest.note]
+            closest = nearest(lift, 0.5 * stroke, in_shed)
+            openings.append((2.0 * ratio * closest.value, closest.time, _opening(frame, signal)))
+            notes += [lift.note, closest.note]
         worst = float(np.min([opening for opening, _time, _name in openings]))  # NaN if there is one
         equal = [each for each in openings if not each[0] > worst + SAME]
         _value, time, named = min(equal, key=lambda each: each[1])
@@ -107,7 +108,7 @@ class ReedClearOfRapier(_InShed):
         in_shed = travel.beyond(self._idle(trace), 1.0)
         if not in_shed:
             return self.verdict(trace, text, signal, self.clearance, math.nan, math.nan, NEVER, travel.note)
-        foremost = position.lowest(-1.0, in_shed)
+        foremost = lowest(position, -1.0, in_shed)
         worst = float(trace[f"{self.reed}.front_limit"][-1]) - foremost.value
         notes = (travel.note, position.note, foremost.note)
         return self.verdict(trace, text, signal, self.clearance, worst, foremost.time, *notes)
@@ -142,7 +143,7 @@ class TransferInTime(_Transfer):
     def judge(self, trace: Signals) -> Verdict:
         text, signal = f"the heads meet in {self.window}", f"{self.transfer}.overlap"
         overlap, needed = self._overlap(trace)
-        found = [overlap.lowest(-1.0, [each]) for each in shaft.passes(trace, self.window)]
+        found = [lowest(overlap, -1.0, [each]) for each in shaft.passes(trace, self.window)]
         if not found:
             note = "the run never passes through the whole window"
             return self.verdict(trace, text, signal, needed, math.nan, math.nan, overlap.note, note)
@@ -181,7 +182,7 @@ class TransferSpeed(_Transfer):
         if not during:
             note = "the heads never overlap by what the hooks need in this run"
             return self.verdict(trace, text, signal, self.at_most, math.nan, math.nan, overlap.note, note)
-        ends = [closing.lowest(sign, during) for sign in (1.0, -1.0)]
+        ends = [lowest(closing, sign, during) for sign in (1.0, -1.0)]
         fastest = max(ends, key=lambda found: abs(found.value))
         notes = (overlap.note, closing.note, *(each.note for each in ends))
         return self.verdict(trace, text, signal, self.at_most, abs(fastest.value), fastest.time, *notes)
@@ -206,12 +207,12 @@ class NipHolds(Claim):
     def judge(self, trace: Signals) -> Verdict:
         drafting = motion_of(trace, f"{self.roller}.drafting_force")
         holding = motion_of(trace, f"{self.roller}.holding_force")
-        most = drafting.lowest(-1.0)
+        most = lowest(drafting, -1.0)
         text, signal = "the nip holds the fibres", f"{self.roller}.holding_force / drafting_force"
         if not most.value > 0.0:
             note = "no fibres are drafted in this run"
             return self.verdict(trace, text, signal, self.at_least, math.nan, math.nan, note)
-        held = holding.lowest(-1.0, drafting.beyond(0.0, 1.0))
+        held = lowest(holding, -1.0, drafting.beyond(0.0, 1.0))
         ratio = held.value / most.value
         high = ratio - self.at_least > self.at_most - ratio
         notes = (drafting.note, holding.note, most.note, held.note)
@@ -238,7 +239,7 @@ class LocksInTime(Claim):
         speed = motion_of(trace, "shaft.velocity", rates=1) if "shaft.velocity" in trace else None
         if speed is None or not np.array_equal(np.abs(speed.values[0]) <= limit, in_time):
             return self._at_samples(trace, text, in_time)
-        fastest = min(speed.lowest(1.0), speed.lowest(-1.0), key=lambda found: -abs(found.value))
+        fastest = min(lowest(speed, 1.0), lowest(speed, -1.0), key=lambda found: -abs(found.value))
         highest = abs(fastest.value)
         notes = (speed.note, fastest.note)
         return self.verdict(trace, text, "shaft.velocity", limit, highest, fastest.time, *notes)

@@ -11,7 +11,8 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Bound, Edges, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
-from .curves import Extreme, motion_of
+from .curves import motion_of
+from .extremes import Extreme, lowest
 from .validity import gaps, known_within
 
 
@@ -48,7 +49,7 @@ class Bounded(Claim, kind=False):
         if unknown:
             within = known_within(trace, unknown, within)
         nowhere = within == []
-        worst = Extreme(math.nan, math.nan) if nowhere else motion.lowest(self.sense, within)
+        worst = Extreme(math.nan, math.nan) if nowhere else lowest(motion, self.sense, within)
         found = self.verdict(
             trace, text, self.signal, limit, worst.value, worst.time, motion.note, worst.note,
             holds=nowhere or self.sense * worst.sure >= self.sense * limit, unit=unit, unknown=unknown,
