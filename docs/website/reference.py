@@ -14,8 +14,8 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims import claims  # noqa: F401  it knows all kinds
 from loomfmu.cosim.claims.arguments import Argument, argument_of
 from loomfmu.cosim.claims.claim import AT_LEAST, Claim
-from loomfmu.cosim.scenes.instances import KEYS
-from loomfmu.cosim.scenes.scene import COUPLINGS, GRIDS, Scene
+from loomfmu.cosim.scenes.keys import COUPLINGS, GRIDS, KEYS
+from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.scenes.standard_loom import LOOM_KEYS
 from loomfmu.fmi.description.documentation import limits_text, start_text
 from loomfmu.variables import variables_of

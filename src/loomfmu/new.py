@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import mechanism
 from .components import COMPONENTS
-from .cosim.scenes.instances import KEYS, TAKEN
+from .cosim.scenes.keys import KEYS, TAKEN
 from .cosim.scenes.standard_loom import COMPONENT_OF
 from .errors import LoomfmuError
 from .files import ANY, cannot_write, check_target, write_file

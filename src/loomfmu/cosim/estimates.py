@@ -21,7 +21,8 @@ from .claims.claim import Claim
 from .master.grid import Grid, chosen
 from .planning.requested import signals_of
 from .scenes.graph import step_order
-from .scenes.scene import ITERATED, Scene
+from .scenes.keys import ITERATED
+from .scenes.scene import Scene
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 

@@ -25,7 +25,8 @@ from .reading import check_set, checked
 from .recorded import bar, finish, kept, target_of, writer_of
 from .results import Evaluation, Result
 from .scenes.instances import altered
-from .scenes.scene import WINDOWS, Scene
+from .scenes.keys import WINDOWS
+from .scenes.scene import Scene
 from .scenes.values import Values
 
 Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error

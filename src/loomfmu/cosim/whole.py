@@ -15,7 +15,8 @@ from .planning.pruning import prune
 from .planning.requested import checked_claims, recorded
 from .scenes.graph import step_order
 from .scenes.instances import Instance
-from .scenes.scene import UNIFORM, Scene
+from .scenes.keys import UNIFORM
+from .scenes.scene import Scene
 from .scenes.scene_files import files_of
 
 

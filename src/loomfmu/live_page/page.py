@@ -16,7 +16,8 @@ from ..cosim.claims.lifted import lift_of
 from ..cosim.planning.requested import claims_of
 from ..cosim.reading import checked
 from ..cosim.run import run
-from ..cosim.scenes.scene import UNIFORM, Scene
+from ..cosim.scenes.keys import UNIFORM
+from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.scene_files import files_of
 from ..cosim.whole import system
 from ..errors import path_of

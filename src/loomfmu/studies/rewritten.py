@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
@@ -93,7 +94,7 @@ def rewritten(scene: Scene, values: Mapping[str, Any], description: str = "") ->
     document = tomlkit.parse(scene.text)
     if description:
         document["description"] = description
-    for key in scenes.replaced(values):
+    for key in replaced(values):
         document.pop(key, None)
     for key, value in values.items():
         for table, variable, written in _places(scene, key, value):

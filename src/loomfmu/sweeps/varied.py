@@ -7,9 +7,11 @@ from typing import Any
 
 from .. import units
 from ..cosim.importing.fmus import Port
-from ..cosim.scenes.instances import COARSE, TIMES, Instance, truth
+from ..cosim.scenes.instances import Instance
+from ..cosim.scenes.keys import COARSE, TIMES
 from ..cosim.scenes.overrides import components, overridden, unit_of
 from ..cosim.scenes.scene import Scene, check_free
+from ..cosim.scenes.tables import truth
 from ..errors import LoomfmuError, listed
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS

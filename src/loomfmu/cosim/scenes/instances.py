@@ -1,46 +1,21 @@
-"""The instances of a scene: which FMU each is, and the values it starts with."""
+"""An instance of a scene: its FMU, and the values it starts with."""
 
-import re
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
-from ...errors import LONGEST_NAME, LoomfmuError, listed, shown, suggestion
-from ...own import load
+from ...errors import LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ...variables import AT_STEP_END, Component, Variable, variables_of
-from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from . import standard_loom
 from .graph import Wire
+from .keys import KEYS
+from .tables import truth
 
-COARSE = "coarse_steps_per_revolution"
-ACCURACY = "accuracy"  # which chooses the steps
-# keys of the scene itself that can be set beside its times
-WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
-KEYS = (
-    "title",
-    "description",
-    "revolutions",
-    "steps_per_revolution",
-    "duration",
-    "step",
-    *WHOLE,
-    "record",
-    "loom",
-    "wires",
-    "inputs",
-    "claims",
-    "tolerances",
-)
-TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
-NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
-TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
-SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
 Copied = TypeVar("Copied")
 
@@ -195,171 +170,5 @@ def altered(original: Copied, **others: Any) -> Copied:
     return made
 
 
-def truth(given: Any, where: str) -> bool:
-    """A truth value as people write it."""
-    if str(given).lower() not in ("true", "false"):
-        raise LoomfmuError(f"{where} = {given!r} must be true or false")
-    return str(given).lower() == "true"
-
-
 def _can_be_set(port: Port) -> bool:
     return port.causality in ("parameter", "input")
-
-
-def check_name(name: str) -> None:
-    """Refuse what cannot be the name of an instance."""
-    if not NAME.fullmatch(name):
-        raise LoomfmuError(f"instance name {shown(name)} must be letters, digits and _, with a letter first")
-    if len(name) > LONGEST_NAME:
-        raise LoomfmuError(f"instance name {shown(name)} has {len(name)} characters; at most {LONGEST_NAME}")
-    if name in TAKEN:
-        raise LoomfmuError(f"instance name {name!r} is taken: every trace has a {name} of its own")
-
-
-def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
-    """The table of each instance: the standard loom's, then what the scene says of each."""
-    given = _loom(tables, directory)
-    groups: set[str] = set()
-    of_loom = {standard_loom.stem(name) for name in given if standard_loom.is_numbered(name)}
-    numbered = of_loom | {standard_loom.stem(name) for name in tables if standard_loom.is_numbered(name)}
-    for key, table in tables.items():
-        if key in KEYS:
-            continue
-        if not isinstance(table, dict):
-            raise LoomfmuError(f"{key} is unknown{suggestion(key, KEYS)}")
-        if key not in given and key in (of_loom if "component" in table else numbered):
-            groups.add(key)
-            continue
-        known = standard_loom.COMPONENT_OF
-        named = "component" in table or "fmu" in table
-        if key not in given and not named and standard_loom.stem(key) not in known:
-            hint = suggestion(key, dict.fromkeys([*KEYS, *given, *known]))
-            raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
-        check_name(key)
-        given[key] = given.get(key, {}) | table
-    for name in given:  # a table for all members says less than a member's own
-        group = standard_loom.stem(name)
-        if group in groups and standard_loom.is_numbered(name):
-            given[name] = given[name] | tables[group] | tables.get(name, {})
-    return given
-
-
-def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
-    """The instances that a scene need not spell out. One that runs by seconds needs no shaft."""
-    loom = tables.get("loom")
-    if loom is None:
-        return {} if "duration" in tables or "step" in tables else {"shaft": {}}
-    if not isinstance(loom, dict):
-        raise LoomfmuError(f"loom = {shown(loom)} must be a table [loom]")
-    return standard_loom.loom(loom, directory)
-
-
-def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
-    """An instance with its values checked and in SI: a value of its own prevails over its machine's."""
-    fmu = fmu_of(name, table, directory)
-    found = Instance(name, fmu)
-    for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
-        if key != "component" and (key not in FILES or fmu.built):
-            found.set(key, table[key])
-    found.settle()
-    return found
-
-
-def mixed(instances: dict[str, Instance]) -> list[str]:
-    """Warnings where the instances of a loom are not all of one machine, or those of a rapier of one head."""
-    notes = []
-    for kind, takers in machines.TAKERS.items():
-        groups: dict[str, list[Instance]] = {}
-        for name, each in instances.items():
-            if each.fmu.ours and each.fmu.name in takers:
-                groups.setdefault(_rapier(name, instances) if kind == "head" else "", []).append(each)
-        notes += [note for fitted in groups.values() if (note := _mixed(kind, fitted))]
-    return notes
-
-
-def _rapier(name: str, instances: Collection[str]) -> str:
-    """The number of the rapier that an instance belongs to; none where there is one."""
-    number = name.removeprefix(standard_loom.stem(name))
-    return number if f"weft{number}" in instances else ""
-
-
-def _mixed(kind: str, fitted: list[Instance]) -> str:
-    """A warning where some instances do not have the same machine or head; none where they do."""
-    names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
-    differing = [
-        each for each in fitted if kind not in each.published and not all(_is(each, kind, n) for n in names)
-    ]
-    if len(names) < 2 and not differing:
-        return ""
-    shown = [f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published]
-    shown += [f"{each.name} has its own values" for each in differing]
-    return f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them"
-
-
-def _is(each: Instance, kind: str, name: str) -> bool:
-    """Whether an instance has the values of a published machine or head though it does not name it."""
-    wanted = machines.parameters(each.fmu.name, **{kind: name})
-    return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
-
-
-def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
-    """The FMU that a table names: a file, or one of our components."""
-    for key in ("component", "fmu"):
-        if not isinstance(table.get(key, ""), str):
-            raise LoomfmuError(f"{name}.{key} = {shown(table[key])} is not a name in quotes")
-    component = str(table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name))))
-    if "fmu" not in table:
-        fmu = _of_component(name, component, directory)
-        if name == "shaft" and not (fmu.component and standard_loom.turns_others(fmu.component)):
-            shafts = " or a ".join(standard_loom.shafts())
-            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {shafts}")
-        return fmu
-    if "component" in table:
-        raise LoomfmuError(f"{name} has both a component and an fmu; keep one of them")
-    try:
-        fmu = with_units(fmus.load(directory / table["fmu"]), table.get("units", {}), name)
-    except LoomfmuError as error:
-        raise LoomfmuError(
-            str(error) if str(error).startswith(f"{name}.") else f"{name}.fmu: {error}"
-        ) from None
-    return as_shaft(fmu) if name == "shaft" else fmu
-
-
-def _of_component(name: str, component: str, directory: Path) -> Fmu:
-    """The FMU of a component: one of ours, or one of a Python file, which is run."""
-    if not load.is_file(component):
-        return fmus.of_component(component)
-    try:
-        return fmus.of_class(load.component(component, directory))
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{name}.component: {error}") from None
-
-
-def own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, str]:
-    """The texts of the Python files that instances are made of, by the names that the scene gives them."""
-    named = [table["component"] for table in tables if load.is_file(table.get("component"))]
-    return {file: text for component in named for file, text in load.texts(component, directory).items()}
-
-
-def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
-    """An FMU with the units that a scene states for its variables, where the FMU states none."""
-    if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
-        raise LoomfmuError(f'{name}.units = {shown(stated)} must be a table of variable = "unit"')
-    ports = dict(fmu.ports)
-    for key, unit in stated.items():
-        port = fmu.port(fmu.name_of(key), f"{name}.units")
-        ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
-    return replace(fmu, ports=ports)
-
-
-def as_shaft(fmu: Fmu) -> Fmu:
-    """An FMU in the place of the main shaft: it outputs the angle, and its other outputs are the rates."""
-    ports = dict(fmu.ports)
-    for variable, (unit, rate) in SHAFT.items():
-        port = ports.get(variable)
-        fits = port is not None and port.causality == "output" and port.unit == unit
-        if port is not None and fits:
-            ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
-        elif variable == "angle":
-            raise LoomfmuError(f"{fmu.path}: the shaft of a scene must have an output angle in rad")
-    return replace(fmu, ports=ports)

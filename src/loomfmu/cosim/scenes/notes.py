@@ -1,12 +1,13 @@
 """What the user of a scene is to be warned of."""
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Sequence
 
+from ... import machines
 from ...errors import LoomfmuError, listed
 from . import standard_loom
 from .drives import Drive
 from .graph import Wire
-from .instances import Instance, mixed
+from .instances import Instance
 
 
 def of_scene(
@@ -17,7 +18,7 @@ def of_scene(
         if drive.periods[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
             yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
-    yield from mixed(instances)
+    yield from _mixed(instances)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
         inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
@@ -28,6 +29,43 @@ def of_scene(
     yield from _loads(instances, wires)
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
+
+
+def _mixed(instances: dict[str, Instance]) -> list[str]:
+    """Warnings where the instances of a loom are not all of one machine, or those of a rapier of one head."""
+    notes = []
+    for kind, takers in machines.TAKERS.items():
+        groups: dict[str, list[Instance]] = {}
+        for name, each in instances.items():
+            if each.fmu.ours and each.fmu.name in takers:
+                groups.setdefault(_rapier(name, instances) if kind == "head" else "", []).append(each)
+        notes += [note for fitted in groups.values() if (note := _mixture(kind, fitted))]
+    return notes
+
+
+def _rapier(name: str, instances: Collection[str]) -> str:
+    """The number of the rapier that an instance belongs to; none where there is one."""
+    number = name.removeprefix(standard_loom.stem(name))
+    return number if f"weft{number}" in instances else ""
+
+
+def _mixture(kind: str, fitted: list[Instance]) -> str:
+    """A warning where some instances do not have the same machine or head; none where they do."""
+    names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
+    differing = [
+        each for each in fitted if kind not in each.published and not all(_is(each, kind, n) for n in names)
+    ]
+    if len(names) < 2 and not differing:
+        return ""
+    shown = [f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published]
+    shown += [f"{each.name} has its own values" for each in differing]
+    return f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them"
+
+
+def _is(each: Instance, kind: str, name: str) -> bool:
+    """Whether an instance has the values of a published machine or head though it does not name it."""
+    wanted = machines.parameters(each.fmu.name, **{kind: name})
+    return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
 
 
 def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:

@@ -8,7 +8,9 @@ from ... import machines
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...variables import variables_of
-from .instances import TIMES, WHOLE, Instance, fmu_of
+from .instance_tables import fmu_of
+from .instances import Instance
+from .keys import TIMES, WHOLE
 from .standard_loom import members, stem
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances

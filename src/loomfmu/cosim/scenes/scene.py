@@ -1,6 +1,5 @@
 """Scenes: what is simulated, for how long, what is recorded and what is claimed of it."""
 
-import fnmatch
 import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
@@ -8,23 +7,21 @@ from pathlib import Path
 from typing import Any
 
 from ... import files
-from ...errors import LoomfmuError, check_text, shown, suggestion
+from ...errors import LoomfmuError, check_text
 from ...own.declared import ISOLATED
 from ..importing.ports import Port
 from ..importing.process import AVAILABLE
-from . import notes, standard_loom
+from . import notes, settings, standard_loom
 from .drives import Drive
-from .graph import Wire, step_order
-from .instances import ACCURACY, COARSE, KEYS, Instance, instance, instance_tables, own_texts, truth
+from .graph import Wire
+from .instance_tables import instance, instance_tables, own_texts
+from .instances import Instance
+from .keys import COARSE, GRIDS, KEYS, LAGGED, UNIFORM, replaced
 from .overrides import components, overridden, override, override_weave
-from .tables import choice, number, toml
+from .tables import choice, number, toml, truth
 from .tables import text as text_of
-from .times import Times, check_times, seconds, times_of
+from .times import check_times, seconds, times_of
 from .wiring import drives_of, wires_of
-
-LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
-UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
-CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
 
 
 @dataclass(repr=False)
@@ -185,16 +182,16 @@ def assemble(
         instances=instances,
         wires=wires,
         drives=drives,
-        record=_record(instances, tables.get("record", ["*"])),
-        claims=_claims(tables.get("claims", [])),
-        tolerances=_tolerances(tables.get("tolerances", {})),
+        record=settings.recorded(instances, tables.get("record", ["*"])),
+        claims=settings.claims(tables.get("claims", [])),
+        tolerances=settings.tolerances(tables.get("tolerances", {})),
         step=times.step,
-        coupling=_coupling(tables, instances, wires),
+        coupling=settings.coupling(tables, instances, wires),
         grid=choice(tables, "grid", GRIDS),
         coarse_steps_per_revolution=int(
             number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
         ),
-        accuracy=_accuracy(tables, times),
+        accuracy=settings.accuracy(tables, times),
         isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
         step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
         run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
@@ -204,43 +201,6 @@ def assemble(
     _check_tolerances(scene)
     check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
     return scene
-
-
-def replaced(keys: Collection[str]) -> tuple[str, ...]:
-    """The keys of a scene that give way to these: an accuracy replaces steps, and steps an accuracy."""
-    if ACCURACY in keys:
-        return CHOSEN
-    return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
-
-
-def _accuracy(tables: dict[str, Any], times: Times) -> float | None:
-    """The accuracy that chooses the steps. Raises LoomfmuError beside what it chooses, or without claims."""
-    if ACCURACY not in tables:
-        return None
-    for key in CHOSEN:
-        if key in tables:
-            raise LoomfmuError(
-                f"{ACCURACY} and {key} are both given: {ACCURACY} chooses the steps; remove one"
-            )
-    if times.step is not None:
-        raise LoomfmuError(
-            f"{ACCURACY} chooses the steps in a revolution, but the scene runs by seconds; remove it"
-        )
-    if not tables.get("claims"):
-        raise LoomfmuError(
-            f"{ACCURACY} is that of the claims, but the scene has none:"
-            " add [[claims]] or set steps_per_revolution"
-        )
-    return number(tables[ACCURACY], ACCURACY, 1e-12, 1.0)
-
-
-def _coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire]) -> str:
-    """How loops are closed: with an accuracy they are iterated, since a delay costs far more steps."""
-    if ACCURACY in tables and "coupling" not in tables:
-        _order, lagged = step_order(instances, wires)
-        if lagged and all(each.fmu.ours for each in instances.values()):
-            return ITERATED
-    return choice(tables, "coupling", COUPLINGS)
 
 
 def _shaft_ports(instances: dict[str, Instance]) -> dict[str, Port]:
@@ -273,27 +233,6 @@ def _check_single(scene: Scene) -> None:
         found[each.fmu.sha256] = name
 
 
-def _record(instances: dict[str, Instance], patterns: Any) -> list[str]:
-    """The outputs that match one of the patterns, in the order of the scene."""
-    if not isinstance(patterns, list):
-        raise LoomfmuError(f'record = {shown(patterns)} is not a list such as ["belt.*", "weft.travel"]')
-    outputs = dict.fromkeys(_outputs(instances.values()))
-    wanted: set[str] = set()
-    for pattern in map(str, patterns):
-        matched = [pattern] if pattern in outputs else fnmatch.filter(outputs, pattern)
-        if not matched and (outputs or pattern != "*"):
-            raise LoomfmuError(f"record: no output is called {shown(pattern)}{suggestion(pattern, outputs)}")
-        wanted.update(matched)
-    return [output for output in outputs if output in wanted]
-
-
-def _outputs(instances: Iterable[Instance]) -> Iterable[str]:
-    for each in instances:
-        for port in each.fmu.ports.values():
-            if port.causality == "output":
-                yield f"{each.name}.{port.name}"
-
-
 def _check_tolerances(scene: Scene) -> None:
     """Refuse tolerances of what `--set` cannot set either, and ends that are not among its values."""
     for key, ends in scene.tolerances.items():
@@ -308,28 +247,3 @@ def _check_tolerances(scene: Scene) -> None:
                     probe.set(variable, end)
         except LoomfmuError as error:
             raise LoomfmuError(f"tolerances: {error}") from None
-
-
-def _claims(tables: Any) -> list[dict[str, Any]]:
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise LoomfmuError("claims are written as [[claims]] tables")
-    return tables
-
-
-def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
-    """The ends between which values may lie, by their keys."""
-    if not isinstance(table, dict):
-        raise LoomfmuError(
-            'tolerances are a table, such as [tolerances] "belt.guide_clearance" = ["0.2 mm", "0.5 mm"]'
-        )
-    for key, ends in table.items():
-        if isinstance(ends, dict):
-            name = f"{key}.{next(iter(ends), 'VARIABLE')}"
-            raise LoomfmuError(
-                f'tolerances: write the whole key in quotes, such as "{name}" = ["LOW", "HIGH"]'
-            )
-        if not (isinstance(ends, list) and len(ends) == 2):
-            raise LoomfmuError(
-                f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'
-            )
-    return {key: (ends[0], ends[1]) for key, ends in table.items()}

@@ -74,3 +74,10 @@ def number(given: Any, where: str, low: float, high: float, whole: bool = False)
     if whole and value != int(value):
         raise LoomfmuError(f"{where} = {value:g} is not a whole number")
     return value
+
+
+def truth(given: Any, where: str) -> bool:
+    """A truth value as people write it."""
+    if str(given).lower() not in ("true", "false"):
+        raise LoomfmuError(f"{where} = {given!r} must be true or false")
+    return str(given).lower() == "true"

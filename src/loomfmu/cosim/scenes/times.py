@@ -6,7 +6,7 @@ from typing import Any
 
 from ... import units
 from ...errors import LoomfmuError, listed
-from .instances import TIMES
+from .keys import TIMES
 from .tables import number
 
 SLOWEST = 1e-12  # rad/s: below, times overflow

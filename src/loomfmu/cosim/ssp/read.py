@@ -17,7 +17,9 @@ from ...variables import AT_STEP_END
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instances import TIMES, Instance, as_shaft, check_name, with_units
+from ..scenes.instance_tables import as_shaft, with_units
+from ..scenes.instances import Instance
+from ..scenes.keys import TIMES, check_name
 from ..scenes.notes import without_effect
 from ..scenes.overrides import components, overridden, override, unit_of
 from ..scenes.scene import Scene, assemble, check_free

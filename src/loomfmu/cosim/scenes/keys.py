@@ -1,0 +1,36 @@
+"""The keys of a scene: its own, and what its instances may be called."""
+
+import re
+from collections.abc import Collection
+
+from ...errors import LONGEST_NAME, LoomfmuError, shown
+from ...own.declared import ISOLATED
+
+COARSE = "coarse_steps_per_revolution"
+ACCURACY = "accuracy"  # which chooses the steps
+TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
+# keys of the scene itself that can be set beside its times
+WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
+KEYS = ("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inputs", "claims", "tolerances")
+LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
+UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
+CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+
+
+def replaced(keys: Collection[str]) -> tuple[str, ...]:
+    """The keys of a scene that give way to these: an accuracy replaces steps, and steps an accuracy."""
+    if ACCURACY in keys:
+        return CHOSEN
+    return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
+
+
+def check_name(name: str) -> None:
+    """Refuse what cannot be the name of an instance."""
+    if not NAME.fullmatch(name):
+        raise LoomfmuError(f"instance name {shown(name)} must be letters, digits and _, with a letter first")
+    if len(name) > LONGEST_NAME:
+        raise LoomfmuError(f"instance name {shown(name)} has {len(name)} characters; at most {LONGEST_NAME}")
+    if name in TAKEN:
+        raise LoomfmuError(f"instance name {name!r} is taken: every trace has a {name} of its own")
