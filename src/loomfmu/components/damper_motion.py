@@ -111,22 +111,16 @@ class DamperMotion(DamperVariables):
         eyes = lift + self.eye_offset()
         threads = self.thread_count * self.thread_stiffness
         taken = piece
-        d0, d1, d2, d3, settled = settled_load(
-            position, rate, self.thread_force, mass, stiffness, damping, u0, u1, -a2, -a3, eyes, velocity,
-            a0, a1, a2, a3, self.thread_count * self.pretension, threads, self.creep_rate,
-            self.relaxation_rate, self.front_length, self.back_length, taken,
-        )  # fmt: skip
+        d0, d1, d2, d3, settled = self.load_of_threads(
+            stiffness, damping, u0, u1, eyes, velocity, a0, a1, a2, a3, taken
+        )
         halvings = 0
-        for _ in range(MOST_HALVINGS):
-            if settled:
-                break
+        while not settled and halvings < MOST_HALVINGS:
             halvings = halvings + 1
             taken = 0.5 * taken
-            d0, d1, d2, d3, settled = settled_load(
-                position, rate, self.thread_force, mass, stiffness, damping, u0, u1, -a2, -a3, eyes, velocity,
-                a0, a1, a2, a3, self.thread_count * self.pretension, threads, self.creep_rate,
-                self.relaxation_rate, self.front_length, self.back_length, taken,
-            )  # fmt: skip
+            d0, d1, d2, d3, settled = self.load_of_threads(
+                stiffness, damping, u0, u1, eyes, velocity, a0, a1, a2, a3, taken
+            )
         if not settled:
             return taken, MOST_HALVINGS + 1
         acceleration = u0 + a0 + d0 / mass - stiffness * position - damping * rate
@@ -150,6 +144,18 @@ class DamperMotion(DamperVariables):
             self.front_length, self.back_length, taken,
         )  # fmt: skip
         return taken, halvings
+
+    def load_of_threads(
+        self, stiffness: float, damping: float, u0: float, u1: float, eyes: float, velocity: float,
+        a0: float, a1: float, a2: float, a3: float, piece: float,
+    ) -> tuple[float, float, float, float, bool]:  # fmt: skip
+        """What threads add to the load over one piece, by powers of time, and whether it has settled."""
+        return settled_load(
+            self.displacement, self.rate, self.thread_force, self.carrier_mass, stiffness, damping,
+            u0, u1, -a2, -a3, eyes, velocity, a0, a1, a2, a3, self.thread_count * self.pretension,
+            self.thread_count * self.thread_stiffness, self.creep_rate, self.relaxation_rate,
+            self.front_length, self.back_length, piece,
+        )  # fmt: skip
 
     def move_piece(
         self, stiffness: float, damping: float, preload: float,

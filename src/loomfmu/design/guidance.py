@@ -145,25 +145,7 @@ def beat_up_linkage(
     65.17
     """
     psi, length = read("swing", swing), read("rocker", rocker)
-    if (frame_angle is None) == (smallest_transmission_angle is None):
-        raise LoomfmuError(
-            "give either frame_angle or smallest_transmission_angle: each follows from the other"
-        )
-    if frame_angle is None:
-        smallest = read("smallest_transmission_angle", smallest_transmission_angle)
-        if not 2.0 * smallest < np.pi - psi:
-            raise LoomfmuError(
-                f"smallest_transmission_angle = {np.degrees(smallest):.7g} deg must be below 90 deg less half"
-                f" the swing, {np.degrees(0.5 * (np.pi - psi)):.7g} deg"
-            )
-        b = frame_angle_for(psi, smallest)
-    else:
-        b = read("frame_angle", frame_angle)
-    if not 0.5 * psi < b < 0.5 * np.pi:
-        raise LoomfmuError(
-            f"frame_angle = {np.degrees(b):.7g} deg must lie between half the swing,"
-            f" {np.degrees(0.5 * psi):.7g} deg, and 90 deg"
-        )
+    b = _frame_angle(psi, frame_angle, smallest_transmission_angle)
     crank, coupler, _frame, _smallest = crank_rocker_without_quick_return(length, psi, b)
     x, y = crank_place(length, psi, slope, b)
     limits = read("reed_limit", front), read("reed_limit", back)
@@ -178,3 +160,27 @@ def beat_up_linkage(
         "crank_length": crank, "coupler_length": coupler, "rocker_length": length, "crank_x": x, "crank_y": y,
         "arm_length": arm, "rod_length": rod, "reed_height": height,
     }  # fmt: skip
+
+
+def _frame_angle(psi: float, given: Quantity | None, transmission_angle: Quantity | None) -> float:
+    """Angle between the frame and the middle of a swing [rad], given or from the transmission angle."""
+    if (given is None) == (transmission_angle is None):
+        raise LoomfmuError(
+            "give either frame_angle or smallest_transmission_angle: each follows from the other"
+        )
+    if given is None:
+        smallest = read("smallest_transmission_angle", transmission_angle)
+        if not 2.0 * smallest < np.pi - psi:
+            raise LoomfmuError(
+                f"smallest_transmission_angle = {np.degrees(smallest):.7g} deg must be below 90 deg less half"
+                f" the swing, {np.degrees(0.5 * (np.pi - psi)):.7g} deg"
+            )
+        b = frame_angle_for(psi, smallest)
+    else:
+        b = read("frame_angle", given)
+    if not 0.5 * psi < b < 0.5 * np.pi:
+        raise LoomfmuError(
+            f"frame_angle = {np.degrees(b):.7g} deg must lie between half the swing,"
+            f" {np.degrees(0.5 * psi):.7g} deg, and 90 deg"
+        )
+    return b

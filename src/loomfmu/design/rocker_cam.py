@@ -90,12 +90,7 @@ def design_rocker_cam(
     apart, length = read("distance", distance), read("arm", arm)
     start, span = read("rocker_angle", lowest_angle), read("rocker_angle", swing)
     roller, points = read("roller_radius", roller_radius), whole("points", points, 36)
-    ends = min(start, start + span), max(start, start + span)
-    if not (ends[0] > 0.0 and ends[1] < np.pi and span != 0.0):
-        raise LoomfmuError(
-            f"lowest_angle = {degrees(start):.7g} deg and swing = {degrees(span):.7g} deg: the arm must swing"
-            " within 0 to 180 deg from the line to the cam's centre, and not by 0"
-        )
+    _check_swing(start, span)
     law = law or spline_law()
     angle = np.linspace(0.0, TURN, points + 1)
     share, slope, bend = law(angle)
@@ -119,6 +114,16 @@ def design_rocker_cam(
         profile=_points(centre - roller * normal), path=_points(centre), curvature_radius=radius,
         pressure_angle=np.arctan2(tilt.imag, tilt.real),
     )  # fmt: skip
+
+
+def _check_swing(start: float, span: float) -> None:
+    """Refuse an arm that would swing through the line to the cam's centre, or not at all."""
+    ends = min(start, start + span), max(start, start + span)
+    if not (ends[0] > 0.0 and ends[1] < np.pi and span != 0.0):
+        raise LoomfmuError(
+            f"lowest_angle = {degrees(start):.7g} deg and swing = {degrees(span):.7g} deg: the arm must swing"
+            " within 0 to 180 deg from the line to the cam's centre, and not by 0"
+        )
 
 
 def _points(curve: Complex) -> Floats:
