@@ -36,11 +36,17 @@ bound = "10 N"
 """
 
 
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder that the command writes."""
+    return new("PickingCam", tmp_path_factory.mktemp("new"))[0].parent
+
+
 @pytest.fixture
-def cam(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The trial: the folder that the command writes, three of its files rewritten by hand."""
+def cam(written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The trial: that folder, three of its files rewritten by hand."""
     monkeypatch.chdir(tmp_path)
-    folder = new("PickingCam", tmp_path)[0].parent
+    folder = shutil.copytree(written, tmp_path / "picking_cam")
     for file in TRIAL.iterdir():
         if file.is_file():
             shutil.copy(file, folder)

@@ -53,7 +53,7 @@ LIGHT, LIGHTEST, HEAVY = 0.1, 0.002, 2.0
 
 
 def driven(
-    coupling: str, inertia: float, steps: int = 720, revolutions: float = 2.0, flavour: str = "live"
+    coupling: str, inertia: float, steps: int = 720, revolutions: float = 2.0, flavour: str = "native"
 ) -> Evaluation:
     text = LOOP.format(coupling=coupling, inertia=inertia, steps=steps, revolutions=revolutions)
     return loomfmu.evaluate(
