@@ -20,7 +20,7 @@ settings.register_profile("loomfmu", derandomize=True, database=None, deadline=N
 settings.load_profile("loomfmu")
 
 
-# beside the tests that mirror the source: what they run through, these cover; tracing takes most of their time
+# beside the tests that mirror the source: these cover what they run through, and tracing costs most of it
 UNTRACED = [Path(__file__).parent / folder for folder in ("attack", "benchmarks", "foreign", "stress")]
 
 

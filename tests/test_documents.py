@@ -97,6 +97,7 @@ def test_scenes_and_sweeps_that_are_shown_are_whole(tmp_path: Path, monkeypatch:
     assert len(scene.parse(f"{demo}\n{claims}").claims) == 8
 
 
+@pytest.mark.no_cover
 def test_the_readme_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None) -> None:
     monkeypatch.chdir(tmp_path)
     expected = {"shaft.speed=700rpm": 1, "belt.guide_clearance=0.5mm": 1}  # a claim fails there
@@ -153,6 +154,7 @@ def test_every_page_with_examples_is_followed_or_says_why_not() -> None:
     assert shown == {*FOLLOWED, *NOT_RUN, "python"}  # that one with the README
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("name", FOLLOWED)
 def test_the_docs_can_be_followed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None

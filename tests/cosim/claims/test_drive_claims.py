@@ -28,7 +28,7 @@ skip = 1
 
 
 def claims(**given):
-    return loomfmu.evaluate(scenes.parse(SCENE, overrides=given), flavour="live").claims
+    return loomfmu.evaluate(scenes.parse(SCENE, overrides=given)).claims
 
 
 def test_the_motors_peak_lies_at_half_its_speed():
@@ -41,7 +41,7 @@ def test_the_motors_peak_lies_at_half_its_speed():
 
 def test_fluctuation_is_judged_in_each_revolution_after_those_that_are_skipped():
     scene = scenes.parse(SCENE)
-    found = loomfmu.evaluate(scene, flavour="live")
+    found = loomfmu.evaluate(scene)
     trace = found.trace
     turns = (trace["shaft.angle"] - trace["shaft.angle"][0]) / (2.0 * np.pi)
     second = (turns >= 1.0) & (turns <= 2.0)  # the last one is not whole: the shaft has started from rest
@@ -82,9 +82,7 @@ kind = "energy_balance"
 
 
 def energy(steps=360, fittings="", shaft=""):
-    return loomfmu.evaluate(
-        scenes.parse(ENERGY.format(steps=steps, fittings=fittings, shaft=shaft)), flavour="live"
-    )
+    return loomfmu.evaluate(scenes.parse(ENERGY.format(steps=steps, fittings=fittings, shaft=shaft)))
 
 
 class Altered(Signals):
@@ -179,7 +177,7 @@ def test_a_work_that_the_shaft_counts_but_that_is_not_wired_fails():
 
 def test_a_start_from_rest_that_fails_names_its_steps():
     scene = ENERGY.format(steps=90, fittings="", shaft='start_at_speed = false\nspeed = "300 rev/min"')
-    (claim,) = loomfmu.evaluate(scenes.parse(scene), flavour="live").claims
+    (claim,) = loomfmu.evaluate(scenes.parse(scene)).claims
     assert not claim
     assert claim.note == "the steps may be too coarse for the start from rest: take more"
     (claim,) = loomfmu.evaluate(scenes.parse(scene, overrides={"steps_per_revolution": 720})).claims
