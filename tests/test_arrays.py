@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import pytest
 
 from loomfmu.arrays import array
-from loomfmu.variables import Component, arrays_of, output, parameter, state, variables_of
+from loomfmu.declarations import output, parameter, state
+from loomfmu.variables import Component, arrays_of, variables_of
 
 
 @dataclass(slots=True)

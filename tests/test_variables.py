@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from loomfmu.variables import Component, Problem, input_, output, parameter, state, variables_of
+from loomfmu.declarations import input_, output, parameter, state
+from loomfmu.variables import Component, Problem, variables_of
 
 
 @dataclass(slots=True)

@@ -6,6 +6,7 @@ Functions of `loomfmu.physics` can be imported, too: they are carried into the F
 from .arrays import array
 from .components.shaft_driven import TOO_FAR, ShaftDriven
 from .components.terminals import FRAME, HEAD, ROTOR, SHAFT
+from .declarations import at_step_end, auxiliary, indicator, input_, output, parameter, state
 from .physics.numerics.extremes import (
     highest_by_two_rates,
     highest_so_far,
@@ -13,21 +14,7 @@ from .physics.numerics.extremes import (
     lowest_so_far,
 )
 from .physics.shaft import carried, too_far
-from .variables import (
-    EXTREMES,
-    MOTION,
-    NOTHING,
-    Component,
-    Problem,
-    Terminal,
-    at_step_end,
-    auxiliary,
-    indicator,
-    input_,
-    output,
-    parameter,
-    state,
-)
+from .variables import EXTREMES, MOTION, NOTHING, Component, Problem, Terminal
 
 __all__ = [
     "EXTREMES",

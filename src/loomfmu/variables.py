@@ -1,25 +1,19 @@
-"""How a component declares its variables: once, and everything else is derived from it.
-
-A component is a dataclass whose fields are made by `parameter`, `input_`, `output`, `state` and `auxiliary`,
-or by `loomfmu.arrays.array` of these.
-The model description, the FMU's state, the attributes of the traces, the variable tables of the
-documentation, the checks of limits and the C struct all come from `variables_of(component)`.
-"""
+"""What a component is: its declared variables, its problems and terminals, what it keeps between steps."""
 
 import math
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, field, fields, replace
+from dataclasses import MISSING, Field, dataclass, fields, replace
 from itertools import groupby
 from typing import Any, ClassVar
 
 from . import units
+from .declarations import MAKERS
 from .errors import LoomfmuError
 
 LARGEST_INTEGER = 2147483647  # of FMI 2
 AT_STEP_END = "inputs_at_step_end"  # false where inputs are values at the start of the step
-MAKERS = "parameter, input_, output, state, auxiliary or indicator"
 
 
 @dataclass(frozen=True)
@@ -177,138 +171,6 @@ class Terminal:
     def of(self, *variables: str) -> "Terminal":
         """This terminal on a component that calls its members so."""
         return replace(self, variables=variables)
-
-
-def _declare(
-    causality: str,
-    variability: str,
-    unit: str,
-    start: float | int | bool,
-    description: str,
-    display: str | None,
-    **rest: Any,
-) -> Any:
-    declared = {
-        "causality": causality,
-        "variability": variability,
-        "unit": unit,
-        "display": display or unit,
-        "description": description,
-        **rest,
-    }
-    return field(default=start, metadata=declared)
-
-
-def parameter(
-    unit: str,
-    start: float | int | bool,
-    description: str,
-    *,
-    display: str | None = None,
-    minimum: float | None = None,
-    maximum: float | None = None,
-    nominal: float | None = None,
-    choices: tuple[str, ...] = (),
-    source: str | None = None,
-    source_for: str | None = None,
-    when: str | None = None,
-    unless: str | None = None,
-) -> Any:
-    """A value that is set before a run and fixed during it."""
-    if choices:
-        minimum, maximum = 1, len(choices)
-    return _declare(
-        "parameter", "fixed", unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, source=source,
-        source_for=source_for, when=when, unless=unless,
-    )  # fmt: skip
-
-
-def at_step_end() -> Any:
-    """The parameter `inputs_at_step_end`, for the field of that name."""
-    return parameter(
-        "1", False, "Inputs are values at the end of the step (from a master that steps sources before sinks)"
-    )
-
-
-def input_(
-    unit: str,
-    start: float | int | bool,
-    description: str,
-    *,
-    display: str | None = None,
-    minimum: float | None = None,
-    maximum: float | None = None,
-    nominal: float | None = None,
-    unbounded: bool = False,
-    rate: str | None = None,
-    source: str | None = None,
-    source_for: str | None = None,
-    when: str | None = None,
-    unless: str | None = None,
-) -> Any:
-    """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
-    variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "input", variability, unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate, source=source,
-        source_for=source_for, when=when, unless=unless,
-    )  # fmt: skip
-
-
-def output(
-    unit: str,
-    description: str,
-    *,
-    start: float | int | bool = 0.0,
-    display: str | None = None,
-    variability: str | None = None,
-    nominal: float | None = None,
-    unbounded: bool = False,
-    rate: str | None = None,
-    depends: tuple[str, ...] | None = None,
-    lowest_of: str | None = None,
-    highest_of: str | None = None,
-    pole: bool = False,
-    valid_if: str | None = None,
-) -> Any:
-    """A value that the component computes; integers and booleans are discrete by default."""
-    usual = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "output", variability or usual, unit, start, description, display,
-        nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of, pole=pole, valid_if=valid_if,
-    )  # fmt: skip
-
-
-def state(
-    unit: str,
-    description: str,
-    *,
-    start: float | int | bool = 0.0,
-    minimum: float | None = None,
-    maximum: float | None = None,
-    carried: bool = True,
-) -> Any:
-    """A value that the component carries from one step to the next: its motion, a counter.
-
-    Its limits are those that the component itself keeps to: a saved state beyond them is rejected.
-    """
-    variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "local", variability, unit, start, description, None,
-        minimum=minimum, maximum=maximum, carried=carried,
-    )  # fmt: skip
-
-
-def auxiliary(unit: str, description: str, **rest: Any) -> Any:
-    """A `state` on whose past only extremes depend: it is computed once, or kept to find an extreme."""
-    return state(unit, description, **rest, carried=False)
-
-
-def indicator(unit: str, description: str) -> Any:
-    """A value that changes its sign where an output jumps, so that a solver finds the instant."""
-    return _declare("local", "continuous", unit, 0.0, description, None, indicator=True)
 
 
 def _variable(declared: Field[Any]) -> Variable:

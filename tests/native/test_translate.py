@@ -182,7 +182,8 @@ def test_what_is_not_in_the_subset(tmp_path, monkeypatch, line, reason):
 from dataclasses import dataclass
 from math import sqrt
 from loomfmu.arrays import array
-from loomfmu.variables import Component, output
+from loomfmu.declarations import output
+from loomfmu.variables import Component
 
 @dataclass(slots=True)
 class Odd(Component):

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import ceil, exp, floor, pi, sqrt
 
 from loomfmu.arrays import array
-from loomfmu.variables import Component, input_, output, parameter, state
+from loomfmu.declarations import input_, output, parameter, state
+from loomfmu.variables import Component
 
 TWO = 2
 STEEP = -1.5

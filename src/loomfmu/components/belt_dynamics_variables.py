@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..arrays import array
-from ..variables import Component, Problem, Terminal, at_step_end, auxiliary, input_, output, parameter, state
+from ..declarations import at_step_end, auxiliary, input_, output, parameter, state
+from ..variables import Component, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .terminals import HEAD
 

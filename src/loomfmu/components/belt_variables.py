@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..variables import EXTREMES, Problem, Terminal, auxiliary, input_, output, parameter
+from ..declarations import auxiliary, input_, output, parameter
+from ..variables import EXTREMES, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
+from ..declarations import input_, output, parameter
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
-from ..variables import NOTHING, Component, input_, output, parameter
+from ..variables import NOTHING, Component
 
 
 @dataclass(slots=True)

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..variables import Problem, Terminal, at_step_end, input_, output, parameter, state
+from ..declarations import at_step_end, input_, output, parameter, state
+from ..variables import Problem, Terminal
 from .terminals import CARRIER, FRAME
 from .threads import Threads
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import inf, sin
 from typing import ClassVar
 
+from ..declarations import indicator, input_, output, parameter
 from ..physics.detaching_roller import (
     DRAFT_END,
     DRAFT_START,
@@ -14,7 +15,7 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, indicator, input_, output, parameter
+from ..variables import NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..arrays import array
+from ..declarations import at_step_end, input_, output, parameter, state
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
-from ..variables import Component, Terminal, at_step_end, input_, output, parameter, state
+from ..variables import Component, Terminal
 from .terminals import SHAFT
 
 LOADS = 32  # mechanisms: 28 heald frames, dobby, both rapiers and reed

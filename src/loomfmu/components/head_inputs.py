@@ -6,7 +6,7 @@ Where one mechanism takes the motion of two heads, `prefix` begins the names of 
 
 from typing import Any
 
-from ..variables import input_
+from ..declarations import input_
 
 HEAD = "the rapier head"
 

@@ -5,19 +5,10 @@ from math import fabs, inf, pi, sin
 from typing import ClassVar
 
 from ..arrays import array
+from ..declarations import at_step_end, indicator, input_, output, parameter
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import (
-    NOTHING,
-    Component,
-    Problem,
-    Terminal,
-    at_step_end,
-    indicator,
-    input_,
-    output,
-    parameter,
-)
+from ..variables import NOTHING, Component, Problem, Terminal
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
 

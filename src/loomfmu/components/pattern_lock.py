@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import fabs, floor, inf, pi
 from typing import ClassVar
 
+from ..declarations import auxiliary, indicator, output, parameter
 from ..physics.pattern_lock import (
     available_time,
     engagement,
@@ -15,7 +16,7 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, auxiliary, indicator, output, parameter
+from ..variables import NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 

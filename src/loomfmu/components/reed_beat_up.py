@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import cos, fabs, inf, pi, sin, sqrt
 from typing import ClassVar
 
+from ..declarations import auxiliary, output, parameter
 from ..physics.linkage import four_bar, four_bar_margin, wrapped
 from ..physics.reed import (
     dead_centre,
@@ -15,7 +16,7 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, auxiliary, output, parameter
+from ..variables import NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ..declarations import at_step_end, input_, parameter
 from ..physics.shaft import carried
-from ..variables import Component, Problem, Terminal, at_step_end, input_, parameter
+from ..variables import Component, Problem, Terminal
 from .terminals import SHAFT
 
 

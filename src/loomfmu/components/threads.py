@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..variables import Component, parameter
+from ..declarations import parameter
+from ..variables import Component
 
 
 @dataclass(slots=True)

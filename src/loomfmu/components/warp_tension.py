@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ..declarations import at_step_end, input_, output, state
 from ..physics.numerics.motion import joined, joined_area
 from ..physics.shaft import carried
 from ..physics.warp import (
@@ -15,7 +16,7 @@ from ..physics.warp import (
     turns_once,
 )
 from ..physics.warp_energy import thread_energy, thread_power
-from ..variables import Terminal, at_step_end, input_, output, state
+from ..variables import Terminal
 from .terminals import FRAME
 from .threads import Threads
 

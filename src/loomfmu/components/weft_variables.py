@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..arrays import array
-from ..variables import Problem, Terminal, auxiliary, output, parameter, state
+from ..declarations import auxiliary, output, parameter, state
+from ..variables import Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD

@@ -16,7 +16,10 @@ from .cache_entries import IDENTITIES, made_file
 from .native.platforms import SHIPPED, stamp
 
 PACKAGE = Path(__file__).parents[1]
-PARTS = ("components", "fmi", "machines", "physics", "arrays.py", "units.py", "variables.py", "version.py")
+PARTS = (
+    "components", "fmi", "machines", "physics",
+    "arrays.py", "declarations.py", "units.py", "variables.py", "version.py",
+)  # fmt: skip
 KINDS = (
     ".py",
     ".c",

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import pi
 
 from ...arrays import array
-from ...variables import auxiliary, parameter
+from ...declarations import auxiliary, parameter
 from ..shaft_driven import ShaftDriven
 
 
