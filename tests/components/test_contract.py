@@ -205,6 +205,7 @@ def test_values_outside_their_limits_are_refused(component):
             assert variable.display == "1" or message.endswith(f" {variable.display}")
 
 
+@pytest.mark.no_cover
 @every_component
 def test_every_limit_is_a_value_that_runs_or_a_problem(component):
     for variable in declared(component):
@@ -303,6 +304,7 @@ def test_any_inputs_give_finite_outputs(component, given):
 # State
 
 
+@pytest.mark.no_cover
 @every_flag
 def test_nothing_is_hidden(component, given):
     # all fields copied into a fresh instance: it goes on with the same bits
@@ -322,6 +324,7 @@ def test_nothing_is_hidden(component, given):
         assert values(copy) == values(instance)
 
 
+@pytest.mark.no_cover
 @every_flag
 def test_starting_again_forgets_everything(component, given):
     instance = component(**given)
