@@ -5,19 +5,16 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from belt_loom import Loom, X, ends, shape
 from belt_reference import FiniteElements
 from scipy.optimize import minimize_scalar
 
 from loomfmu import LoomfmuError, Trace, run
 from loomfmu.components.belt_dynamics import BeltDynamics
-from loomfmu.components.weft_insertion import WeftInsertion
-from loomfmu.machines import parameters
 from loomfmu.physics.belt import LARGEST_BEND, critical_force, elastica_deflection
-from loomfmu.physics.belt_modes import end_amplitude, end_forces, end_shape
+from loomfmu.physics.belt_end_forces import end_forces
 
 LENGTH = 0.1737  # of the default travel
-RPM = pi / 30.0
-MACHINE = "WL680-3600"
 BELT, SPAN = 1, 2
 
 
@@ -131,58 +128,6 @@ def test_the_finite_elements_lose_stability_at_the_published_critical_speed():
 # On a loom
 
 
-class Loom:
-    """The belt of a machine behind its rapier, with steps of the shaft."""
-
-    def __init__(self, belt_class, rpm, steps=720, start=85.0, machine=MACHINE, **given):
-        self.weft = WeftInsertion(**parameters("WeftInsertion", machine=machine), speed=rpm * RPM)
-        self.weft.initialize(0.0)
-        self.step_size = 2.0 * pi / steps / self.weft.speed
-        self.time = math.radians(start) / self.weft.speed
-        self.belt = belt_class(
-            **{**parameters("BeltMonitor", machine=machine), **given}, inputs_at_step_end=True
-        )
-        self.feed()
-        self.belt.initialize(self.time)
-
-    def feed(self):
-        self.weft.step(self.time, 0.0)
-        for name in ("travel", "velocity", "acceleration"):
-            setattr(self.belt, name, getattr(self.weft, name))
-
-    def motion(self, time):
-        self.weft.step(time, 0.0)
-        guide = self.belt.idle_travel + self.belt.head_length
-        return self.weft.travel - guide, self.weft.velocity, self.weft.acceleration
-
-    def turn_to(self, degrees):
-        problems = set()
-        while self.time * self.weft.speed < math.radians(degrees) - 1e-9:
-            self.time += self.step_size
-            self.feed()
-            problems.add(self.belt.step(self.time - self.step_size, self.step_size))
-        return problems
-
-
-X = np.linspace(1.0, 0.0, 201)  # of BeltDynamics, from the head; the finite elements count from the guide
-
-
-def shape(modes, end, x=X):
-    """Deflection by modes and end shape."""
-    return np.sin(np.outer(pi * x, np.arange(1, 7))) @ np.array(end_shape(end, *modes)) + end * (x**3 - x)
-
-
-def ends(loom):
-    """Amplitude of the end shape and its rate."""
-    belt = loom.belt
-    length, speed, _acceleration = loom.motion(loom.time)
-    turned = pi * length / belt.bow_length
-    end, by_length = end_amplitude(
-        belt.bow_of, belt.bow, belt.bow_length, length, math.cos(turned), math.sin(turned)
-    )
-    return end, speed * by_length
-
-
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("elements", "everywhere", "farthest"),
@@ -193,12 +138,13 @@ def ends(loom):
 def test_against_finite_elements_in_space(belt_in_c, bow_of, elements, everywhere, farthest):
     loom = Loom(belt_in_c, 682.0, start=96.0, bow_of=bow_of)
     belt, bow, half = loom.belt, loom.belt.bow, loom.belt.bow_length
-    (end, end_rate), modes, rates = ends(loom), belt.mode, belt.mode_rate
+    modes, rates = belt.mode, belt.mode_rate
+    end, end_rate = ends(belt, *loom.motion(loom.time)[:2])
     times, found = [loom.time], [shape(modes, end)]
     for degrees in np.arange(97.0, 107.0):
         loom.turn_to(degrees)
         times.append(loom.time)
-        found.append(shape(belt.mode, ends(loom)[0]))
+        found.append(shape(belt.mode, ends(belt, *loom.motion(loom.time)[:2])[0]))
 
     def curvature(x, length):
         if bow_of == SPAN:
@@ -221,13 +167,9 @@ def test_a_belt_at_rest_without_load_has_its_bow_over_the_chord(belt_in_c):
     for travel in (0.85, 0.9, 0.9667, 1.2):
         belt = belt_in_c(travel=travel, bow=1e-6)  # so small that the slope does not count
         belt.initialize(0.0)
-        end = end_amplitude(
-            BELT, 1e-6, 0.2, belt.free_length, math.cos(5.0 * pi * belt.free_length),
-            math.sin(5.0 * pi * belt.free_length),
-        )[0]  # fmt: skip
         x = X * belt.free_length
         expected = 1e-6 * (np.sin(5.0 * pi * x) - X * math.sin(5.0 * pi * belt.free_length))
-        found = shape(belt.mode, end)
+        found = shape(belt.mode, ends(belt, belt.free_length)[0])
         # the sines of the rest fall with the fifth power of their number
         assert np.abs(found - expected).max() <= 2e-4 * np.abs(expected).max()
         assert belt.deflection == pytest.approx(np.abs(expected).max(), rel=1e-4)

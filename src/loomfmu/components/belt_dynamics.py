@@ -1,18 +1,21 @@
 """BeltDynamics: the rapier belt between guide and head in motion, its bow amplified by the push."""
 
 from dataclasses import dataclass
-from math import cos, fabs, pi, sin, sqrt
+from math import fabs, sqrt
 
 from ..physics.belt import LARGEST_BEND
-from ..physics.belt_modes import end_amplitude, end_shape
+from ..physics.belt_ends import buckling, end_shape
 from ..physics.belt_shape import LEAST_SQUARE, shape_at, shape_extremes, shortening
 from ..physics.numerics.extremes import highest_so_far
 from ..physics.numerics.motion import met
+from .belt_guide import SHORTEST_SHARE
 from .belt_rest import BeltRest
 
 JUMP = 1e-6  # m, that a standing head may be off
 MOST_SWEEPS = 2500  # over the stages of the integration in one step; both strokes of a loom need fewer
 MOST_HALVINGS = 9
+MORE_SWEEPS = 10000  # as many where an end may be clamped
+MORE_HALVINGS = 13
 BALANCED = 1e-9  # of the energy: what an integration step may leave unexplained, if it can be halved
 EASY = 1e-3  # of that: then the next step may be twice as long
 LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
@@ -132,6 +135,8 @@ class BeltDynamics(BeltRest):
         self.settle()
         self.deflection_rate = 0.0
         self.growth_rate = 0.0
+        self.guide_contact = 0
+        self.guide_moment = 0.0
         self.energy = 0.0
         self.held = True
 
@@ -156,33 +161,38 @@ class BeltDynamics(BeltRest):
         if self.held or self.path_step <= 0.0 or self.rests(start):
             return
         self.push_before = self.pushed_at(start)
-        duration = (end - start) * self.path_step
-        count = 1
-        if duration > LARGEST_STEP:
-            count = MOST_STEPS
-            if duration < MOST_STEPS * LARGEST_STEP:
-                count = 1 + int(duration / LARGEST_STEP * (1.0 - 1e-9))
-        self.try_modes()
-        self.energy = self.energy_at(start)
-        self.sweeps = 0
+        size = (end - start) / self.pieces((end - start) * self.path_step)
+        most_sweeps = MORE_SWEEPS if self.may_clamp() else MOST_SWEEPS
+        most_halvings = MORE_HALVINGS if self.may_clamp() else MOST_HALVINGS
+        self.set_out(start)
         share = start
         halvings = 0
-        while end - share > 1e-12 and halvings <= MOST_HALVINGS and self.sweeps < MOST_SWEEPS:
-            taken = self.suited(share, end, (end - start) / count) / 2.0**halvings
+        reach = 1.0
+        while end - share > 1e-12 and halvings <= most_halvings and self.sweeps < most_sweeps:
+            taken = self.suited(share, end, size) / 2.0**halvings
+            taken = taken if taken < reach else reach
             taken = taken if taken < end - share - 1e-12 else end - share
             if not self.advance(share, taken):
                 halvings = halvings + 1
                 continue
+            before = self.before_switch(share, taken)
+            if before < 1.0 and taken > SHORTEST_SHARE * size:
+                reach = before * taken
+                continue
+            self.account(share, taken)
             energy = self.energy_at(share + taken)
             missing = energy - self.energy - self.step_push - self.step_guide + self.step_loss
             error = fabs(missing) / (fabs(energy) + fabs(self.energy) + self.step_through + LEAST_ENERGY)
-            if error > BALANCED and halvings < MOST_HALVINGS:
+            if error > BALANCED and halvings < most_halvings:
                 halvings = halvings + 1
                 continue
             if error < EASY * BALANCED and halvings > 0:
                 halvings = halvings - 1
             share = share + taken
+            reach = 1.0
             self.go_on()
+            self.sums()
+            self.note_gap(share)
             self.energy = energy
             self.energy_residual = self.energy_residual + missing
             self.look(share)
@@ -192,6 +202,23 @@ class BeltDynamics(BeltRest):
                 return
         if end - share > 1e-12:
             self.lose()
+
+    def pieces(self, duration: float) -> int:
+        """Number of equal steps of the integration over a time."""
+        if not duration > LARGEST_STEP:
+            return 1
+        if duration < MOST_STEPS * LARGEST_STEP:
+            return 1 + int(duration / LARGEST_STEP * (1.0 - 1e-9))
+        return MOST_STEPS
+
+    def set_out(self, share: float) -> None:
+        """Make ready for the integration from a share of the step on."""
+        self.sweeps = 0
+        self.try_modes()
+        self.sums()
+        self.lean(self.length_at(share))
+        self.note_gap(share)
+        self.energy = self.energy_at(share)
 
     def follows(self, length: float) -> bool:
         """Whether six modes can follow the bow of a belt of that free length."""
@@ -211,15 +238,16 @@ class BeltDynamics(BeltRest):
     def look(self, share: float) -> None:
         """Find where the belt is farthest from its line, and how steep and bent it is."""
         length = self.length_at(share)
-        turned = pi * length / self.bow_length
-        end, end_by_length = end_amplitude(
-            self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
-        )
-        a1, a2, a3, a4, a5, a6 = end_shape(end, *self.mode)
-        place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, end)
-        end = self.velocity_at(share) * end_by_length
-        a1, a2, a3, a4, a5, a6 = end_shape(end, *self.mode_rate)
-        rate, _first, _second = shape_at(place, a1, a2, a3, a4, a5, a6, end)
+        velocity = self.velocity_at(share)
+        self.try_modes()
+        e, h, e_by_length, h_by_length = self.end_bow(length)
+        guide, head, guide_rate, head_rate = self.end_excess(length, velocity)
+        guide, head = e + guide, h + head
+        a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode)
+        place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, guide, head)
+        guide, head = velocity * e_by_length + guide_rate, velocity * h_by_length + head_rate
+        a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode_rate)
+        rate, _first, _second = shape_at(place, a1, a2, a3, a4, a5, a6, guide, head)
         self.last_deflection = self.deflection
         self.last_rate = self.deflection_rate
         self.deflection = fabs(farthest)
@@ -263,10 +291,14 @@ class BeltDynamics(BeltRest):
         if self.outside and not self.held:
             self.try_modes()
             self.found_a = self.rates_at(1.0)
-            wave = pi / self.free_length
+            self.guide_moment = self.moment_at_guide()
+            turn, wave = buckling(self.clamped())
+            critical = turn / self.free_length
             own = 0.5 * self.belt_mass * self.acceleration_at(1.0) * self.free_length
-            excess = self.compression + own - self.stiffness * wave * wave
-            self.growth_rate = wave * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
+            excess = self.compression + own - self.stiffness * critical * critical
+            self.growth_rate = (
+                wave / self.free_length * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
+            )
             self.shortening = shortening(self.free_length, *self.mode)
         self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
         self.margin = 1.0 - self.deflection / self.allowed_deflection

@@ -47,6 +47,21 @@ class BeltDynamicsVariables(Component):
         "m", 0.243, "Travel of the head before it leaves the guide", display="mm", minimum=0.0, maximum=10.0,
         source="belt_#.idle_travel",
     )  # fmt: skip
+    guide_end: int = parameter(
+        "1", 1, "Guide: pinned, with stiffness EI / mu^2, or with free play up to a slope, and stiffness EI",
+        choices=("calibrated", "play"),
+    )  # fmt: skip
+    guide_clearance: float = parameter(
+        "m", 0.3e-3, "Clearance of the belt in its guide, used if guide_end is play", display="mm",
+        minimum=0.0, maximum=0.05, nominal=1e-3, source="belt_#.guide_clearance",
+    )  # fmt: skip
+    guide_length: float = parameter(
+        "m", 0.05, "Length over which the guide holds the belt, used if guide_end is play (assumed: none"
+        " published)", display="mm", minimum=1e-3, maximum=10.0,
+    )  # fmt: skip
+    head_end: int = parameter(
+        "1", 1, "Head: free to turn, or guided, so that it cannot turn", choices=("pinned", "guided")
+    )
     taker: bool = parameter(
         "1", False, "The head takes the weft over and draws it out; otherwise it brings the weft in",
         source="belt_#.taker",
@@ -93,7 +108,7 @@ class BeltDynamicsVariables(Component):
     acceleration: float = head_acceleration()
     yarn_tension: float = yarn_tension()
     length_factor: float = input_(
-        "1", 0.8, "Column length factor mu: the belt is a pinned one of stiffness EI / mu^2",
+        "1", 0.8, "Column length factor mu: stiffness EI / mu^2, if guide_end is calibrated",
         minimum=0.1, maximum=2.0, source="belt_#.length_factor",
     )  # fmt: skip
 
@@ -130,11 +145,18 @@ class BeltDynamicsVariables(Component):
         "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=FOLLOWED
     )
     growth_rate: float = output(
-        "1/s", "Rate at which the first mode alone would grow; 0 while it is stable", nominal=100.0,
-        valid_if=KNOWN,
+        "1/s", "Rate at which the belt would grow in the shape in which it buckles; 0 while it is stable",
+        nominal=100.0, valid_if=KNOWN,
     )  # fmt: skip
     bending_strain: float = output(
         "1", "Largest strain by bending, on the surface of the belt", nominal=1e-3, valid_if=KNOWN
+    )
+    guide_contact: int = output(
+        "1", "Side of its guide on which the belt leans, 1 or -1; 0 while it turns freely", start=0,
+        variability="discrete", valid_if=KNOWN,
+    )  # fmt: skip
+    guide_moment: float = output(
+        "N.m", "Moment by which the guide keeps the belt from turning", valid_if=KNOWN
     )
     steepness: float = output("1", "Sine of the largest slope of the belt", nominal=0.1, valid_if=KNOWN)
     shortening: float = output(
@@ -185,7 +207,7 @@ class BeltDynamicsVariables(Component):
     )
     path_step: float = state("s", "Duration of the step")
     start_tension: float = state("N", "Weft tension at the start of the step")
-    stiffness: float = state("N.m2", "Bending stiffness of the pinned belt, EI / mu^2")
+    stiffness: float = state("N.m2", "Bending stiffness: EI, or EI / mu^2 if guide_end is calibrated")
     gauss_a: tuple[float, ...] = array(
         auxiliary("m/s2", f"Acceleration of the {each} mode, first stage") for each in NUMBERS
     )
@@ -221,3 +243,5 @@ class BeltDynamicsVariables(Component):
     push_before: float = auxiliary("N", "Compression after the last step of the integration")
     last_deflection: float = auxiliary("m", "Deflection before the last step of the integration")
     last_rate: float = auxiliary("m/s", "Its rate before the last step of the integration")
+    last_slope: float = auxiliary("m", "Slope at the guide before the last step, times the free length")
+    last_slope_rate: float = auxiliary("m/s", "Rate of that slope before the last step of the integration")

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import fabs, pi
 
+from ..physics.belt_ends import OTHER, OWN, at_ends
 from ..physics.belt_modes import same, size, summed
 from ..physics.belt_motion import energy_and_powers
 from ..physics.numerics.gauss import (
@@ -32,6 +33,7 @@ from ..physics.numerics.gauss import (
     SQUARE_32,
     SQUARE_33,
     corrected,
+    held,
     stage,
 )
 from .belt_path import BeltPath
@@ -86,7 +88,6 @@ class BeltIntegration(BeltPath):
             before = change
         if not change <= settled:
             return False
-        self.account(share, taken, duration)
         self.visit_end(duration)
         return True
 
@@ -135,20 +136,90 @@ class BeltIntegration(BeltPath):
         length = self.length_at(share)
         pushed = self.pushed_at(share)
         square = duration * duration
-        a1, a2, a3, a4, a5, a6 = summed(-1.0, *self.gauss_a, *self.found_a)
-        b1, b2, b3, b4, b5, b6 = summed(-1.0, *self.gauss_b, *self.found_b)
-        c1, c2, c3, c4, c5, c6 = summed(-1.0, *self.gauss_c, *self.found_c)
-        a1, b1, c1 = corrected(square * self.stiff(1, length, pushed), a1, b1, c1)
-        a2, b2, c2 = corrected(square * self.stiff(2, length, pushed), a2, b2, c2)
-        a3, b3, c3 = corrected(square * self.stiff(3, length, pushed), a3, b3, c3)
-        a4, b4, c4 = corrected(square * self.stiff(4, length, pushed), a4, b4, c4)
-        a5, b5, c5 = corrected(square * self.stiff(5, length, pushed), a5, b5, c5)
-        a6, b6, c6 = corrected(square * self.stiff(6, length, pushed), a6, b6, c6)
+        self.found_a = summed(-1.0, *self.gauss_a, *self.found_a)
+        self.found_b = summed(-1.0, *self.gauss_b, *self.found_b)
+        self.found_c = summed(-1.0, *self.gauss_c, *self.found_c)
+        if self.clamped() != 0:
+            self.hold_ends(length, pushed, square)
+        a1, b1, c1 = self.corrected_mode(0, length, pushed, square)
+        a2, b2, c2 = self.corrected_mode(1, length, pushed, square)
+        a3, b3, c3 = self.corrected_mode(2, length, pushed, square)
+        a4, b4, c4 = self.corrected_mode(3, length, pushed, square)
+        a5, b5, c5 = self.corrected_mode(4, length, pushed, square)
+        a6, b6, c6 = self.corrected_mode(5, length, pushed, square)
         self.gauss_a = summed(1.0, a1, a2, a3, a4, a5, a6, *self.gauss_a)
         self.gauss_b = summed(1.0, b1, b2, b3, b4, b5, b6, *self.gauss_b)
         self.gauss_c = summed(1.0, c1, c2, c3, c4, c5, c6, *self.gauss_c)
         largest = size(a1, a2, a3, a4, a5, a6) + size(b1, b2, b3, b4, b5, b6)
         return square * (largest + size(c1, c2, c3, c4, c5, c6))
+
+    def corrected_mode(
+        self, place: int, length: float, pushed: float, square: float
+    ) -> tuple[float, float, float]:
+        """Change of the accelerations of a mode at all stages for what they are off by."""
+        stiff = square * self.stiff(place + 1, length, pushed)
+        return corrected(stiff, self.found_a[place], self.found_b[place], self.found_c[place])
+
+    def hold_ends(self, length: float, pushed: float, square: float) -> None:
+        """Take from what the accelerations are off by the share of the moments at the clamped ends.
+
+        They act on all modes at once: on odd and on even ones alike if one end is clamped, on either kind by
+        itself if both are.
+        """
+        stiff = 12.0 * square * self.stiffness / (self.belt_mass * length * length * length * length)
+        o11, o12, o13, o21, o22, o23, o31, o32, o33, o1, o2, o3 = self.yielding(1, length, pushed, square)
+        e11, e12, e13, e21, e22, e23, e31, e32, e33, e1, e2, e3 = self.yielding(2, length, pushed, square)
+        clamped = self.clamped()
+        if clamped == 3:
+            o1, o2, o3 = held(
+                2.0 * stiff / (OWN + OTHER), o11, o12, o13, o21, o22, o23, o31, o32, o33, o1, o2, o3
+            )
+            e1, e2, e3 = held(
+                2.0 * stiff / (OWN - OTHER), e11, e12, e13, e21, e22, e23, e31, e32, e33, e1, e2, e3
+            )
+        else:
+            sign = -1.0 if clamped == 1 else 1.0
+            e1, e2, e3 = held(
+                stiff / OWN, o11 + e11, o12 + e12, o13 + e13, o21 + e21, o22 + e22, o23 + e23, o31 + e31,
+                o32 + e32, o33 + e33, e1 + sign * o1, e2 + sign * o2, e3 + sign * o3,
+            )  # fmt: skip
+            o1, o2, o3 = sign * e1, sign * e2, sign * e3
+        a1, a2, a3, a4, a5, a6 = at_ends(-o1, -e1)
+        a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_a)
+        self.found_a = self.moving(a1, a2, a3, a4, a5, a6)
+        a1, a2, a3, a4, a5, a6 = at_ends(-o2, -e2)
+        a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_b)
+        self.found_b = self.moving(a1, a2, a3, a4, a5, a6)
+        a1, a2, a3, a4, a5, a6 = at_ends(-o3, -e3)
+        a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_c)
+        self.found_c = self.moving(a1, a2, a3, a4, a5, a6)
+
+    def yielding(
+        self, first: int, length: float, pushed: float, square: float
+    ) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
+        """How far end slopes yield to moments there at all stages, and to what the accelerations are off by.
+
+        Those of the odd modes (1 first) or of the even ones (2): a matrix over the stages, then a vector.
+        """
+        y11, y12, y13, y21, y22, y23, y31, y32, y33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        s1, s2, s3 = 0.0, 0.0, 0.0
+        for number in range(first, self.modes + 1, 2):
+            wave = number * pi
+            stiff = square * self.stiff(number, length, pushed)
+            c1, c2, c3 = corrected(stiff, SQUARE_11, SQUARE_21, SQUARE_31)
+            y11, y21, y31 = y11 + wave * wave * c1, y21 + wave * wave * c2, y31 + wave * wave * c3
+            c1, c2, c3 = corrected(stiff, SQUARE_12, SQUARE_22, SQUARE_32)
+            y12, y22, y32 = y12 + wave * wave * c1, y22 + wave * wave * c2, y32 + wave * wave * c3
+            c1, c2, c3 = corrected(stiff, SQUARE_13, SQUARE_23, SQUARE_33)
+            y13, y23, y33 = y13 + wave * wave * c1, y23 + wave * wave * c2, y33 + wave * wave * c3
+            c1, c2, c3 = self.corrected_mode(number - 1, length, pushed, square)
+            s1, s2, s3 = s1 + wave * c1, s2 + wave * c2, s3 + wave * c3
+        return (
+            y11, y12, y13, y21, y22, y23, y31, y32, y33,
+            SQUARE_11 * s1 + SQUARE_12 * s2 + SQUARE_13 * s3,
+            SQUARE_21 * s1 + SQUARE_22 * s2 + SQUARE_23 * s3,
+            SQUARE_31 * s1 + SQUARE_32 * s2 + SQUARE_33 * s3,
+        )  # fmt: skip
 
     def stiff(self, number: int, length: float, pushed: float) -> float:
         """Square of the frequency of a mode, 0 for one that grows."""
@@ -156,8 +227,9 @@ class BeltIntegration(BeltPath):
         stiff = wave * wave * (self.stiffness * wave * wave - pushed) / self.belt_mass
         return stiff if stiff > 0.0 else 0.0
 
-    def account(self, share: float, taken: float, duration: float) -> None:
+    def account(self, share: float, taken: float) -> None:
         """Add up the work of an integration step by Gauss's quadrature at its stages."""
+        duration = taken * self.path_step
         self.step_push = 0.0
         self.step_guide = 0.0
         self.step_loss = 0.0
@@ -171,17 +243,20 @@ class BeltIntegration(BeltPath):
         self.visit_third(duration)
         self.found_c = self.rates_at(share + LAST * taken)
         self.work(share + LAST * taken, OUTER * duration, *self.found_c)
+        self.visit_end(duration)
 
     def work(
         self, share: float, time: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
     ) -> None:
         """Add the work of all powers at a stage over a time."""
+        length = self.length_at(share)
         _energy, push, guide, loss = energy_and_powers(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, a1, a2, a3, a4, a5, a6, self.length_at(share),
+            *self.trial_rate, a1, a2, a3, a4, a5, a6, length,
             self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.compression,
+            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(),
+            self.compression,
         )  # fmt: skip
         self.step_push = self.step_push + time * push
         self.step_guide = self.step_guide + time * guide
@@ -190,11 +265,12 @@ class BeltIntegration(BeltPath):
 
     def energy_at(self, share: float) -> float:
         """Energy of the trial place at a share of the step."""
+        length = self.length_at(share)
         energy, _push, _guide, _loss = energy_and_powers(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self.length_at(share),
+            *self.trial_rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length,
             self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, 0.0,
+            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(), 0.0,
         )  # fmt: skip
         return energy

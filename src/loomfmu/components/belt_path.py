@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 from ..physics.belt import weft_load
 from ..physics.belt_motion import accelerations
-from ..physics.numerics.motion import joined, joined_rate, joined_value
-from .belt_dynamics_variables import BeltDynamicsVariables
+from ..physics.numerics.motion import joined, joined_rate, joined_value, met
+from .belt_guide import CALIBRATED, TOUCHING, BeltGuide
+
+HALVINGS = 50  # of an integration step: then the place is known to rounding
 
 
 @dataclass(slots=True)
-class BeltPath(BeltDynamicsVariables):
+class BeltPath(BeltGuide):
     """Free length, velocity and load over a step, and the accelerations of the modes."""
 
     def lay_path(self, duration: float) -> None:
@@ -17,7 +19,8 @@ class BeltPath(BeltDynamicsVariables):
         guide = self.idle_travel + self.head_length
         square = duration * duration
         self.path_step = duration
-        self.stiffness = self.bending_stiffness / (self.length_factor * self.length_factor)
+        factor = self.length_factor if self.guide_end == CALIBRATED else 1.0
+        self.stiffness = self.bending_stiffness / (factor * factor)
         if duration > 0.0:
             a0, a1, a2, a3 = joined(
                 self.sampled_travel, duration * self.sampled_velocity, square * self.sampled_acceleration,
@@ -73,9 +76,15 @@ class BeltPath(BeltDynamicsVariables):
             *self.trial,  # type: ignore[arg-type]
             *self.trial_rate, length, velocity, acceleration, tension, self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length,
+            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(),
         )  # fmt: skip
         self.compression = load
+        return self.moving(a1, a2, a3, a4, a5, a6)
+
+    def moving(
+        self, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+    ) -> tuple[float, float, float, float, float, float]:
+        """Modes without those that are held at 0."""
         return (
             a1,
             a2 if self.modes > 1 else 0.0,
@@ -91,3 +100,42 @@ class BeltPath(BeltDynamicsVariables):
             self.length_at(share), self.velocity_at(share), self.acceleration_at(share),
             self.tension_at(share),
         )  # fmt: skip
+
+    def note_gap(self, share: float) -> None:
+        """Let the belt lean on its guide, or let it go, where it is about to; keep its slope there."""
+        if not self.has_play():
+            return
+        length = self.length_at(share)
+        velocity = self.velocity_at(share)
+        side = self.side(length)
+        gap, growth = self.gap(length, velocity, side)
+        if gap <= TOUCHING * self.mode_sum and growth < 0.0:
+            self.guide_contact = side if self.guide_contact == 0 else 0
+        self.last_slope, self.last_slope_rate = self.free_slope(length, velocity)
+
+    def before_switch(self, share: float, taken: float) -> float:
+        """Share of an integration step, now in the trial place, after which contact in the guide changes."""
+        if not self.has_play():
+            return 1.0
+        length = self.length_at(share + taken)
+        velocity = self.velocity_at(share + taken)
+        side = self.side(length)
+        end, end_rate = self.gap(length, velocity, side)
+        if end >= -TOUCHING * self.mode_sum:
+            return 1.0
+        length = self.length_at(share)
+        growth = self.guide_clearance / self.guide_length * self.velocity_at(share)
+        start = side * self.last_slope - self.free_turn(length)
+        start_rate = side * self.last_slope_rate - growth
+        if self.guide_contact == 0:
+            start, start_rate = -start, -start_rate
+        low = 0.0
+        high = 1.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            gap, _slope = met(middle, taken * self.path_step, start, start_rate, end, end_rate)
+            if gap > 0.0:
+                low = middle
+            else:
+                high = middle
+        return high

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from math import cos, fabs, pi, sin
 
-from ..physics.belt_modes import bow_at
+from ..physics.belt_ends import at_ends, reactions
+from ..physics.belt_modes import bow_at, summed
 from .belt_integration import BeltIntegration
 
 REPEATS = 200  # until the belt is in equilibrium
@@ -26,6 +27,8 @@ class BeltRest(BeltIntegration):
         for _ in range(REPEATS):
             if self.at_rest:
                 return
+            self.try_modes()
+            self.lean(length)
             self.mode_rate = (
                 speed * self.lengthened(0, length) * self.mode[0],
                 speed * self.lengthened(1, length) * self.mode[1],
@@ -38,13 +41,23 @@ class BeltRest(BeltIntegration):
             self.found_a = self.second_rates(length, speed, acceleration, tension)
             self.sums()
             before = self.mode_sum
+            self.found_a = (
+                self.unbalanced(0, length, speed, acceleration),
+                self.unbalanced(1, length, speed, acceleration),
+                self.unbalanced(2, length, speed, acceleration),
+                self.unbalanced(3, length, speed, acceleration),
+                self.unbalanced(4, length, speed, acceleration),
+                self.unbalanced(5, length, speed, acceleration),
+            )
+            if self.clamped() != 0:
+                self.hold_still(length, pushed)
             self.mode = (
-                self.mode[0] + self.yielded(0, length, speed, acceleration, pushed),
-                self.mode[1] + self.yielded(1, length, speed, acceleration, pushed),
-                self.mode[2] + self.yielded(2, length, speed, acceleration, pushed),
-                self.mode[3] + self.yielded(3, length, speed, acceleration, pushed),
-                self.mode[4] + self.yielded(4, length, speed, acceleration, pushed),
-                self.mode[5] + self.yielded(5, length, speed, acceleration, pushed),
+                self.mode[0] + self.yielded(0, length, pushed),
+                self.mode[1] + self.yielded(1, length, pushed),
+                self.mode[2] + self.yielded(2, length, pushed),
+                self.mode[3] + self.yielded(3, length, pushed),
+                self.mode[4] + self.yielded(4, length, pushed),
+                self.mode[5] + self.yielded(5, length, pushed),
             )
             self.sums()
             if not self.mode_sum < length:
@@ -52,16 +65,40 @@ class BeltRest(BeltIntegration):
                 return
             self.at_rest = fabs(self.mode_sum - before) <= RESTED * before
 
-    def yielded(self, place: int, length: float, speed: float, acceleration: float, pushed: float) -> float:
-        """Change of a mode by which its acceleration, now `found_a`, would be that of the growing length."""
-        wave = (place + 1) * pi / length
-        stiff = wave * wave * (self.stiffness * wave * wave - pushed)
+    def unbalanced(self, place: int, length: float, speed: float, acceleration: float) -> float:
+        """Acceleration of a mode, now `found_a`, beyond that of the growing length."""
         by_length = self.lengthened(place, length)
         wanted = speed * speed * (by_length - 1.0 / length) + acceleration
-        return self.belt_mass * (self.found_a[place] - wanted * by_length * self.mode[place]) / stiff
+        return self.found_a[place] - wanted * by_length * self.mode[place]
+
+    def yielded(self, place: int, length: float, pushed: float) -> float:
+        """Change of a mode by which its acceleration `found_a` would vanish."""
+        wave = (place + 1) * pi / length
+        stiff = wave * wave * (self.stiffness * wave * wave - pushed)
+        return self.belt_mass * self.found_a[place] / stiff
+
+    def hold_still(self, length: float, pushed: float) -> None:
+        """Take from the accelerations `found_a` the share of the moments at the clamped ends."""
+        odd, odd_yield, even, even_yield = 0.0, 0.0, 0.0, 0.0
+        for place in range(self.modes):
+            wave = (place + 1) * pi
+            slope = wave * self.yielded(place, length, pushed)
+            share = wave / length
+            stiff = share * share * (self.stiffness * share * share - pushed)
+            if place % 2 == 0:
+                odd, odd_yield = odd + slope, odd_yield + self.belt_mass * wave * wave / stiff
+            else:
+                even, even_yield = even + slope, even_yield + self.belt_mass * wave * wave / stiff
+        weight = 12.0 * self.stiffness / (self.belt_mass * length * length * length * length)
+        odd, even = reactions(self.clamped(), weight, odd_yield, even_yield, odd, even)
+        a1, a2, a3, a4, a5, a6 = at_ends(-odd, -even)
+        a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_a)
+        self.found_a = self.moving(a1, a2, a3, a4, a5, a6)
 
     def lengthened(self, place: int, length: float) -> float:
-        """Change of a mode at rest by the free length, over the mode."""
+        """Change of a mode at rest by the free length, over the mode; not counted if an end is clamped."""
+        if self.clamped() != 0:
+            return 0.0
         turned = pi * length / self.bow_length
         moment, slope = bow_at(
             place + 1, self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
@@ -96,6 +133,8 @@ class BeltRest(BeltIntegration):
         self.bending_strain = 0.0
         self.shortening = 0.0
         self.growth_rate = 0.0
+        self.guide_contact = 0
+        self.guide_moment = 0.0
         self.energy = 0.0
         self.steepness = 0.0
         self.last_deflection = 0.0

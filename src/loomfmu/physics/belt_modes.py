@@ -1,14 +1,10 @@
 """Modes of a belt of growing length: what they integrate to, and the moment of its bow on them.
 
 With x from 0 at the head to 1 at the guide the deflection is the sum of `q_n sin(n pi x)`, n = 1 to 6. The
-sums below are exact.
-
-A belt with a bow of its own leaves the guide bent, but a sine is straight at its ends: their sum converges
-with the third power of their number only. The end shape has this bend, and the rest converges with the fifth
-power. It is `x^3 - x` less its first six sines; its amplitude follows from the bow.
+sums below are exact. What the belt is at its ends, where a sine is straight, `belt_ends` has.
 """
 
-from math import fabs, pi
+from math import cos, fabs, pi, sin
 
 
 def carried_along(
@@ -132,61 +128,6 @@ def harmonics(
     )  # fmt: skip
 
 
-def end_shape(
-    amplitude: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
-    """Modes that together with `amplitude (x^3 - x)` make the shape of modes and end shape.
-
-    The sines of `x^3 - x` are `12 (-1)^n / (n pi)^3`.
-
-    >>> round(end_shape(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)[0], 12)
-    0.387018413198
-    """
-    share = 12.0 * amplitude / (pi * pi * pi)
-    return (
-        a1 + share, a2 - share / 8.0, a3 + share / 27.0, a4 - share / 64.0, a5 + share / 125.0,
-        a6 - share / 216.0,
-    )  # fmt: skip
-
-
-def end_forces(
-    drifting: float, pushed: float, thrown: float
-) -> tuple[float, float, float, float, float, float]:
-    """Forces of the end shape f on the modes.
-
-    `drifting int x sin(m pi x) f' dx + m pi int (pushed x + thrown x^2) cos(m pi x) f' dx`. Neither its mass
-    nor its bending nor a constant push couples it to the modes.
-
-    >>> round(1e3 * end_forces(0.0, 0.0, 1.0)[5], 12)
-    64.346861254998
-    """
-    return (
-        -4.7089567642551875e-4 * drifting - 3.7459780768771716e-4 * pushed - 9.6859380879856009e-4 * thrown,
-        9.8414417326917609e-4 * drifting + 1.3724543680458386e-3 * pushed + 2.2062984750290385e-3 * thrown,
-        -1.5988989078060496e-3 * drifting - 1.5082121747237921e-3 * pushed - 4.1698697220745896e-3 * thrown,
-        2.4262042855303312e-3 * drifting + 5.3277178537743802e-3 * pushed + 8.0022473175899444e-3 * thrown,
-        -3.7496322717787359e-3 * drifting - 5.1008168187945264e-3 * pushed - 1.7878343284047494e-2 * thrown,
-        6.7764158189493683e-3 * drifting + 5.2530030899903327e-2 * pushed + 6.4346861254997988e-2 * thrown,
-    )
-
-
-def end_amplitude(
-    bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float]:
-    """Amplitude of the end shape, and its rate by the free length: 0 for a bow of the span (2).
-
-    `bow''(L) L^2 / 6`, by which it is bent at the guide as the belt is without load.
-
-    >>> round(end_amplitude(1, 1.0, 2.0, 1.0, 0.0, 1.0)[0], 12), end_amplitude(2, 1.0, 2.0, 1.0, 0.0, 1.0)
-    (-0.411233516712, (0.0, 0.0))
-    """
-    if bow_of != 1:
-        return 0.0, 0.0
-    wave = pi / bow_length
-    bend = -bow * wave * wave * length / 6.0
-    return bend * length * sine, bend * (2.0 * sine + wave * length * cosine)
-
-
 def bow_mode(
     number: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
 ) -> tuple[float, float]:
@@ -241,3 +182,22 @@ def bow_at(
     square = pi * pi / length
     moment = 0.5 * bow * square * square / length
     return moment, -3.0 * moment / length
+
+
+def bow_forces(
+    bow_of: int, bow: float, bow_length: float, length: float
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
+    """Moments of the bow on all modes, and their rates by the free length; see `bow_mode`.
+
+    >>> bow_forces(2, 1.0, 1.0, 1.0)[0] == bow_at(1, 2, 1.0, 1.0, 1.0, -1.0, 0.0)[0]
+    True
+    """
+    cosine = cos(pi * length / bow_length)
+    sine = sin(pi * length / bow_length)
+    b1, d1 = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
+    b2, d2 = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
+    b3, d3 = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
+    b4, d4 = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
+    b5, d5 = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
+    b6, d6 = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
+    return b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6

@@ -12,10 +12,20 @@ axial displacement can vary at the guide. Bending and shortening are those of an
 for rotations up to 77 degrees; the belt's own axial inertia counts to the second order of the slope.
 """
 
-from math import cos, pi, sin
+from math import pi
 
-from .belt_modes import bow_at, carried_along, dot, end_amplitude, end_forces, weighed
+from .belt_end_forces import end_coupling, end_pull
+from .belt_ends import end_amplitudes, end_bending, end_motion, end_slopes, moment_forces, turning
+from .belt_modes import bow_forces, carried_along, dot, summed, weighed
 from .belt_shape import bent_belt
+
+
+def on_mode(
+    twice: float, dragged: float, pushed: float, thrown: float, slowed: float, stiffness: float,
+    y: float, x: float, w: float, z: float, v: float, bend: float, end: float,
+) -> float:  # fmt: skip
+    """Force on a mode, without the compression; see `accelerations`."""
+    return twice * y + dragged * x + pushed * w + thrown * z - slowed * v + stiffness * bend + end
 
 
 def accelerations(
@@ -23,14 +33,16 @@ def accelerations(
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, tension: float, head_mass: float, belt_mass: float,
     damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float,
+    may_clamp: bool, clamped: int, turn: float, turn_by_length: float,
 ) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
     """Second rates of the modes, and the compression P0 of the belt at the head.
 
-        M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e + P0 g
+        M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e
+                + P0 (g + h)
         P0 = m (A - S'') + T,   M = rho L / 2
 
-    G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of `bow_at`,
-    e is of `end_forces`; S is the shortening, by which the head lags behind its drive.
+    G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
+    `bow_forces`, e and h are of `end_actions`; S is the shortening, by which the head lags behind its drive.
 
     Args:
         q1 .. v6: modes and their rates [m, m/s]
@@ -38,8 +50,10 @@ def accelerations(
         tension: T, compression of the belt by the weft [N]
         head_mass, belt_mass: m and rho [kg, kg/m]
         damping: c [N s/m2]
-        stiffness: B = EI / mu^2 [N m2]
+        stiffness: B [N m2]
         bow_of, bow, bow_length: see `bow_at`
+        may_clamp: see `end_amplitudes`
+        clamped, turn, turn_by_length: see `end_motion`
 
     Returns:
         second rates [m/s2], compression at the head [N]
@@ -59,43 +73,60 @@ def accelerations(
     thrown = belt_mass * velocity * velocity / length
     slowed = 0.5 * damping * length
     half = 0.5 * belt_mass * length
-    cosine = cos(pi * length / bow_length)
-    sine = sin(pi * length / bow_length)
-    end, end_by_length = end_amplitude(bow_of, bow, bow_length, length, cosine, sine)
-    e1, e2, e3, e4, e5, e6 = end_forces(
-        twice * velocity * end_by_length + dragged * end, pushed * end, thrown * end
+    b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(bow_of, bow, bow_length, length)
+    e, h, e_by_length, h_by_length = end_amplitudes(
+        bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
     )
-    b1, _slope = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
-    b2, _slope = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
-    b3, _slope = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
-    b4, _slope = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
-    b5, _slope = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
-    b6, _slope = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
-    u1 = (
-        twice * y1 + dragged * x1 + pushed * w1 + thrown * z1 - slowed * v1 + stiffness * (f1 + b1) + e1
-    ) / half
-    u2 = (
-        twice * y2 + dragged * x2 + pushed * w2 + thrown * z2 - slowed * v2 + stiffness * (f2 + b2) + e2
-    ) / half
-    u3 = (
-        twice * y3 + dragged * x3 + pushed * w3 + thrown * z3 - slowed * v3 + stiffness * (f3 + b3) + e3
-    ) / half
-    u4 = (
-        twice * y4 + dragged * x4 + pushed * w4 + thrown * z4 - slowed * v4 + stiffness * (f4 + b4) + e4
-    ) / half
-    u5 = (
-        twice * y5 + dragged * x5 + pushed * w5 + thrown * z5 - slowed * v5 + stiffness * (f5 + b5) + e5
-    ) / half
-    u6 = (
-        twice * y6 + dragged * x6 + pushed * w6 + thrown * z6 - slowed * v6 + stiffness * (f6 + b6) + e6
-    ) / half
+    e1, e2, e3, e4, e5, e6, pull_guide, pull_head = end_actions(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
+        thrown, stiffness, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
+    )  # fmt: skip
+    u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1 + b1, e1) / half
+    u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2 + b2, e2) / half
+    u3 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y3, x3, w3, z3, v3, f3 + b3, e3) / half
+    u4 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y4, x4, w4, z4, v4, f4 + b4, e4) / half
+    u5 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y5, x5, w5, z5, v5, f5 + b5, e5) / half
+    u6 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y6, x6, w6, z6, v6, f6 + b6, e6) / half
     along = dot(g1, g2, g3, g4, g5, g6, u1, u2, u3, u4, u5, u6)
-    square = dot(g1, g2, g3, g4, g5, g6, g1, g2, g3, g4, g5, g6)
+    m1, m2, m3, m4, m5, m6 = moment_forces(pull_guide, pull_head)
+    h1, h2, h3, h4, h5, h6 = summed(1.0, m1, m2, m3, m4, m5, m6, g1, g2, g3, g4, g5, g6)
+    square = dot(g1, g2, g3, g4, g5, g6, h1, h2, h3, h4, h5, h6)
     load = (head_mass * (acceleration - second - along) + tension) / (1.0 + head_mass * square / half)
     lift = load / half
     return (
-        u1 + lift * g1, u2 + lift * g2, u3 + lift * g3, u4 + lift * g4, u5 + lift * g5, u6 + lift * g6, load,
+        u1 + lift * h1, u2 + lift * h2, u3 + lift * h3, u4 + lift * h4, u5 + lift * h5, u6 + lift * h6, load,
     )  # fmt: skip
+
+
+def end_actions(
+    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
+    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
+    length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
+    stiffness: float, clamped: int, turn: float, turn_by_length: float,
+    e: float, h: float, e_by_length: float, h_by_length: float,
+) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
+    """What the end shapes do to the modes.
+
+    Args:
+        q1 .. acceleration, stiffness .. turn_by_length: as for `accelerations`
+        belt_mass, damping, thrown: as for `end_coupling`
+
+    Returns:
+        forces on the modes [N], moments of `end_pull` [1]
+    """
+    d, k, d_rate, k_rate = end_motion(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, clamped, turn, turn_by_length, e, h,
+        e_by_length, h_by_length,
+    )  # fmt: skip
+    c1, c2, c3, c4, c5, c6 = end_coupling(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
+        clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
+    )  # fmt: skip
+    pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
+    moment = 6.0 * stiffness / (length * length * length)
+    m1, m2, m3, m4, m5, m6 = moment_forces(moment * d, moment * k)
+    e1, e2, e3, e4, e5, e6 = summed(1.0, m1, m2, m3, m4, m5, m6, c1, c2, c3, c4, c5, c6)
+    return e1, e2, e3, e4, e5, e6, pull_guide, pull_head
 
 
 def energy_and_powers(
@@ -103,17 +134,18 @@ def energy_and_powers(
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
     length: float, velocity: float, acceleration: float, tension: float, head_mass: float, belt_mass: float,
-    damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float, load: float,
+    damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float,
+    may_clamp: bool, clamped: int, turn: float, turn_by_length: float, load: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Energy of the motion across the belt, and the powers that change it.
 
     The energy is that of u_t, of bending against the straight belt, and of the lag of the head. It grows by
     the compression's work on the shortening, and by what the guide exit, an end that moves along the belt,
-    puts in: `V [d/dt(dT/dV) - dT/dL + dU/dL - P0 dS/dL]`, and the forces of the end shape on the modes.
+    puts in: `V [d/dt(dT/dV) - dT/dL + dU/dL - P0 dS/dL]`, and the inertia of the end shapes.
 
     Args:
         q1 .. a6: modes and their rates [m, m/s, m/s2]
-        length .. bow_length: as for `accelerations`
+        length .. turn_by_length: as for `accelerations`
         load: compression at the head P0 [N]
 
     Returns:
@@ -128,14 +160,7 @@ def energy_and_powers(
     ) = bent_belt(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration
     )  # fmt: skip
-    cosine = cos(pi * length / bow_length)
-    sine = sin(pi * length / bow_length)
-    b1, d1 = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
-    b2, d2 = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
-    b3, d3 = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
-    b4, d4 = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
-    b5, d5 = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
-    b6, d6 = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
+    b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(bow_of, bow, bow_length, length)
     bowed = dot(b1, b2, b3, b4, b5, b6, q1, q2, q3, q4, q5, q6)
     bowed_by_length = dot(d1, d2, d3, d4, d5, d6, q1, q2, q3, q4, q5, q6)
     speeds = dot(v1, v2, v3, v4, v5, v6, v1, v2, v3, v4, v5, v6)
@@ -146,17 +171,50 @@ def energy_and_powers(
     weight = dot(v1, v2, v3, v4, v5, v6, w1, w2, w3, w4, w5, w6)
     share = velocity / length
     moving = 0.5 * length * (0.5 * speeds - 2.0 * share * drift + share * share * spread)
-    energy = belt_mass * moving + 0.5 * head_mass * rate * rate + stiffness * (bent - bowed)
+    e, h, e_by_length, h_by_length = end_amplitudes(
+        bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
+    )
+    end_energy, end_power = end_powers(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
+        belt_mass * velocity * share, stiffness, clamped, turn, turn_by_length, e, h, e_by_length,
+        h_by_length, load,
+    )  # fmt: skip
+    energy = belt_mass * moving + 0.5 * head_mass * rate * rate + stiffness * (bent - bowed) + end_energy
     push = (head_mass * acceleration + tension) * rate + belt_mass * acceleration * weight
     inertia = (acceleration / length - 0.5 * share * share) * spread + 2.0 * share * sweep - swing
     elastic = stiffness * (bent_by_length - bowed_by_length)
     drag = damping * (share * spread - drift)
-    pushed = belt_mass * acceleration
-    end, end_by_length = end_amplitude(bow_of, bow, bow_length, length, cosine, sine)
-    e1, e2, e3, e4, e5, e6 = end_forces(
-        2.0 * belt_mass * velocity * velocity * end_by_length + (pushed + damping * velocity) * end,
-        pushed * end, belt_mass * velocity * share * end,
-    )  # fmt: skip
-    guide = velocity * (belt_mass * inertia + elastic - load * by_length + drag)
-    guide = guide + dot(v1, v2, v3, v4, v5, v6, e1, e2, e3, e4, e5, e6)
+    guide = velocity * (belt_mass * inertia + elastic - load * by_length + drag) + end_power
     return energy, push, guide, 2.0 * damping * moving
+
+
+def end_powers(
+    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
+    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
+    length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
+    stiffness: float, clamped: int, turn: float, turn_by_length: float,
+    e: float, h: float, e_by_length: float, h_by_length: float, load: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Share of the end shapes in energy and powers.
+
+    Args:
+        q1 .. turn_by_length: as for `end_actions`
+        load: compression at the head P0 [N]
+
+    Returns:
+        bending energy [J], power at the guide [W]
+    """
+    d, k, d_rate, k_rate = end_motion(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, clamped, turn, turn_by_length, e, h,
+        e_by_length, h_by_length,
+    )  # fmt: skip
+    c1, c2, c3, c4, c5, c6 = end_coupling(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
+        clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
+    )  # fmt: skip
+    guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
+    energy, growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
+    pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
+    guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
+    power = dot(v1, v2, v3, v4, v5, v6, c1, c2, c3, c4, c5, c6) + velocity * growth
+    return energy, power + load * (pull_guide * guide_rate + pull_head * head_rate)

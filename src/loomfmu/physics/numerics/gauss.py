@@ -45,15 +45,22 @@ def corrected(
     >>> corrected(0.0, 1.0, 2.0, 3.0)
     (1.0, 2.0, 3.0)
     """
-    a11 = 1.0 + stiff * SQUARE_11
-    a12 = stiff * SQUARE_12
-    a13 = stiff * SQUARE_13
-    a21 = stiff * SQUARE_21
-    a22 = 1.0 + stiff * SQUARE_22
-    a23 = stiff * SQUARE_23
-    a31 = stiff * SQUARE_31
-    a32 = stiff * SQUARE_32
-    a33 = 1.0 + stiff * SQUARE_33
+    return solved(
+        1.0 + stiff * SQUARE_11, stiff * SQUARE_12, stiff * SQUARE_13,
+        stiff * SQUARE_21, 1.0 + stiff * SQUARE_22, stiff * SQUARE_23,
+        stiff * SQUARE_31, stiff * SQUARE_32, 1.0 + stiff * SQUARE_33, first, second, third,
+    )  # fmt: skip
+
+
+def solved(
+    a11: float, a12: float, a13: float, a21: float, a22: float, a23: float, a31: float, a32: float,
+    a33: float, first: float, second: float, third: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Solution of three linear equations, by the adjugate.
+
+    >>> solved(2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 8.0, 2.0, 4.0, 8.0)
+    (1.0, 1.0, 1.0)
+    """
     m1 = a22 * a33 - a23 * a32
     m2 = a23 * a31 - a21 * a33
     m3 = a21 * a32 - a22 * a31
@@ -63,6 +70,26 @@ def corrected(
         (m2 * first + (a11 * a33 - a13 * a31) * second + (a13 * a21 - a11 * a23) * third) / whole,
         (m3 * first + (a12 * a31 - a11 * a32) * second + (a11 * a22 - a12 * a21) * third) / whole,
     )
+
+
+def held(
+    weight: float, y11: float, y12: float, y13: float, y21: float, y22: float, y23: float, y31: float,
+    y32: float, y33: float, s1: float, s2: float, s3: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Reactions r at the three stages of a spring that ties modes together: `r = weight (s - y r)`.
+
+    Args:
+        weight: of the spring
+        y11 .. y33: how far its end yields to its reactions
+        s1 .. s3: how far it would move without it
+
+    >>> held(1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 4.0, 6.0)
+    (1.0, 2.0, 3.0)
+    """
+    return solved(
+        1.0 + weight * y11, weight * y12, weight * y13, weight * y21, 1.0 + weight * y22, weight * y23,
+        weight * y31, weight * y32, 1.0 + weight * y33, weight * s1, weight * s2, weight * s3,
+    )  # fmt: skip
 
 
 def stage(

@@ -201,7 +201,10 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
         else "The belt stays straight in this run."
     )
     if belt.moving:
-        shape += " In motion it has other shapes of the same largest deflection, to either side."
+        shape += (
+            " In motion it has other shapes of the same largest deflection, to either side; how guide and"
+            " head hold its ends is not drawn."
+        )
     does = f", which {'buckles' if belt.slope else 'stays straight'} in this run."
     does = "." if live or belt.moving else does
     return sketch.figure(

@@ -1,0 +1,108 @@
+"""Forces of the end shapes of the belt on its modes, by inertia and by the push on them; see `belt_ends`."""
+
+from .belt_ends import moment_forces, turned_by
+from .belt_modes import dot, summed
+
+# integrals of the square of the slope of psi and of its product with that of the other end, with 1, x and x^2
+SQUARE = 8.8675894457757e-4
+CROSS = 1.9587894996076e-4
+SQUARE_ALONG = 7.6948373537988e-4
+SQUARE_TWICE = 7.0247428329297e-4
+CROSS_ALONG = 9.793947498038e-5
+CROSS_TWICE = 8.088007123494e-5
+
+
+def end_forces(
+    drifting: float, pushed: float, thrown: float
+) -> tuple[float, float, float, float, float, float]:
+    """Forces of the end shape f on the modes.
+
+    `drifting int x sin(m pi x) f' dx + m pi int (pushed x + thrown x^2) cos(m pi x) f' dx`. Neither its mass
+    nor its bending nor a constant push couples it to the modes.
+
+    >>> round(1e3 * end_forces(0.0, 0.0, 1.0)[5], 12)
+    64.346861254998
+    """
+    return (
+        -4.7089567642551875e-4 * drifting - 3.7459780768771716e-4 * pushed - 9.6859380879856009e-4 * thrown,
+        9.8414417326917609e-4 * drifting + 1.3724543680458386e-3 * pushed + 2.2062984750290385e-3 * thrown,
+        -1.5988989078060496e-3 * drifting - 1.5082121747237921e-3 * pushed - 4.1698697220745896e-3 * thrown,
+        2.4262042855303312e-3 * drifting + 5.3277178537743802e-3 * pushed + 8.0022473175899444e-3 * thrown,
+        -3.7496322717787359e-3 * drifting - 5.1008168187945264e-3 * pushed - 1.7878343284047494e-2 * thrown,
+        6.7764158189493683e-3 * drifting + 5.2530030899903327e-2 * pushed + 6.4346861254997988e-2 * thrown,
+    )
+
+
+def head_forces(
+    drifting: float, pushed: float, thrown: float
+) -> tuple[float, float, float, float, float, float]:
+    """As `end_forces`, of the end shape at the head.
+
+    >>> round(1e3 * head_forces(0.0, 0.0, 1.0)[5], 12)
+    40.71320054481
+    """
+    return (
+        -0.000104905913126 * drifting + 0.0003745978076877 * pushed - 0.0002193981934231 * thrown,
+        0.0002252290338837 * drifting + 0.001372454368046 * pushed + 0.0005386102610626 * thrown,
+        -0.0003847868683333 * drifting + 0.001508212174724 * pushed - 0.001153445372627 * thrown,
+        0.0006357420843851 * drifting + 0.005327717853774 * pushed + 0.002653188389959 * thrown,
+        -0.001138755142245 * drifting + 0.005100816818795 * pushed - 0.007676709646458 * thrown,
+        0.002760765088614 * drifting + 0.0525300308999 * pushed + 0.04071320054481 * thrown,
+    )
+
+
+def end_coupling(
+    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
+    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
+    velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float, clamped: int,
+    e: float, h: float, e_by_length: float, h_by_length: float, d: float, k: float, d_rate: float,
+    k_rate: float,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """Forces on the modes by the inertia of the end shapes on a belt that moves through its guide.
+
+    Both ways: the end shapes drive the modes, and clamped ends hold them against what the modes do to them.
+
+    Args:
+        q1 .. velocity, clamped, e .. h_by_length: as for `end_motion`
+        acceleration: A [m/s2]
+        belt_mass, damping: rho [kg/m] and c [N s/m2]
+        thrown: `rho V^2 / L` [kg/s2]
+        d .. k_rate: of `end_motion`
+    """
+    twice = 2.0 * belt_mass * velocity
+    pushed = belt_mass * acceleration
+    dragged = pushed + damping * velocity
+    guide = e + d
+    f1, f2, f3, f4, f5, f6 = end_forces(
+        twice * velocity * e_by_length + dragged * guide + twice * d_rate, pushed * guide, thrown * guide
+    )
+    if clamped == 0:
+        return f1, f2, f3, f4, f5, f6
+    head = h + k
+    g1, g2, g3, g4, g5, g6 = head_forces(
+        twice * velocity * h_by_length + dragged * head + twice * k_rate, pushed * head, thrown * head
+    )
+    f1, f2, f3, f4, f5, f6 = summed(1.0, g1, g2, g3, g4, g5, g6, f1, f2, f3, f4, f5, f6)
+    r1, r2, r3, r4, r5, r6 = end_forces(-dragged, pushed, thrown)
+    s1, s2, s3, s4, s5, s6 = end_forces(-twice, 0.0, 0.0)
+    at_guide = dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6)
+    at_guide = at_guide + dot(s1, s2, s3, s4, s5, s6, v1, v2, v3, v4, v5, v6)
+    r1, r2, r3, r4, r5, r6 = head_forces(-dragged, pushed, thrown)
+    s1, s2, s3, s4, s5, s6 = head_forces(-twice, 0.0, 0.0)
+    at_head = dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6)
+    at_head = at_head + dot(s1, s2, s3, s4, s5, s6, v1, v2, v3, v4, v5, v6)
+    across = CROSS_ALONG * pushed + CROSS_TWICE * thrown
+    at_guide = at_guide + (SQUARE_ALONG * pushed + SQUARE_TWICE * thrown) * guide + across * head
+    at_guide, at_head = turned_by(clamped, at_guide, at_head + across * guide)
+    m1, m2, m3, m4, m5, m6 = moment_forces(at_guide, at_head)
+    return summed(-1.0, m1, m2, m3, m4, m5, m6, f1, f2, f3, f4, f5, f6)
+
+
+def end_pull(length: float, clamped: int, guide: float, head: float) -> tuple[float, float]:
+    """Moments at guide and head by which the compression acts on the modes through the end shapes, over it.
+
+    By the shortening of the end shapes, `[SQUARE (guide^2 + head^2) / 2 + CROSS guide head] / L`, by their
+    amplitudes; see `moment_forces`. In the lag of the head, of which it is 1e-3, it is neglected.
+    """
+    by_guide, by_head = turned_by(clamped, SQUARE * guide + CROSS * head, SQUARE * head + CROSS * guide)
+    return -by_guide / length, -by_head / length
