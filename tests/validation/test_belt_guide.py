@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from loomfmu.validation.belt_guide import ALLOWED, CLAMPED, PLACES, deflection, length_factor
+from loomfmu.validation.belt_guide import (
+    ALLOWED,
+    CLAMPED,
+    PLACES,
+    deflection,
+    length_factor,
+    length_factor_in_motion,
+)
 
 
 @pytest.mark.parametrize("turn", [3.2, 3.8, 4.3])
@@ -37,3 +44,9 @@ def test_the_ends_of_the_table():
 def test_it_grows_with_the_clearance():
     found = [length_factor(1e-5 * n, 0.05, 0.414) for n in range(100)]
     assert found == sorted(found)
+
+
+@pytest.mark.parametrize("case", [(0.3e-3, 0.05, 0.414), (0.5e-3, 0.1, 0.665)])
+def test_a_belt_in_motion_has_the_factor_of_statics_under_a_slow_load(case):
+    # 2 mm of 414 mm: slopes of 1 % change loads by 1e-4, and the factor by half of it
+    assert length_factor_in_motion(*case) == pytest.approx(length_factor(*case), rel=1e-4)

@@ -34,6 +34,7 @@ def chapter() -> Chapter:
             over_speed(),
             *belt_motion.sections(),
             belt_guide.section(),
+            belt_guide.in_motion(),
             loads.weft(),
             shed(),
             limits(),
