@@ -17,7 +17,7 @@ A_RUN = 1801  # keyframes over a run without a shaft
 FINEST = 4  # keyframes for each usual one, at most
 MOST = 500  # revolutions that are drawn
 SAMPLES = 100_000  # of a signal in memory; of a longer run, the first 30 revolutions or so are drawn
-BUDGET = 60_000  # numbers in all: about 200 kB
+BUDGET = 120_000  # numbers in all: about 400 kB
 LARGEST = 1e9  # steps, so that differences fit: 10 km in steps of 0.01 mm
 EQUAL = 2  # steps by which two frames may differ and still be one
 
