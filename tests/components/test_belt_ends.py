@@ -38,7 +38,11 @@ ENDS = [
     ({"head_end": GUIDED}, 0.25 / 0.64, "head", CLAMPED, 1.4e-5, (2e-5, 2e-4, 8e-4)),
     ({**NO_CLEARANCE, "head_end": GUIDED}, 0.25, "guide, head", 2.0 * pi, 1.5e-4, (1.5e-4, 4e-4, 3e-3)),
 ]
-EVERY_END = [{"guide_end": PLAY}, {"head_end": GUIDED}, {"guide_end": PLAY, "head_end": GUIDED}]
+EVERY_END = [
+    {"guide_end": PLAY},
+    {"head_end": GUIDED},
+    {"guide_end": PLAY, "head_end": GUIDED, "guide_offset": 0.15e-3},
+]
 
 
 def squared_frequencies(load, **given):
@@ -321,6 +325,7 @@ def against_finite_elements(belt_class, bow_of, elements, **given):
     reference = FiniteElements(
         loom.motion, curvature, stiffness=belt.stiffness, elements=elements, guided=belt.head_end == GUIDED,
         clearance=belt.guide_clearance if belt.guide_end == PLAY else None, guide=belt.guide_length,
+        offset=belt.guide_offset,
     )  # fmt: skip
     rtol = 1e-6 if elements < 10 else 1e-7
     expected = reference.run(
@@ -343,6 +348,9 @@ LITTLE_PLAY = {"guide_end": PLAY, "guide_clearance": 0.1e-3}
         (BELT, LITTLE_PLAY, 6, 3e-3, 1e-3),
         (BELT, {"head_end": GUIDED}, 6, 1.2e-3, 1e-3),
         (SPAN, {"guide_end": PLAY, "head_end": GUIDED}, 6, 2.5e-3, 1.5e-3),
+        (BELT, {"guide_offset": 0.15e-3}, 6, 1.2e-3, 1e-3),
+        pytest.param(BELT, {"guide_offset": -0.15e-3}, 10, 4e-4, 2e-4, marks=pytest.mark.slow),
+        pytest.param(SPAN, {"guide_end": PLAY, "guide_offset": 0.15e-3}, 10, 7e-3, 7e-3, marks=pytest.mark.slow),
         pytest.param(BELT, LITTLE_PLAY, 10, 2e-3, 1e-3, marks=pytest.mark.slow),
         pytest.param(BELT, {"head_end": GUIDED}, 10, 4e-4, 2e-4, marks=pytest.mark.slow),
         pytest.param(SPAN, {"head_end": GUIDED}, 10, 6e-4, 2e-4, marks=pytest.mark.slow),

@@ -149,7 +149,7 @@ def test_none_at_all_are_taken_by_one_without_inputs(native):
 @pytest.mark.parametrize(
     ("derivatives", "reason"),
     [
-        ({("travel", 1): 1.0}, "value reference 25, travel, is not an input"),
+        ({("travel", 1): 1.0}, "value reference 26, travel, is not an input"),
         ({("follow_shaft", 1): 1.0}, "value reference 3 is not a variable of type Real"),
         ({("shaft_angle", 0): 1.0}, "the derivative must be finite and of order 1 to 3"),
         ({("shaft_angle", 4): 1.0}, "the derivative must be finite and of order 1 to 3"),

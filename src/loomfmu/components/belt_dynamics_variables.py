@@ -59,6 +59,11 @@ class BeltDynamicsVariables(Component):
         "m", 0.05, "Length over which the guide holds the belt, used if guide_end is play (assumed: none"
         " published)", display="mm", minimum=1e-3, maximum=10.0,
     )  # fmt: skip
+    guide_offset: float = parameter(
+        "m", 0.0, "Offset of the belt in the exit of its guide from the head's line, which turns as the belt"
+        " grows (assumed; up to half the clearance to either side)",
+        display="mm", minimum=-0.01, maximum=0.01, nominal=1e-4,
+    )  # fmt: skip
     head_end: int = parameter(
         "1", 1, "Head: free to turn, or guided, so that it cannot turn", choices=("pinned", "guided")
     )

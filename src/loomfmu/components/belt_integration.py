@@ -255,8 +255,8 @@ class BeltIntegration(BeltPath):
             *self.trial_rate, a1, a2, a3, a4, a5, a6, length,
             self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(),
-            self.compression,
+            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
+            self.turn_by_length(), self.compression,
         )  # fmt: skip
         self.step_push = self.step_push + time * push
         self.step_guide = self.step_guide + time * guide
@@ -271,6 +271,7 @@ class BeltIntegration(BeltPath):
             *self.trial_rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length,
             self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(), 0.0,
+            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
+            self.turn_by_length(), 0.0,
         )  # fmt: skip
         return energy

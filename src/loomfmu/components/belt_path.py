@@ -76,7 +76,8 @@ class BeltPath(BeltGuide):
             *self.trial,  # type: ignore[arg-type]
             *self.trial_rate, length, velocity, acceleration, tension, self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.may_clamp(), self.clamped(), self.turn(length), self.turn_by_length(),
+            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
+            self.turn_by_length(),
         )  # fmt: skip
         self.compression = load
         return self.moving(a1, a2, a3, a4, a5, a6)

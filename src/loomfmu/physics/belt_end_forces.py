@@ -1,5 +1,7 @@
 """Forces of the end shapes of the belt on its modes, by inertia and by the push on them; see `belt_ends`."""
 
+from math import pi
+
 from .belt_ends import moment_forces, turned_by
 from .belt_modes import dot, summed
 
@@ -51,22 +53,46 @@ def head_forces(
     )
 
 
+def tilt_forces(
+    offset: float, pushed: float, thrown: float, dragged: float
+) -> tuple[float, float, float, float, float, float]:
+    """Forces on the modes by the line between guide and head, which turns as the belt grows.
+
+    Where the guide's exit is off the head's line by y, a point of the belt is at `u + y X / L`. So
+
+        rho y / (m pi) [2 (-1)^m V^2 / L - A] - c y V (-1)^m / (m pi)
+
+    Args:
+        offset: y [m]
+        pushed, thrown, dragged: rho A, rho V^2 / L and c V [N/m, kg/s2, N/m]
+
+    >>> [round(pi * each, 12) for each in tilt_forces(1.0, 1.0, 1.0, 1.0)[:2]]
+    [-2.0, 0.0]
+    """
+    share = offset / pi
+    even = share * (2.0 * thrown - dragged - pushed)
+    odd = share * (dragged - 2.0 * thrown - pushed)
+    return odd, even / 2.0, odd / 3.0, even / 4.0, odd / 5.0, even / 6.0
+
+
 def end_coupling(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float, clamped: int,
-    e: float, h: float, e_by_length: float, h_by_length: float, d: float, k: float, d_rate: float,
-    k_rate: float,
+    velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float, offset: float,
+    clamped: int, e: float, h: float, e_by_length: float, h_by_length: float, d: float, k: float,
+    d_rate: float, k_rate: float,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Forces on the modes by the inertia of the end shapes on a belt that moves through its guide.
 
     Both ways: the end shapes drive the modes, and clamped ends hold them against what the modes do to them.
+    With them are those of the line between guide and head, see `tilt_forces`.
 
     Args:
         q1 .. velocity, clamped, e .. h_by_length: as for `end_motion`
         acceleration: A [m/s2]
         belt_mass, damping: rho [kg/m] and c [N s/m2]
         thrown: `rho V^2 / L` [kg/s2]
+        offset: of the guide's exit from the head's line [m]
         d .. k_rate: of `end_motion`
     """
     twice = 2.0 * belt_mass * velocity
@@ -76,6 +102,9 @@ def end_coupling(
     f1, f2, f3, f4, f5, f6 = end_forces(
         twice * velocity * e_by_length + dragged * guide + twice * d_rate, pushed * guide, thrown * guide
     )
+    if offset != 0.0:
+        t1, t2, t3, t4, t5, t6 = tilt_forces(offset, pushed, thrown, damping * velocity)
+        f1, f2, f3, f4, f5, f6 = summed(1.0, t1, t2, t3, t4, t5, t6, f1, f2, f3, f4, f5, f6)
     if clamped == 0:
         return f1, f2, f3, f4, f5, f6
     head = h + k

@@ -33,7 +33,7 @@ def accelerations(
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, tension: float, head_mass: float, belt_mass: float,
     damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float,
-    may_clamp: bool, clamped: int, turn: float, turn_by_length: float,
+    offset: float, may_clamp: bool, clamped: int, turn: float, turn_by_length: float,
 ) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
     """Second rates of the modes, and the compression P0 of the belt at the head.
 
@@ -52,6 +52,7 @@ def accelerations(
         damping: c [N s/m2]
         stiffness: B [N m2]
         bow_of, bow, bow_length: see `bow_at`
+        offset: see `tilt_forces` [m]
         may_clamp: see `end_amplitudes`
         clamped, turn, turn_by_length: see `end_motion`
 
@@ -79,7 +80,7 @@ def accelerations(
     )
     e1, e2, e3, e4, e5, e6, pull_guide, pull_head = end_actions(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        thrown, stiffness, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
+        thrown, stiffness, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
     )  # fmt: skip
     u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1 + b1, e1) / half
     u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2 + b2, e2) / half
@@ -102,7 +103,7 @@ def end_actions(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
-    stiffness: float, clamped: int, turn: float, turn_by_length: float,
+    stiffness: float, offset: float, clamped: int, turn: float, turn_by_length: float,
     e: float, h: float, e_by_length: float, h_by_length: float,
 ) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
     """What the end shapes do to the modes.
@@ -120,7 +121,7 @@ def end_actions(
     )  # fmt: skip
     c1, c2, c3, c4, c5, c6 = end_coupling(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
-        clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
+        offset, clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
     )  # fmt: skip
     pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
     moment = 6.0 * stiffness / (length * length * length)
@@ -135,7 +136,7 @@ def energy_and_powers(
     a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
     length: float, velocity: float, acceleration: float, tension: float, head_mass: float, belt_mass: float,
     damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float,
-    may_clamp: bool, clamped: int, turn: float, turn_by_length: float, load: float,
+    offset: float, may_clamp: bool, clamped: int, turn: float, turn_by_length: float, load: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Energy of the motion across the belt, and the powers that change it.
 
@@ -176,7 +177,7 @@ def energy_and_powers(
     )
     end_energy, end_power = end_powers(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        belt_mass * velocity * share, stiffness, clamped, turn, turn_by_length, e, h, e_by_length,
+        belt_mass * velocity * share, stiffness, offset, clamped, turn, turn_by_length, e, h, e_by_length,
         h_by_length, load,
     )  # fmt: skip
     energy = belt_mass * moving + 0.5 * head_mass * rate * rate + stiffness * (bent - bowed) + end_energy
@@ -192,7 +193,7 @@ def end_powers(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
-    stiffness: float, clamped: int, turn: float, turn_by_length: float,
+    stiffness: float, offset: float, clamped: int, turn: float, turn_by_length: float,
     e: float, h: float, e_by_length: float, h_by_length: float, load: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Share of the end shapes in energy and powers.
@@ -210,7 +211,7 @@ def end_powers(
     )  # fmt: skip
     c1, c2, c3, c4, c5, c6 = end_coupling(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
-        clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
+        offset, clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
     )  # fmt: skip
     guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
     energy, growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
