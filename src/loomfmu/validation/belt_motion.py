@@ -149,7 +149,8 @@ def by_ends() -> Section:
         " 25, 50 or 100 mm, which is not published; the belt turns freely in it up to a slope, then not at"
         " all; its stiffness is EI, and no length factor goes in. Head guided: it cannot turn; the guide is"
         " the calibrated one. "
-        "Guide off: the belt lies that far from the head's line in its exit. Deflections count from the line between guide and head.",
+        "Guide off: the belt lies that far from the head's line in its exit. Deflections count from the line"
+        " between guide and head.",
         remarks=(
             "The finding stands for each way in which the ends are held: with half as much speed again, past"
             f" the static limit, the deflection changes by a factor of {_range()}; the belt does not run"
