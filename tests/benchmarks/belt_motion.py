@@ -3,6 +3,7 @@
 import math
 import shutil
 import tempfile
+from itertools import product
 from pathlib import Path
 from statistics import median
 from time import thread_time_ns
@@ -19,12 +20,19 @@ NAME = "belt_motion"
 STEPS = 1440  # in a revolution
 SPEEDS = (400.0, 600.0, 682.0)  # rev/min
 BOWS = {"its own": 1, "of the span": 2}
-COLUMNS = ("speed [rev/min]", "bow", "step [us]", "step outside the guide [us]", "longest [us]", "repeats")
+ENDS: dict[str, dict[str, int]] = {
+    "calibrated guide": {},
+    "guide with play": {"guide_end": 2},
+    "guided head": {"head_end": 2},
+    "both": {"guide_end": 2, "head_end": 2},
+}
+WORDS = ("bow", "ends")
+COLUMNS = ("speed [rev/min]", *WORDS, "step [us]", "step outside the guide [us]", "longest [us]", "repeats")
 SIZES = {"full": 9, "quick": 3, "tiny": 1}  # repeats
 
 
 def measure(effort: str, notes: Notes) -> list[Table]:
-    """Each speed and bow; the median of each step over all repeats."""
+    """Each speed, bow and pair of ends; the median of each step over all repeats."""
     rows = Table(NAME, COLUMNS)
     if shutil.which("gcc") is None:
         notes("a step in C", "gcc is not installed")
@@ -33,22 +41,23 @@ def measure(effort: str, notes: Notes) -> list[Table]:
     with tempfile.TemporaryDirectory() as folder:
         in_c = compiled(BeltDynamics, Path(folder))
         for speed in SPEEDS[: 1 if effort == "tiny" else None]:
-            for bow, number in BOWS.items():
-                turns = [_turn(in_c, speed, number) for _ in range(SIZES[effort])]
+            for (bow, number), (ends, given) in product(BOWS.items(), ENDS.items()):
+                turns = [_turn(in_c, speed, bow_of=number, **given) for _ in range(SIZES[effort])]
                 steps = [(median(each[0] for each in step), step[0][1]) for step in zip(*turns, strict=True)]
                 outside = [time for time, out in steps if out]
                 everywhere = sum(time for time, _out in steps) / len(steps)
                 longest = max(time for time, _out in steps)
-                rows.add(speed, bow, everywhere, sum(outside) / len(outside), longest, len(turns))
+                rows.add(speed, bow, ends, everywhere, sum(outside) / len(outside), longest, len(turns))
     return [rows]
 
 
-def _turn(in_c: Any, rpm: float, bow_of: int) -> list[tuple[float, bool]]:
+def _turn(in_c: Any, rpm: float, **given: int) -> list[tuple[float, bool]]:
     """Microseconds of each step of a revolution, and whether the belt was outside its guide."""
     weft = WeftInsertion(speed=rpm * math.pi / 30.0)
     weft.initialize(0.0)
     belt = in_c()
-    belt.inputs_at_step_end, belt.bow_of = True, bow_of
+    for name, value in {"inputs_at_step_end": True, **given}.items():
+        setattr(belt, name, value)
     belt.initialize(0.0)
     size = 2.0 * math.pi / STEPS / weft.speed
     found = []
@@ -68,11 +77,11 @@ def _turn(in_c: Any, rpm: float, bow_of: int) -> list[tuple[float, bool]]:
 
 
 def section(find: Find) -> str:
-    """A row for each speed and bow."""
+    """A row for each speed, bow and pair of ends."""
     rows = find(NAME)
     if not rows:
         return "*Not run.*"
-    lines = [[shown(row[key]) if key != "bow" else row[key] for key in COLUMNS] for row in rows]
+    lines = [[row[key] if key in WORDS else shown(row[key]) for key in COLUMNS] for row in rows]
     return parts(
         f"`BeltDynamics` behind `WeftInsertion`, WL680-3600, {STEPS} steps in a revolution: the translated"
         " component in C, processor time of each step with the call from Python (about 1 us), the median of"
