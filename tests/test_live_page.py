@@ -156,7 +156,7 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
     assert [verdict.word for verdict in result.claims] == ["undecided", "holds", "holds"]
     found = page.evaluate("loomfmu.live.verdicts")
     assert [each["holds"] for each in found] == [None, True, True]
-    assert "belt_motion.deflection_known is no" in found[0]["note"]
+    assert "belt_motion.deflection_known is false" in found[0]["note"]
     assert "free lengths above 5 times bow_length do not count" in found[2]["note"]
 
 

@@ -1,7 +1,9 @@
 """The arguments of the command `loomfmu`, and its help."""
 
 import argparse
+import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -36,6 +38,21 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         say(f"loomfmu {__version__}")
         parser.exit()
+
+
+def with_negative(arguments: Sequence[str]) -> list[str]:
+    """Arguments in which negative values belong to their options, which argparse takes for options.
+
+    >>> with_negative(["limit", "--from", "-0.15mm", "--live"])
+    ['limit', '--from=-0.15mm', '--live']
+    """
+    found: list[str] = []
+    for each in arguments:
+        if found and re.fullmatch(r"--[a-z-]+", found[-1]) and re.match(r"-\.?\d", each):
+            found[-1] += f"={each}"
+        else:
+            found.append(each)
+    return found
 
 
 def parser() -> argparse.ArgumentParser:

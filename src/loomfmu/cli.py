@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from .arguments import parser
+from .arguments import parser, with_negative
 from .commands import package, scenes, studies, traces
 from .commands.status import status_of
 
@@ -43,7 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
     def command() -> int:
-        parser().parse_args(arguments, options)
+        given = sys.argv[1:] if arguments is None else arguments
+        parser().parse_args(with_negative(given), options)
         return COMMANDS[options.command](options)
 
     return status_of(command, options)

@@ -31,8 +31,9 @@ class Variable:
     where that input is wired to the same instance; a parameter takes its value only where that input is
     wired;
     `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `when` and `unless`
-    name the yes-or-no parameter with which, or without which alone, it has an effect; `pole` says that an
-    output grows without bound at the edges of its component's windows; `element` is its place in an array,
+    name the yes-or-no parameter with which, or without which alone, it has an effect, or an enumeration that
+    is off at the first of its choices; `pole` says that an output grows without bound at the edges of its
+    component's windows; `element` is its place in an array,
     such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
     before the step; `valid_if` names the yes-or-no output that says when an output can be relied on.
     """

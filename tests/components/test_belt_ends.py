@@ -172,12 +172,18 @@ def test_below_the_load_of_pinned_ends_a_straight_belt_stays_straight_within_its
 
 def test_a_belt_that_never_leans_on_its_guide_is_a_pinned_one(belt_in_c):
     pinned = Loom(belt_in_c, 682.0, steps=360, start=96.0, bow_of=SPAN, length_factor=1.0)
-    loose = Loom(belt_in_c, 682.0, steps=360, start=96.0, bow_of=SPAN, guide_end=PLAY, guide_clearance=0.05)
+    loose = Loom(belt_in_c, 682.0, steps=360, start=96.0, bow_of=SPAN, guide_end=PLAY, guide_clearance=0.04)
     for loom in (pinned, loose):
         loom.turn_to(110.0)
     assert loose.belt.guide_contact == 0
     for name in ("mode", "mode_rate", "deflection", "largest_deflection", "energy", "guide_work"):
         assert getattr(pinned.belt, name) == getattr(loose.belt, name), name
+
+
+def test_a_guide_shorter_than_its_clearance_is_refused():
+    belt = BeltDynamics(guide_end=PLAY, guide_clearance=0.05, guide_length=0.05)
+    assert "must be less than guide_length" in belt.problems[belt.initialize(0.0) - 1].text
+    assert BeltDynamics(guide_clearance=0.05, guide_length=0.05).initialize(0.0) == 0
 
 
 def test_little_clearance_is_close_to_none(belt_in_c):

@@ -70,7 +70,7 @@ def _unknown(trace: "Trace") -> list[str]:
             vouching.setdefault(flag, []).append(printed.safe(name))
     no = {flag: trace.rows - int(trace.read(flag).sum()) for flag in vouching}
     return [
-        f"{printed.safe(flag)} is no at {no[flag]} of {trace.rows} samples; not known there: "
+        f"{printed.safe(flag)} is false at {no[flag]} of {trace.rows} samples; not known there: "
         + ", ".join(names)
         for flag, names in vouching.items()
         if no[flag]

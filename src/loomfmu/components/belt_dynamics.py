@@ -37,6 +37,8 @@ class BeltDynamics(BeltRest):
 
     def initialize(self, time: float) -> int:
         """Let the belt rest in equilibrium and forget all extremes and work."""
+        if self.has_play() and self.guide_clearance >= self.guide_length:
+            return 3
         self.outside = False
         self.held = False
         self.folded = False

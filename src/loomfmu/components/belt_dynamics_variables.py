@@ -28,6 +28,7 @@ class BeltDynamicsVariables(Component):
             " its guide, nothing counts for the largest deflections; take more steps",
             warning=True,
         ),
+        Problem("guide_clearance = {guide_clearance} must be less than guide_length = {guide_length}"),
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (HEAD.of("travel", "velocity", "acceleration"),)
 
@@ -53,11 +54,11 @@ class BeltDynamicsVariables(Component):
     )  # fmt: skip
     guide_clearance: float = parameter(
         "m", 0.3e-3, "Clearance of the belt in its guide, used if guide_end is play", display="mm",
-        minimum=0.0, maximum=0.05, nominal=1e-3, source="belt_#.guide_clearance",
+        minimum=0.0, maximum=0.05, nominal=1e-3, source="belt_#.guide_clearance", when="guide_end",
     )  # fmt: skip
     guide_length: float = parameter(
         "m", 0.05, "Length over which the guide holds the belt, used if guide_end is play (assumed: none"
-        " published)", display="mm", minimum=1e-3, maximum=10.0,
+        " published)", display="mm", minimum=1e-3, maximum=10.0, when="guide_end",
     )  # fmt: skip
     guide_offset: float = parameter(
         "m", 0.0, "Offset of the belt in the exit of its guide from the head's line, which turns as the belt"
@@ -121,7 +122,10 @@ class BeltDynamicsVariables(Component):
         "m", "Length of the belt between guide and head; negative while inside the guide", display="mm"
     )
     compression: float = output(
-        "N", "Compression of the belt at the head, relieved by the head's lag", nominal=100.0
+        "N",
+        "Compression of the belt at the head, relieved by the head's lag; without meaning in the last degrees"
+        " before the belt is back in its guide",
+        nominal=100.0,
     )
     deflection: float = output(
         "m", "Largest deflection along the belt", display="mm", nominal=5e-3, valid_if=KNOWN
@@ -176,7 +180,8 @@ class BeltDynamicsVariables(Component):
     lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
     energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1)
     energy_residual: float = output(
-        "J", "Energy that all work so far does not explain; a belt that is held adds none", nominal=1e-9
+        "J", "Energy that all work so far does not explain; a belt that is held adds none", nominal=1e-9,
+        valid_if=FOLLOWED,
     )  # fmt: skip
     folded: bool = output(
         "1",

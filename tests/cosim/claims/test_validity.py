@@ -42,14 +42,14 @@ def test_what_is_known_keeps_the_bound_but_the_rest_is_open(trace: Trace) -> Non
     assert (verdict.holds, verdict.decided, verdict.word) == (False, False, "undecided")
     assert math.isnan(verdict.worst) and math.isnan(verdict.time) and math.isnan(verdict.distance)
     assert "numerical error" not in str(verdict)
-    assert "not known from 0.3 s, 10.8 deg, rev. 1 on: a.sure is no (it is in sight)" in verdict.note
+    assert "not known from 0.3 s, 10.8 deg, rev. 1 on: a.sure is false (true: it is in sight)" in verdict.note
 
 
 def test_what_is_known_decides_a_claim_that_it_breaks(trace: Trace) -> None:
     verdict = judge(trace, kind="below", signal="a.x", bound="0.9 m")
     assert (verdict.holds, verdict.decided) == (False, True)
     assert (verdict.worst, verdict.time) == (1.0, 1.0)  # not the 5 m that nobody knows
-    assert "a.sure is no" in verdict.note
+    assert "a.sure is false" in verdict.note
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_a_window_in_which_it_is_known_is_judged(trace: Trace, window: list[str]
 
 def test_the_summary_says_what_is_not_known(trace: Trace, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", str(trace.path)]) == 0
-    assert "a.sure is no at 3 of 11 samples; not known there: a.x" in capsys.readouterr().out
+    assert "a.sure is false at 3 of 11 samples; not known there: a.x" in capsys.readouterr().out
 
 
 def test_a_signal_that_is_known_at_all_times_is_judged_as_any_other(tmp_path: Path) -> None:

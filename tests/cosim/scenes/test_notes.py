@@ -62,6 +62,11 @@ def test_mechanisms_that_load_the_shaft_twice_or_not_at_all_are_named(wires, not
             '[belt]\nprescribe_length_factor = true\nguide_clearance = "0.3 mm"\n',
             "belt.guide_clearance has no effect: set belt.prescribe_length_factor = false",
         ),
+        (
+            'belt_motion = true\n[belt_motion]\nguide_length = "20 mm"\n',
+            'belt_motion.guide_length has no effect: set belt_motion.guide_end = "play"',
+        ),
+        ('belt_motion = true\n[belt_motion]\nguide_length = "20 mm"\nguide_end = "play"\n', ""),
     ],
 )
 def test_a_value_without_effect_is_named(text, note):

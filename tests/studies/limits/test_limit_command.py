@@ -64,6 +64,13 @@ def test_what_would_have_no_effect_is_refused(
     assert reason in message and message.count("\n") == 1
 
 
+def test_ranges_may_begin_below_zero(capsys: pytest.CaptureFixture[str]) -> None:
+    """A value with a minus was taken for an option."""
+    options = ["--vary", "shaft.start_angle", "--from", "-10deg", "--to", "-.5deg", *QUICK]
+    assert main(["limit", DEMO, *options]) in (0, 1)
+    assert "from -10 to -0.5 deg" in capsys.readouterr().out
+
+
 def test_the_help_states_the_defaults(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["limit", "--help"])

@@ -56,4 +56,4 @@ def unknown_note(trace: Signals, signal: str, first: Stretch) -> str:
         degrees, revolution = place(turning, first.start)
         at += f", {units.show(degrees, 'deg')}, rev. {revolution}"
     about = trace.description(str(flag))
-    return f"not known from {at} on: {flag} is no ({about[:1].lower()}{about[1:]})"
+    return f"not known from {at} on: {flag} is false (true: {about[:1].lower()}{about[1:]})"

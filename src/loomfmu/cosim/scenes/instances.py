@@ -137,27 +137,39 @@ class Instance:
         switch, _wanted = self.switched_off(name, fed)
         return None if switch else self._start(name, fed)
 
-    def switched_off(self, name: str, fed: Collection[str] = ()) -> tuple[str, bool]:
+    def switched_off(self, name: str, fed: Collection[str] = ()) -> tuple[str, str]:
         """The parameter because of whose value another one has no effect, and the value that it needs; no
         name where there is none."""
         declared = self._declared().get(name)
-        if declared and declared.when and not self._start(declared.when, fed, True):
-            return declared.when, True
-        if declared and declared.unless and self._start(declared.unless, fed, False):
-            return declared.unless, False
-        return "", False
+        if declared and declared.when and not self._is_on(declared.when, fed, True):
+            return declared.when, self._switching(declared.when, True)
+        if declared and declared.unless and self._is_on(declared.unless, fed, False):
+            return declared.unless, self._switching(declared.unless, False)
+        return "", ""
+
+    def _is_on(self, switch: str, fed: Collection[str], otherwise: bool) -> bool:
+        """Whether a switch is on: true, or not the first of its choices; `otherwise` if it is not known."""
+        value = self._start(switch, fed)
+        if value is None:
+            return otherwise
+        return value != 1 if self._declared()[switch].choices else bool(value)
+
+    def _switching(self, switch: str, on: bool) -> str:
+        """The value that turns a switch on or off, as a user writes it."""
+        choices = self._declared()[switch].choices
+        return f'"{choices[on]}"' if choices else str(on).lower()
 
     def switched(self) -> list[tuple[str, str]]:
         """The inputs that usually come from another instance and that a parameter switches on, after it."""
         declared = self._declared().values()
         return [(v.when, v.name) for v in declared if v.causality == "input" and v.when and v.source]
 
-    def _start(self, name: str, fed: Collection[str], otherwise: bool | None = None) -> Value | None:
+    def _start(self, name: str, fed: Collection[str]) -> Value | None:
         port = self.fmu.ports.get(name)
         if port is None or not _can_be_set(port) or name in fed:
-            return otherwise
+            return None
         start = self.values.get(name, port.start)
-        return otherwise if start is None else TYPES[port.kind](start)
+        return None if start is None else TYPES[port.kind](start)
 
 
 def altered(original: Copied, **others: Any) -> Copied:

@@ -110,4 +110,4 @@ def _switched_off(
         switch, wanted = instances[owner].switched_off(instances[owner].fmu.name_of(key))
         if switch:
             name = f"{owner}.{switch}"
-            yield name, f"{owner}.{key} has no effect: set {name} = {str(wanted).lower()}"
+            yield name, f"{owner}.{key} has no effect: set {name} = {wanted}"

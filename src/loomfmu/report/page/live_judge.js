@@ -74,7 +74,7 @@ loomfmu.judge = run => {
     return Boolean(flag) && run.signal(flag).some((known, k) => !known
       && stretches.some(each => (time[k - 1] ?? time[0]) < each.end && each.start < (time[k + 1] ?? end)));
   }
-  const gap = signal => unknown(`${signal} is not known: ${run.validity(signal)} is no; ${NOT_HERE}`);
+  const gap = signal => unknown(`${signal} is not known: ${run.validity(signal)} is false; ${NOT_HERE}`);
 
   function extreme(signal, bound, sense, stretches) {
     if (gaps(signal, stretches)) return gap(signal);
