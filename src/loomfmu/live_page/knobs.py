@@ -126,7 +126,7 @@ def _range(
     doubts: list[str] = []
     if not wanted:
         if not start:
-            raise LoomfmuError(f"{where}: {key} is 0, so there is no range around it; {FORM}")
+            raise LoomfmuError(f"{where}: {key} is 0, so there is no range around it; write {key}=LOW..HIGH")
         ends = sorted((start * (1.0 - AROUND), start * (1.0 + AROUND)))
         if port.minimum is not None:
             ends = [max(end, port.minimum) for end in ends]
