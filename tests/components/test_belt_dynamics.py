@@ -385,5 +385,7 @@ def test_the_error_of_the_claim_has_the_share_of_modes_and_integration(tmp_path)
     finer = run(scene, output=tmp_path / "finer.h5", set={"steps_per_revolution": 11520}).claims[1]
     assert 1e-4 * dynamic.bound <= dynamic.error <= 2e-4 * dynamic.bound
     assert abs(dynamic.worst - finer.worst) < dynamic.error
+    play = run(scene, output=tmp_path / "play.h5", set={"belt_motion.guide_end": "play"}).claims[1]
+    assert play.error == pytest.approx(1e-2 * play.worst)  # clamped in its guide, at times
     with pytest.raises(LoomfmuError, match=r"stays within the 2 mm .* is at least 0\.0001 of its bound"):
         run(scene, output=tmp_path / "never.h5", set={"accuracy": 1e-6})

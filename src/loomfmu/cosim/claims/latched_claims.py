@@ -11,6 +11,7 @@ from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim, L
 from .curves import Floats
 
 ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
+CLAMPED_END = 1e-2  # of the deflection: what six modes leave where an end of the belt may be clamped
 NO_RISK = "the belt is never at risk in this run"
 
 
@@ -57,6 +58,11 @@ class BeltDeflection(Claim):
             notes.append("free lengths above 5 times bow_length do not count")
         text = "largest deflection of the belt"
         return self.verdict(trace, text, latch, self.at_most, worst, time, *notes)
+
+    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
+        """The modes leave more where an end of the belt may be clamped."""
+        ends = (trace.parameter(f"{self.belt}.{end}") for end in ("guide_end", "head_end"))
+        return CLAMPED_END * verdict.worst if any(end > 1.0 for end in ends) else 0.0
 
 
 class PeakLoad(Claim):
