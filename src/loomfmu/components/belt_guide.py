@@ -96,18 +96,16 @@ class BeltGuide(BeltDynamicsVariables):
         if self.guide_end != CALIBRATED and fabs(turn) >= self.free_turn(length):
             self.guide_contact = -1 if turn < 0.0 and self.guide_clearance > 0.0 else 1
 
-    def gap(self, length: float, velocity: float, side: int) -> tuple[float, float]:
-        """By how much contact on a side, or its absence, fits the trial place, negative if not; its rate."""
-        turn, rate = self.free_slope(length, velocity)
+    def gap(self, turn: float, rate: float, length: float, velocity: float, side: int) -> tuple[float, float]:
+        """By how much contact on a side, or its absence, fits a `free_slope`, negative if not; its rate."""
         beyond = side * turn - self.free_turn(length)
         growth = side * rate - self.guide_clearance / self.guide_length * velocity
         if self.guide_contact != 0:
             return beyond, growth
         return -beyond, -growth
 
-    def side(self, length: float) -> int:
-        """Side of the guide on which the belt leans, or to which it is turned in its trial place."""
-        turn, _rate = self.free_slope(length, 0.0)
+    def side(self, turn: float) -> int:
+        """Side of the guide on which the belt leans, or to which it is turned by its `free_slope`."""
         if self.guide_contact != 0:
             return self.guide_contact
         return 1 if turn >= 0.0 else -1

@@ -108,11 +108,13 @@ class BeltPath(BeltGuide):
             return
         length = self.length_at(share)
         velocity = self.velocity_at(share)
-        side = self.side(length)
-        gap, growth = self.gap(length, velocity, side)
+        turn, rate = self.free_slope(length, velocity)
+        side = self.side(turn)
+        gap, growth = self.gap(turn, rate, length, velocity, side)
         if gap <= TOUCHING * self.mode_sum and growth < 0.0:
             self.guide_contact = side if self.guide_contact == 0 else 0
-        self.last_slope, self.last_slope_rate = self.free_slope(length, velocity)
+        self.last_slope = turn
+        self.last_slope_rate = rate
 
     def before_switch(self, share: float, taken: float) -> float:
         """Share of an integration step, now in the trial place, after which contact in the guide changes."""
@@ -120,16 +122,14 @@ class BeltPath(BeltGuide):
             return 1.0
         length = self.length_at(share + taken)
         velocity = self.velocity_at(share + taken)
-        side = self.side(length)
-        end, end_rate = self.gap(length, velocity, side)
+        turn, rate = self.free_slope(length, velocity)
+        side = self.side(turn)
+        end, end_rate = self.gap(turn, rate, length, velocity, side)
         if end >= -TOUCHING * self.mode_sum:
             return 1.0
-        length = self.length_at(share)
-        growth = self.guide_clearance / self.guide_length * self.velocity_at(share)
-        start = side * self.last_slope - self.free_turn(length)
-        start_rate = side * self.last_slope_rate - growth
-        if self.guide_contact == 0:
-            start, start_rate = -start, -start_rate
+        start, start_rate = self.gap(
+            self.last_slope, self.last_slope_rate, self.length_at(share), self.velocity_at(share), side
+        )
         low = 0.0
         high = 1.0
         for _ in range(HALVINGS):

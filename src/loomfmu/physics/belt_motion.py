@@ -42,7 +42,7 @@ def accelerations(
         P0 = m (A - S'') + T,   M = rho L / 2
 
     G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
-    `bow_forces`, e and h are of `end_actions`; S is the shortening, by which the head lags behind its drive.
+    `bow_forces`, e and h follow from `end_actions`; S is the shortening, by which the head lags behind its drive.
 
     Args:
         q1 .. v6: modes and their rates [m, m/s]
@@ -78,10 +78,13 @@ def accelerations(
     e, h, e_by_length, h_by_length = end_amplitudes(
         bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
     )
-    e1, e2, e3, e4, e5, e6, pull_guide, pull_head = end_actions(
+    c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head = end_actions(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        thrown, stiffness, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
+        thrown, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
     )  # fmt: skip
+    moment = 6.0 * stiffness / (length * length * length)
+    m1, m2, m3, m4, m5, m6 = moment_forces(moment * d, moment * k)
+    e1, e2, e3, e4, e5, e6 = summed(1.0, m1, m2, m3, m4, m5, m6, c1, c2, c3, c4, c5, c6)
     u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1 + b1, e1) / half
     u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2 + b2, e2) / half
     u3 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y3, x3, w3, z3, v3, f3 + b3, e3) / half
@@ -103,17 +106,17 @@ def end_actions(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
-    stiffness: float, offset: float, clamped: int, turn: float, turn_by_length: float,
+    offset: float, clamped: int, turn: float, turn_by_length: float,
     e: float, h: float, e_by_length: float, h_by_length: float,
-) -> tuple[float, float, float, float, float, float, float, float]:  # fmt: skip
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
     """What the end shapes do to the modes.
 
     Args:
-        q1 .. acceleration, stiffness .. turn_by_length: as for `accelerations`
-        belt_mass, damping, thrown: as for `end_coupling`
+        q1 .. acceleration, offset .. turn_by_length: as for `accelerations`
+        belt_mass, damping, thrown, e .. h_by_length: as for `end_coupling`
 
     Returns:
-        forces on the modes [N], moments of `end_pull` [1]
+        forces of `end_coupling` [N], d and k of `end_motion` [m], moments of `end_pull` [1]
     """
     d, k, d_rate, k_rate = end_motion(
         q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, clamped, turn, turn_by_length, e, h,
@@ -124,10 +127,7 @@ def end_actions(
         offset, clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
     )  # fmt: skip
     pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
-    moment = 6.0 * stiffness / (length * length * length)
-    m1, m2, m3, m4, m5, m6 = moment_forces(moment * d, moment * k)
-    e1, e2, e3, e4, e5, e6 = summed(1.0, m1, m2, m3, m4, m5, m6, c1, c2, c3, c4, c5, c6)
-    return e1, e2, e3, e4, e5, e6, pull_guide, pull_head
+    return c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head
 
 
 def energy_and_powers(
@@ -199,23 +199,19 @@ def end_powers(
     """Share of the end shapes in energy and powers.
 
     Args:
-        q1 .. turn_by_length: as for `end_actions`
+        q1 .. h_by_length: as for `end_actions`
+        stiffness: B [N m2]
         load: compression at the head P0 [N]
 
     Returns:
         bending energy [J], power at the guide [W]
     """
-    d, k, d_rate, k_rate = end_motion(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, clamped, turn, turn_by_length, e, h,
-        e_by_length, h_by_length,
-    )  # fmt: skip
-    c1, c2, c3, c4, c5, c6 = end_coupling(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
-        offset, clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
+    c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head = end_actions(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
+        thrown, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
     )  # fmt: skip
     guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
     energy, growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
-    pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
     guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
     power = dot(v1, v2, v3, v4, v5, v6, c1, c2, c3, c4, c5, c6) + velocity * growth
     return energy, power + load * (pull_guide * guide_rate + pull_head * head_rate)

@@ -62,7 +62,8 @@ class BeltDeflection(Claim):
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
         """The modes leave more where an end of the belt may be clamped."""
         ends = (trace.parameter(f"{self.belt}.{end}") for end in ("guide_end", "head_end"))
-        return CLAMPED_END * verdict.worst if any(end > 1.0 for end in ends) else 0.0
+        share = CLAMPED_END if any(end > 1.0 for end in ends) else 0.0
+        return max(super().unresolved(trace, verdict), share * verdict.worst)
 
 
 class PeakLoad(Claim):
