@@ -42,7 +42,8 @@ def accelerations(
         P0 = m (A - S'') + T,   M = rho L / 2
 
     G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
-    `bow_forces`, e and h follow from `end_actions`; S is the shortening, by which the head lags behind its drive.
+    `bow_forces`, e and h follow from `end_actions`; S is the shortening, by which the head lags behind its
+    drive.
 
     Args:
         q1 .. v6: modes and their rates [m, m/s]

@@ -243,10 +243,8 @@ def _transfer(trace: Trace, transfer: str) -> Iterator[Row]:
 
 def _brake(trace: Trace, yarn: str) -> Iterator[Row]:
     brake, program = f"{yarn}.brake", f"{yarn}.brake_program_"
-    if (
-        brake not in trace
-        or len({trace.parameters[name] for name in trace.parameters if program in name}) < 2
-    ):
+    programmed = {value for name, value in trace.parameters.items() if name.startswith(program)}
+    if brake not in trace or len(programmed) < 2:
         return
     opened = Bar("brake opened", "reed", ["-", ["*", 0.999, f"{yarn}.brake_force"], brake])
     yield Row(yarn, "Weft brake", (opened,), _scaled(brake))
