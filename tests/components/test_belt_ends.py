@@ -180,6 +180,17 @@ def test_a_belt_that_never_leans_on_its_guide_is_a_pinned_one(belt_in_c):
         assert getattr(pinned.belt, name) == getattr(loose.belt, name), name
 
 
+def test_a_clamped_belt_far_beyond_the_load_of_euler_is_not_followed(belt_in_c):
+    """Its end shapes have no share in large rotations: it stood at 13.0 mm, where the elastica has 15.5."""
+    belt = belt_in_c(**NO_CLEARANCE, head_end=GUIDED, bow=1e-6, bow_of=SPAN, damping=300.0, head_mass=1e-6)
+    belt.yarn_tension = 1.01 * (2.0 * pi / LENGTH) ** 2 * belt.bending_stiffness
+    belt.initialize(0.0)
+    for _ in range(2000):
+        belt.step(0.0, 1.5e-3)
+    assert not belt.followed and not belt.folded
+    assert belt.steepness == pytest.approx(0.1, abs=0.01)
+
+
 def test_a_guide_shorter_than_its_clearance_is_refused():
     belt = BeltDynamics(guide_end=PLAY, guide_clearance=0.05, guide_length=0.05)
     assert "must be less than guide_length" in belt.problems[belt.initialize(0.0) - 1].text

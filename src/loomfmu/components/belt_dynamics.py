@@ -17,12 +17,14 @@ MOST_HALVINGS = 9
 MORE_SWEEPS = 10000  # as many where an end may be clamped
 MORE_HALVINGS = 13
 BALANCED = 1e-9  # of the energy: what an integration step may leave unexplained, if it can be halved
+UNBALANCED = 1e-6  # of the energy: a step that leaves more, however short, cannot be followed
 EASY = 1e-3  # of that: then the next step may be twice as long
 LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
 GROWTH = 0.05  # of the free length in a step of the integration
 MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
+STEEP = 0.1  # sine of the slope up to which clamped ends are followed beyond their Euler load
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
@@ -127,7 +129,10 @@ class BeltDynamics(BeltRest):
         if not self.at_rest:
             self.rest(length, 0.0, 0.0, 0.0)
         self.look(share)
-        if not (self.at_rest and self.steepness < STEEPEST):
+        if not self.at_rest:
+            self.lose()
+            return
+        if not self.steepness < STEEPEST:
             self.fold(share)
             return
         self.take_extremes(share, 0.0)
@@ -188,6 +193,8 @@ class BeltDynamics(BeltRest):
             if error > BALANCED and halvings < most_halvings:
                 halvings = halvings + 1
                 continue
+            if error > UNBALANCED:
+                break
             if error < EASY * BALANCED and halvings > 0:
                 halvings = halvings - 1
             share = share + taken
@@ -202,8 +209,22 @@ class BeltDynamics(BeltRest):
             if not self.steepness < STEEPEST:
                 self.fold(share)
                 return
+            if self.is_beyond(share):
+                self.lose()
+                return
         if end - share > 1e-12:
             self.lose()
+
+    def is_beyond(self, share: float) -> bool:
+        """Whether the belt is bent far beyond Euler's load of its clamped ends.
+
+        How far it bends is then a matter of its large rotations, of which the end shapes have no share.
+        """
+        if self.clamped() == 0 or self.steepness < STEEP:
+            return False
+        turn, _wave = buckling(self.clamped())
+        critical = turn / self.length_at(share)
+        return self.pushed_at(share) > self.stiffness * critical * critical
 
     def pieces(self, duration: float) -> int:
         """Number of equal steps of the integration over a time."""

@@ -19,13 +19,14 @@ class BeltDynamicsVariables(Component):
 
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(
-            "the belt has folded at a free length of {free_length}: until it is back in its guide, its"
-            " deflection is shown as {deflection}, the largest possible",
+            "the belt has folded: until it is back in its guide, its deflection is shown as {deflection}, the"
+            " largest possible where it folded",
             warning=True,
         ),
         Problem(
             "the belt's motion could not be followed at a free length of {free_length}: until it is back in"
-            " its guide, nothing counts for the largest deflections; take more steps",
+            " its guide, nothing counts for the largest deflections; take more steps, and with play or a"
+            " guided head push no farther than Euler's load",
             warning=True,
         ),
         Problem("guide_clearance = {guide_clearance} must be less than guide_length = {guide_length}"),

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import cos, fabs, pi, sin
 
 from ..physics.belt_ends import at_ends, reactions
-from ..physics.belt_modes import bow_at, summed
+from ..physics.belt_modes import bow_at, dot, summed
+from ..physics.belt_shape import bent_belt
 from .belt_integration import BeltIntegration
 
 REPEATS = 200  # until the belt is in equilibrium
@@ -49,6 +50,7 @@ class BeltRest(BeltIntegration):
                 self.unbalanced(4, length, speed, acceleration),
                 self.unbalanced(5, length, speed, acceleration),
             )
+            self.let_go(length)
             if self.clamped() != 0:
                 self.hold_still(length, pushed)
             self.mode = (
@@ -76,6 +78,15 @@ class BeltRest(BeltIntegration):
         wave = (place + 1) * pi / length
         stiff = wave * wave * (self.stiffness * wave * wave - pushed)
         return self.belt_mass * self.found_a[place] / stiff
+
+    def let_go(self, length: float) -> None:
+        """Add to the accelerations `found_a` what the mass of the head, by its lag, takes from them."""
+        (
+            _f1, _f2, _f3, _f4, _f5, _f6, g1, g2, g3, g4, g5, g6, _short, _rate, _second, _by_length, _energy,
+            _growth,
+        ) = bent_belt(*self.mode, *self.mode_rate, length, 0.0, 0.0)  # type: ignore[call-arg]  # fmt: skip
+        lag = 2.0 * self.head_mass / (self.belt_mass * length) * dot(g1, g2, g3, g4, g5, g6, *self.found_a)
+        self.found_a = summed(lag, g1, g2, g3, g4, g5, g6, *self.found_a)
 
     def hold_still(self, length: float, pushed: float) -> None:
         """Take from the accelerations `found_a` the share of the moments at the clamped ends."""
