@@ -1,6 +1,7 @@
 """Worst cases: closed forms, extremes inside the box, what each tolerance costs, what is refused."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_the_worst_case_is_that_of_the_closed_form() -> None:
     assert [each.distance for each in margin.costs] == pytest.approx(given_back, abs=1e-5)
     (dwell,) = (each for each in found.claims if each.claim == "the frames dwell long enough")
     assert dwell.costs == () and dwell.worst.worst == dwell.own.worst
+
+
+def test_a_worst_case_that_no_one_tolerance_lifts_names_all_of_them() -> None:
+    """It was called worst at the scene's own values where each of two tolerances alone makes it as bad."""
+    vary = ["belt.guide_clearance=0.2mm..0.5mm", "shaft.speed=580rpm..620rpm"]
+    found = tolerances(DEMO, vary=vary, set=FAST)
+    (margin,) = (each for each in found.claims if each.claim == MARGIN)
+    *_rest, where, costs = worst_cases.rows(replace(found, claims=(replace(margin, costs=()),)))[0]
+    assert where == "belt.guide_clearance = 0.5 mm, shaft.speed = 620 rev/min"
+    assert costs == "cost: none alone; it is as bad without any one of them"
 
 
 def test_a_worst_case_inside_the_box_is_found() -> None:

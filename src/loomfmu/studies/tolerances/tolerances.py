@@ -51,6 +51,12 @@ class WorstCase:
     costs: tuple[Cost, ...]
     depends: bool
 
+    @property
+    def shared(self) -> bool:
+        """Whether it is worse than the scene, and no less so with any one value as in the scene."""
+        lost = self.own.distance - self.worst.distance
+        return not self.costs and lost > SAME * abs(self.worst.bound)
+
 
 @dataclass(frozen=True, repr=False)
 class Tolerances:
@@ -90,13 +96,15 @@ def _where(each: WorstCase, found: Tolerances) -> str:
     """The values that make it the worst case."""
     if not each.depends:
         return "the same everywhere"
-    matter = {cost.key for cost in each.costs}
+    matter = {cost.key for cost in each.costs} or (each.place if each.shared else ())
     places = [f"{span.key} = {span.show(each.place[span.key])}" for span in found.spans if span.key in matter]
     return ", ".join(places) or f"worst at the scene's own value{'s' * (len(found.spans) > 1)}"
 
 
 def _costs(each: WorstCase) -> str:
     """What each tolerance costs, the most expensive first."""
+    if each.shared:
+        return "cost: none alone; it is as bad without any one of them"
     if not each.costs:
         return "cost: none"
     bound = abs(each.worst.bound)
