@@ -13,7 +13,8 @@ import loomfmu
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.report import diagram
+from loomfmu.report import diagram, occasions, shapes
+from loomfmu.report.section import Subject
 from loomfmu.traces import Trace
 
 SIMS = Path(__file__).parents[2] / "sims"
@@ -110,7 +111,41 @@ def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path)
     diagram.write(Trace(copied), output, 2)
     shown = [each.text for each in ElementTree.parse(output).iter("{http://www.w3.org/2000/svg}text")]
     assert shown[0].endswith("plain weave: timing diagram, revolution 2")
-    assert {"in the shed", "outside and compressed", "buckled", "dwells"} <= {*shown}
+    assert {"in the shed", "outside and compressed", "dwells"} <= {*shown}
+    assert "buckled" not in shown and not any(each.startswith("worst value") for each in shown if each)
+
+
+def test_a_legend_names_what_is_drawn_and_nothing_else(tmp_path: Path) -> None:
+    trace = loomfmu.run(
+        SIMS / "wl680_3600.toml",
+        set={"shaft.speed": "700 rpm", "revolutions": 1},
+        output=tmp_path / "fast.h5",
+    ).trace
+    fails = "worst value of a claim that fails or is undecided"
+    for circular in (False, True):
+        text = diagram.write(trace, tmp_path / f"fast_{circular}.svg", 1, circular).read_text()
+        assert ">buckled</text>" in text and f">{fails}</text>" in text
+        failing = sum(not each for each in trace.verdicts)
+        assert failing and text.count('<polygon class="fails"') == failing + 1  # and the legend's own
+    page = report.write([trace]).read_text()
+    assert '<span class="swatch buckled"' in page and '<span class="swatch fails"' in page
+
+
+def test_a_page_that_shows_no_buckling_has_none_in_its_legend(demo: Trace, tmp_path: Path) -> None:
+    page = report.write([demo], tmp_path / "demo.html").read_text()
+    assert '<span class="swatch dwell"' in page and '<span class="swatch buckled"' not in page
+
+
+def test_no_two_things_have_one_colour(whole: Trace, yarn: Trace) -> None:
+    known = {
+        bar.label: bar.role
+        for trace in (whole, yarn)
+        for row in occasions.Occasions(Subject([trace])).rows
+        for bar in row.bars
+    }
+    assert {"in the shed", "heads overlap enough", "brake opened", "in its front tenth"} <= {*known}
+    colours = {shapes.COLOURS[role] for role in known.values()}
+    assert len(colours) == len(known)
 
 
 def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
@@ -124,7 +159,7 @@ def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
         diagram.write(Trace(copied), output, number)
         assert (">Claims<" in output.read_text()) == (number in there)
         heights[number in there] = float(ElementTree.parse(output).getroot().attrib["viewBox"].split()[3])
-    assert heights[True] - heights[False] == diagram.ROW
+    assert heights[True] - heights[False] == diagram.ROW + shapes.LINE  # a line of the legend is theirs, too
 
 
 def test_a_revolution_without_worst_values_says_where_they_are(

@@ -13,13 +13,17 @@ from ..traces import Trace, Verdict
 from . import pictures
 from .occasions import Bar, Occasions, Revolution, Row
 from .section import COARSEST, TURN, Section, Subject
-from .shapes import Drawing, Point, Shape, Text, file, headed, on_circle, ring, svg
+from .shapes import Drawing, Point, Shape, Text, file, headed, on_circle, ring, svg, triangle
 from .templates import template
 
 LEFT, RIGHT, TOP, ROW, WIDTH = 110.0, 20.0, 34.0, 30.0, 900.0
 CENTRE, OUTER, INNER, SQUARE = (345.0, 345.0), 290.0, 90.0, 690.0
 COARSE = math.radians(1.0)  # between samples: beyond, the diagram says how far they are apart
 EXAMPLES = '"weft.travel", "belt.free_length" or "heald_1.lift"'
+MARKS = {
+    "worst value of a claim that holds": "holds",
+    "worst value of a claim that fails or is undecided": "fails",
+}
 MOST_DRAWN = 24  # revolutions that differ, in one report
 
 
@@ -54,17 +58,17 @@ def section(subject: Subject) -> Section | None:
     claims = subject.live or any(marks)
     elsewhere = _elsewhere(subject.trace.verdicts)
     height = straight_size(occasions.rows, claims)[1]
+    drawings = [
+        straight(occasions.rows, each, its, claims, elsewhere) for each, its in zip(drawn, marks, strict=True)
+    ]
     html = template("diagram.html.j2").render(
         width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
         centre=CENTRE, outer=OUTER + 8.0, inner=INNER - 8.0,
-        straight=[
-            svg(straight(occasions.rows, each, its, claims, elsewhere))
-            for each, its in zip(drawn, marks, strict=True)
-        ],
+        straight=[svg(each) for each in drawings],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
-        legend=_legend(occasions.rows), claims=claims,
+        legend=_legend(occasions.rows, None if subject.live else drawings),
         coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
     )  # fmt: skip
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
@@ -107,7 +111,7 @@ def write(
         drawing = straight(occasions.rows, its, marks, bool(marks))
         size = straight_size(occasions.rows, bool(marks))
     title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
-    drawing, size = headed(title, _legend(occasions.rows), drawing, size)
+    drawing, size = headed(title, _legend(occasions.rows, [drawing]), drawing, size)
     kind = pictures.kind(output)
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
 
@@ -154,8 +158,13 @@ def _title(row: Row, bar: Bar, interval: tuple[float, float]) -> str:
     return f"{row.label} {bar.label}: {_degrees(interval)}"
 
 
-def _legend(rows: Sequence[Row]) -> dict[str, str]:
-    return {bar.label: bar.role for row in rows for bar in row.bars}
+def _legend(rows: Sequence[Row], drawings: Sequence[Drawing] | None) -> dict[str, str]:
+    """What the colours of drawings mean, by their labels; with None all that these rows may have."""
+    known = {bar.label: bar.role for row in rows for bar in row.bars} | MARKS
+    if drawings is None:
+        return known
+    shown = {each.role for drawing in drawings for each in drawing}
+    return {label: role for label, role in known.items() if role in shown}
 
 
 # ---- straight
@@ -201,8 +210,7 @@ def straight(
     if claims and not marks:
         drawing.append(Text((LEFT + 8.0, top + 0.65 * ROW), elsewhere, "faint elsewhere"))
     for mark in marks:
-        x = _x(mark.angle)
-        tip = [(x, top + 4.0), (x + 6.0, top + ROW - 6.0), (x - 6.0, top + ROW - 6.0)]
+        tip = triangle(_x(mark.angle), top + 4.0, top + ROW - 6.0, mark.holds)
         drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
     return drawing
 
@@ -237,10 +245,7 @@ def round_(rows: Sequence[Row], revolution: Revolution, marks: Sequence[Mark]) -
                 )
         drawing.append(Text((CENTRE[0] + 3.0, CENTRE[1] - outer + 0.5 * width + 4.0), row.label, "text"))
     for mark in marks:
-        tip = [
-            on_circle(CENTRE, OUTER + 2.0, mark.angle),
-            on_circle(CENTRE, OUTER + 14.0, mark.angle - 0.02),
-            on_circle(CENTRE, OUTER + 14.0, mark.angle + 0.02),
-        ]
+        x, y = on_circle(CENTRE, OUTER + 9.0, mark.angle)
+        tip = triangle(x, y - 6.0, y + 6.0, mark.holds)
         drawing.append(Shape(tip, "holds" if mark.holds else "fails", title=mark.text))
     return drawing

@@ -236,7 +236,7 @@ def _transfer(trace: Trace, transfer: str) -> Iterator[Row]:
     overlap = f"{transfer}.overlap"
     if overlap not in trace:
         return
-    enough = Bar("heads overlap enough", "weft", ["-", overlap, f"{transfer}.needed_overlap"])
+    enough = Bar("heads overlap enough", "transfer", ["-", overlap, f"{transfer}.needed_overlap"])
     passed: Rule = ["max", overlap, 0.0]
     yield Row(transfer, "Transfer", (enough,), ["/", passed, ["highest", ["max", passed, SMALL]]])
 
@@ -246,7 +246,7 @@ def _brake(trace: Trace, yarn: str) -> Iterator[Row]:
     programmed = {value for name, value in trace.parameters.items() if name.startswith(program)}
     if brake not in trace or len(programmed) < 2:
         return
-    opened = Bar("brake opened", "reed", ["-", ["*", 0.999, f"{yarn}.brake_force"], brake])
+    opened = Bar("brake opened", "brake", ["-", ["*", 0.999, f"{yarn}.brake_force"], brake])
     yield Row(yarn, "Weft brake", (opened,), _scaled(brake))
 
 

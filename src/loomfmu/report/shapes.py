@@ -15,10 +15,10 @@ MARGIN, LINE, CHARACTER = 10.0, 18.0, 7.0  # px
 
 Point = tuple[float, float]
 Anchor = Literal["start", "middle", "end"]
-# for files, in which no style sheet chooses: the colours of Okabe and Ito on white
+# for files, in which no style sheet chooses: the colours of Okabe and Ito on white, and a violet
 COLOURS = {
-    "weft": "#0072b2", "belt": "#e69f00", "risk": "#d55e00", "buckled": "#1a1a1a",
-    "shed": "#56b4e9", "dwell": "#009e73",
+    "weft": "#0072b2", "transfer": "#f0e442", "brake": "#9966ff", "belt": "#e69f00", "risk": "#d55e00",
+    "buckled": "#1a1a1a", "shed": "#56b4e9", "dwell": "#009e73",
     "change": "#d4d4d4", "reed": "#a8578a", "lock": "#5c5c5c", "curve": "#1a1a1a", "line": "#d4d4d4",
     "holds": "#006d4f", "fails": "#b34700", "text": "#1a1a1a", "faint": "#5c5c5c",
 }  # fmt: skip
@@ -78,8 +78,7 @@ def headed(
         width = 24.0 + CHARACTER * len(label)
         if x + width > size[0]:
             x, y = MARGIN, y + LINE
-        box = [(x, y - 10.0), (x + 12.0, y - 10.0), (x + 12.0, y), (x, y)]
-        above += [Shape(box, role), Text((x + 17.0, y), label)]
+        above += [Shape(_swatch(role, x, y), role), Text((x + 17.0, y), label)]
         x += width + 10.0
     moved = [
         replace(each, place=(each.place[0], each.place[1] + y))
@@ -88,6 +87,19 @@ def headed(
         for each in drawing
     ]
     return [*above, *moved], (size[0], size[1] + y)
+
+
+def _swatch(role: str, x: float, y: float) -> Sequence[Point]:
+    """What stands for a role in the legend, left and bottom at a place: a triangle as of claims, or a box."""
+    if role in ("holds", "fails"):
+        return triangle(x + 6.0, y - 10.0, y, role == "holds")
+    return [(x, y - 10.0), (x + 12.0, y - 10.0), (x + 12.0, y), (x, y)]
+
+
+def triangle(x: float, top: float, bottom: float, upright: bool) -> Sequence[Point]:
+    """A mark 12 px wide; that it is upright or upside down tells it in any colour vision."""
+    tip, base = (top, bottom) if upright else (bottom, top)
+    return [(x, tip), (x + 6.0, base), (x - 6.0, base)]
 
 
 def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -> bytes:
@@ -107,10 +119,16 @@ def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -
 
 
 def _plot(axes: Any, each: Shape | Text, order: int) -> None:
+    from matplotlib import patheffects  # optional, and slow to import
+
     colour = COLOURS[each.role]
     if isinstance(each, Text):
         align = {"start": "left", "middle": "center", "end": "right"}[each.anchor]
-        axes.text(*each.place, each.text, color=colour, ha=align, va="baseline", fontsize=9, zorder=order)
+        halo = [patheffects.withStroke(linewidth=2.0, foreground="#ffffff")]
+        axes.text(
+            *each.place, each.text, color=colour, ha=align, va="baseline", fontsize=9, zorder=order,
+            path_effects=halo,
+        )  # fmt: skip
         return
     points = np.array(each.points)
     if each.filled:
@@ -122,6 +140,7 @@ def _plot(axes: Any, each: Shape | Text, order: int) -> None:
 def _svg_file(drawing: Drawing, size: tuple[float, float], title: str) -> str:
     rules = "".join(f".{role}{{fill:{colour}}}" for role, colour in COLOURS.items())
     lines = "".join(f"polyline.{role}{{fill:none;stroke:{COLOURS[role]}}}" for role in ("curve", "line"))
+    lines += "text{paint-order:stroke;stroke:#ffffff;stroke-width:3px}"
     width, height = (_short(length) for length in size)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'

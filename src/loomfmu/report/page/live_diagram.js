@@ -44,6 +44,11 @@
     return points;
   }
 
+  function triangle(middle, above, below, upright) {
+    const [tip, base] = upright ? [above, below] : [below, above];
+    return [[middle, tip], [middle + 6, base], [middle - 6, base]];
+  }
+
   function shape(points, role, text) {
     const made = document.createElementNS(SVG, text === undefined ? "polyline" : "polygon");
     made.setAttribute("class", role);
@@ -76,8 +81,9 @@
     if (!found.length) straight.push(elsewhere());
     for (const [verdict, at] of found) {
       const low = top + height * rows.length, role = verdict.holds ? "holds" : "fails", text = verdict.holds ? "holds" : "FAILS";
-      straight.push(shape([[x(at), low + 4], [x(at) + 6, low + height - 6], [x(at) - 6, low + height - 6]], role, text));
-      round.push(shape([onCircle(outer + 2, at), onCircle(outer + 14, at - 0.02), onCircle(outer + 14, at + 0.02)], role, text));
+      const [across, down] = onCircle(outer + 9, at);
+      straight.push(shape(triangle(x(at), low + 4, low + height - 6, verdict.holds), role, text));
+      round.push(shape(triangle(across, down - 6, down + 6, verdict.holds), role, text));
     }
     drawings[0].replaceChildren(...straight);
     drawings[1].replaceChildren(...round);
