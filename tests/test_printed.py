@@ -45,6 +45,15 @@ def test_parts_of_an_entry_fill_the_lines(
     ]  # fmt: skip
 
 
+def test_parts_of_a_stacked_entry_are_on_one_line_or_begin_one_each() -> None:
+    parts = ("claim a long one about something", "A: holds", "B: FAILS")
+    assert printed.as_entry(parts, 52, stacked=True) == ["  ".join(parts)]
+    assert printed.as_entry(parts, 51, stacked=True) == [parts[0], "  A: holds", "  B: FAILS"]
+    assert printed.as_entry(parts, 20, stacked=True) == [
+        "claim a long one", "  about something", "  A: holds", "  B: FAILS",
+    ]  # fmt: skip
+
+
 class Terminal(io.StringIO):
     """Somebody is looking."""
 

@@ -66,15 +66,21 @@ def complain_of(error: BaseException) -> None:
     complain(*"".join(traceback.format_exception(error)).splitlines())
 
 
-def show(headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequence[Sequence[str]]) -> None:
+def show(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequence[Sequence[str]],
+    stacked: bool = False,
+) -> None:  # fmt: skip
     """Print rows below headings if the terminal is wide enough for them, and else entries, given in parts.
 
-    Piped, there are 80 columns, unless the environment's COLUMNS says otherwise.
+    Each part of a `stacked` entry begins a line, unless all fit on one. Piped, there are 80 columns, unless
+    the environment's COLUMNS says otherwise.
     """
     width = shutil.get_terminal_size().columns
     lines = in_columns([[safe(cell) for cell in row] for row in (headings, *rows)])
     if max(map(len, lines)) > width:
-        lines = [line for entry in entries for line in as_entry([safe(part) for part in entry], width)]
+        lines = [
+            line for entry in entries for line in as_entry([safe(part) for part in entry], width, stacked)
+        ]
     say("", *lines, "")
 
 
@@ -95,12 +101,17 @@ def in_columns(rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def as_entry(parts: Sequence[str], width: int) -> list[str]:
-    """The parts of an entry as lines: a part goes on the line before if it fits, and is broken if long."""
+def as_entry(parts: Sequence[str], width: int, stacked: bool = False) -> list[str]:
+    """The parts of an entry as lines: a part goes on the line before if it fits, and is broken if long.
+
+    Those of a `stacked` entry go on one line, two blanks apart, if all fit.
+    """
+    if stacked and len(whole := "  ".join(parts)) <= width:
+        return [whole]
     lines = [""]
     for part in parts:
         joined = f"{lines[-1]} {part}" if lines[-1] else part
-        if len(joined) <= width:
+        if len(joined) <= width and not (stacked and lines[-1]):
             lines[-1] = joined
             continue
         first = INDENT if lines[-1] else ""

@@ -269,14 +269,11 @@ def _status(first: Trace, second: Trace) -> Iterator[Change]:
 def _notes(first: Trace, second: Trace) -> Iterator[str]:
     """What else is not the same, and may explain a difference."""
     mine, others = (trace.attributes for trace in (first, second))
-    versions = sorted(
-        name for name in {*mine, *others} if name.startswith("fmu_") and name.endswith("_version")
-    )
-    for name in (*PROVENANCE, *versions):
+    common = sorted(name for name in mine if name.startswith("fmu_") and name in others)
+    for name in (*PROVENANCE, *(name for name in common if name.endswith("_version"))):
         a, b = (str(each.get(name, "none")) for each in (mine, others))
         if a != b:
             yield f"{name.replace('_', ' ')}: {a} and {b}"
-    hashes = [name for name in mine if name.startswith("fmu_") and name.endswith("_sha256")]
-    changed = [name[4:-7] for name in hashes if name in others and mine[name] != others[name]]
-    if changed:
-        yield f"the files of these FMUs differ: {listed(sorted(changed))}"
+    hashes = [name for name in common if name.endswith("_sha256")]
+    if changed := [name[4:-7] for name in hashes if mine[name] != others[name]]:
+        yield f"the files of these FMUs differ: {listed(changed)}"

@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .. import notebook, printed, units
@@ -12,7 +13,7 @@ CHANGE_HEADINGS = ("what", "name", "", "")
 KINDS = {
     "value": ("value",),
     "claim": ("claim",),
-    "run": ("difference", " of the run"),
+    "run": ("difference", " in the run"),
     "unit": ("unit",),
     "signal": ("signal", " in one trace only"),
 }  # of changes, as the summary counts them
@@ -73,6 +74,15 @@ class Difference:
             str(self.at),
         )  # fmt: skip
 
+    @property
+    def entry(self) -> tuple[str, ...]:
+        """The difference in parts, where the terminal has no room for a table."""
+        signal, first, one, two, largest, relative, at = self.row
+        return (
+            f"signal {signal}", f"first at {first}: A {one}, B {two}",
+            f"most at {at}: by {largest} (relative {relative})",
+        )  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Change:
@@ -87,6 +97,11 @@ class Change:
     def row(self) -> tuple[str, str, str, str]:
         """The change as a row of a table."""
         return self.what, self.name, self.first, self.second
+
+    @property
+    def entry(self) -> tuple[str, ...]:
+        """The change in parts, where the terminal has no room for a table."""
+        return f"{self.what} {self.name}", f"A: {self.first}", f"B: {self.second}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,7 +135,7 @@ class Comparison:
     def summary(self) -> str:
         """The outcome in a line."""
         first, second = self.names
-        limit = f"{self.tolerance:g} of their largest magnitude"
+        limit = f"{self.tolerance:g} of each signal's largest magnitude"
         if self:
             equal = f"equal within {limit}" if self.tolerance else "exactly equal"
             return f"{first} and {second}: {_counted(self.compared, 'signal')}, {equal}"
@@ -131,21 +146,23 @@ class Comparison:
         return f"{first} and {second} differ{beyond}: {listed(parts)}"
 
     def __repr__(self) -> str:
-        lines = [" | ".join(row) for _headings, rows in self._tables(MOST) for row in rows]
+        lines = [" | ".join(each.row) for _headings, found in self._tables(MOST) for each in found]
         return "\n  ".join([f"<Comparison {self.summary}", *lines, *self._ends(MOST)]) + ">"
 
     def _repr_html_(self) -> str:
-        tables = [notebook.table(headings, rows) for headings, rows in self._tables(MOST)]
+        tables = [
+            notebook.table(headings, [each.row for each in found])
+            for headings, found in self._tables(MOST, self.names)
+        ]
         lines = (self.how, *self._ends(MOST), *self.notes)
         return notebook.block(self.summary, *tables, *map(notebook.line, lines))
 
-    def _tables(self, most: int | None) -> list[tuple[tuple[str, ...], list[tuple[str, ...]]]]:
+    def _tables(
+        self, most: int | None, names: tuple[str, str] = ("A", "B")
+    ) -> list[tuple[tuple[str, ...], Sequence[Change | Difference]]]:
         """Headings and rows of the tables that are not empty, causes first; at most so many signals."""
-        listed: list[tuple[tuple[str, ...], int, list[tuple[str, ...]]]] = [
-            (CHANGE_HEADINGS, 2, [each.row for each in self.changes]),
-            (SIGNAL_HEADINGS, 2, [each.row for each in self.differences[:most]]),
-        ]
-        return [((*head[:at], *self.names, *head[at + 2 :]), rows) for head, at, rows in listed if rows]
+        tables = (CHANGE_HEADINGS, self.changes), (SIGNAL_HEADINGS, self.differences[:most])
+        return [((*head[:2], *names, *head[4:]), found) for head, found in tables if found]
 
     def _ends(self, most: int | None) -> list[str]:
         """Where the traces begin to differ, and how many signals the table leaves out."""
@@ -159,10 +176,11 @@ class Comparison:
     def show(self, most: int | None = MOST) -> None:
         """Print it, with at most so many signals; None for all."""
         printed.say(self.summary, self.how)
-        for headings, rows in self._tables(most):
-            labels = ["" if each == "name" else f"{each}: " for each in headings[1:]]
-            entries = [(row[0], *map("".join, zip(labels, row[1:], strict=True))) for row in rows]
-            printed.show(headings, rows, entries)
+        if not self:
+            printed.say("A: {}, B: {}".format(*self.names))
+        for headings, found in self._tables(most):
+            rows, entries = [each.row for each in found], [each.entry for each in found]
+            printed.show(headings, rows, entries, stacked=True)
         printed.say(*self._ends(most), *self.notes)
 
 
