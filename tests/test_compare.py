@@ -139,13 +139,15 @@ def test_long_names_keep_the_values_of_both_traces_apart(
 
 
 def test_claims_of_one_text_belong_together_by_their_signals(tmp_path: Path) -> None:
-    both = judged(tmp_path / "both.h5", ("stays below", "belt.x", 1.0), ("stays below", "belt.y", 1.0))
-    swapped = judged(tmp_path / "swapped.h5", ("stays below", "belt.y", 1.0), ("stays below", "belt.x", 1.0))
+    both = judged(tmp_path / "both.h5", ("highest value", "belt.x", 1.0), ("highest value", "belt.y", 1.0))
+    swapped = judged(
+        tmp_path / "swapped.h5", ("highest value", "belt.y", 1.0), ("highest value", "belt.x", 1.0)
+    )
     assert loomfmu.compare(both, swapped)
-    one = judged(tmp_path / "one.h5", ("stays below", "belt.y", 1.0))
+    one = judged(tmp_path / "one.h5", ("highest value", "belt.y", 1.0))
     (change,) = loomfmu.compare(both, one).changes
-    assert change.row == ("claim", "stays below", "holds, 1 m, bound 0 m", "missing")
-    (change,) = loomfmu.compare(one, judged(tmp_path / "x.h5", ("stays below", "belt.x", 1.0))).changes
+    assert change.row == ("claim", "highest value", "holds, 1 m, bound 0 m", "missing")
+    (change,) = loomfmu.compare(one, judged(tmp_path / "x.h5", ("highest value", "belt.x", 1.0))).changes
     assert change.row[2:] == ("holds (belt.y), 1 m, bound 0 m", "holds (belt.x), 1 m, bound 0 m")
 
 

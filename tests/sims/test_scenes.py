@@ -30,6 +30,10 @@ def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
         assert trace.status == "complete"
         assert trace.verdicts, "a scene claims something"
         assert all(trace.verdicts)
+        for verdict in trace.verdicts:
+            judged = verdict.claim.partition(": ")[2] or verdict.claim
+            verbs = {"is", "are", "stays", "holds", "meet"} & {*judged.split()}
+            assert not verbs, "the name states what must hold; what follows it names the quantity alone"
 
 
 def test_the_full_loom_has_every_mechanism_of_a_loom() -> None:

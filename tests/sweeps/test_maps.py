@@ -65,7 +65,7 @@ def test_two_axes_of_numbers_are_contours_with_the_limit_where_it_is(drawn: Any)
     assert picture.axes.get_ylabel() == "belt.guide_clearance [mm]"
     assert picture.figure.axes[1].get_ylabel() == "the belt does not buckle: lowest margin"
     assert picture.axes.get_title() == "Swept"
-    assert legend(picture) == [BUCKLES, "the loom runs below its safe speed: stays above: limit"]
+    assert legend(picture) == [BUCKLES, "the loom runs below its safe speed: lowest value: limit"]
     lines = [each for each in picture.axes.collections if list(getattr(each, "levels", [])) == [0.0]]
     points = np.concatenate(lines[0].get_paths()[0].to_polygons(closed_only=False))
     for clearance in (0.2, 0.3, 0.5):

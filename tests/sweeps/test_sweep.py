@@ -363,7 +363,7 @@ def test_the_first_claim_that_fails_has_a_column(tmp_path: Path) -> None:
         words = {
             1: "the belt does not buckle",
             2: "the loom runs below its safe speed",
-            3: "belt.lowest_margin stays above",
+            3: "lowest value (belt.lowest_margin)",
         }
         assert row["first_failing_claim"] == words[failing[0]]
     assert len(set(table["first_failing_claim"].to_pylist())) > 1

@@ -131,8 +131,8 @@ def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
 
 
 def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
-    """What a claim is about; one without a name of its own goes by its signal."""
-    named = verdict.claim if claim.get("name") else f"{verdict.signal} {verdict.claim}"
+    """What a claim is about: its name and what it judges."""
+    named = verdict.claim if claim.get("name") else called(claim, verdict)
     return Label(named, verdict.signal, verdict.unit, verdict.display_unit)
 
 

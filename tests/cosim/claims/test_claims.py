@@ -87,7 +87,7 @@ def test_above_and_below_tell_the_worst_value_and_its_place(tmp_path: Path) -> N
     holds = judge(trace, kind="above", signal="a.x", bound=-1.001)
     assert isinstance(holds, Verdict)
     assert holds
-    assert (holds.claim, holds.signal, holds.note) == ("stays above", "a.x", "")
+    assert (holds.claim, holds.signal, holds.note) == ("lowest value", "a.x", "")
     assert (holds.unit, holds.display_unit) == ("m", "mm")
     # the cubic through samples 0.1 s apart with exact rates: off by up to h^4 / 384 = 3e-7
     assert math.isclose(holds.worst, -1.0, abs_tol=3e-7)
@@ -98,7 +98,7 @@ def test_above_and_below_tell_the_worst_value_and_its_place(tmp_path: Path) -> N
     assert math.isclose(holds.angle, math.pi * holds.time - TURN, abs_tol=1e-13)
     fails = judge(trace, kind="above", signal="a.x", bound="-900 mm", name="stays high")
     assert not fails
-    assert fails.claim == "stays high: stays above"
+    assert fails.claim == "stays high: lowest value"
     assert (fails.worst, fails.time) == (holds.worst, holds.time)
     assert judge(trace, kind="below", signal="a.x", bound=1.0)
     assert not judge(trace, kind="below", signal="a.x", bound=0.999)
@@ -171,7 +171,7 @@ def test_a_window_holds_what_the_whole_run_does_not(loom: Callable[..., Trace]) 
     assert not judge(trace, **whole)
     inside = judge(trace, **whole, window=["330 deg", "30 deg"])
     assert inside
-    assert inside.claim == "stays below in [330 deg, 30 deg]"
+    assert inside.claim == "highest value in [330 deg, 30 deg]"
 
 
 @pytest.mark.parametrize("steps", [90, 360])
@@ -613,7 +613,7 @@ def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Callable[..., Tra
     assert math.isclose(shown["worst"], found.worst * 30 / math.pi, rel_tol=1e-14)
     # what pytest prints of a failing assert
     assert repr(judge(trace, kind="below", signal="belt.lowest_speed_limit", bound="600 rpm")) == (
-        "<Verdict FAILS: stays below: belt.lowest_speed_limit, 95492.97 rev/min at 0 s, 0.000 deg, rev. 1,"
+        "<Verdict FAILS: highest value: belt.lowest_speed_limit, 95492.97 rev/min at 0 s, 0.000 deg, rev. 1,"
         " bound 600 rev/min>"
     )
     dwelling = judge(trace, kind="dwell_contains", heald="heald_2", angles=["180 deg"])
@@ -640,7 +640,7 @@ def test_a_run_without_a_shaft_tells_the_time_alone(tmp_path: Path) -> None:
     text = 'duration = "1 s"\nstep = "0.01 s"\n[shaft_2]\ncomponent = "MainShaft"\nspeed = "60 rpm"\n'
     claim = '[[claims]]\nkind = "below"\nsignal = "shaft_2.angle"\nbound = "90 deg"\n'
     found = run(scenes.parse(text + claim, "seconds"), output=tmp_path / "seconds.h5")
-    assert str(found.claims[0]) == "FAILS: stays below: shaft_2.angle, 360 deg at 1 s, bound 90 deg"
+    assert str(found.claims[0]) == "FAILS: highest value: shaft_2.angle, 360 deg at 1 s, bound 90 deg"
     stored = found.claims[0].as_dict()
     assert stored["angle"] is stored["revolution"] is None
     with pytest.raises(LoomfmuError, match=r"the claim needs shaft angles, but shaft\.angle is not recorded"):
@@ -670,7 +670,7 @@ at_most = "1 N"
     assert not result.holds
     with Trace(tmp_path / "claims.h5") as trace:
         assert trace.verdicts == list(result.claims)
-        assert trace.verdicts[0].claim == "fast enough: stays above in [20 deg, 160 deg]"
+        assert trace.verdicts[0].claim == "fast enough: lowest value in [20 deg, 160 deg]"
         assert {"weft.velocity", "weft.acceleration", "heald_2.lift", "heald_2.acceleration"} <= set(trace)
         assert "damper_1.peak_load" in trace
         assert "weft.travel" not in trace and "heald_1.lift" not in trace
@@ -899,7 +899,7 @@ def test_the_pattern_locks_are_in_time_up_to_their_speed_limit(tmp_path):
     claim = 'kind = "locks_in_time"'
     fails = judged(tmp_path, claim, **{"shaft.speed": "850 rev/min"})
     assert not fails.holds
-    assert str(fails).startswith("FAILS: the pattern locks are in time: shaft.velocity, 850 rev/min at 0 s")
+    assert str(fails).startswith("FAILS: highest speed of the shaft: shaft.velocity, 850 rev/min at 0 s")
     assert str(fails).endswith(", bound 824.6588 rev/min")
     assert judged(tmp_path, claim, **{"shaft.speed": "800 rev/min"}).holds
     assert not judged(tmp_path, claim, **{"shaft.speed": "-850 rev/min"}).holds

@@ -80,7 +80,7 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
 
 def called(table: Mapping[str, Any], verdict: Verdict) -> str:
     """What tables call the claim of a scene that a verdict is on: its name, or what it judges."""
-    return str(table.get("name") or f"{verdict.signal} {verdict.claim}")
+    return str(table.get("name") or f"{verdict.claim} ({verdict.signal})")
 
 
 def angles_in(table: Mapping[str, Any]) -> list[str]:

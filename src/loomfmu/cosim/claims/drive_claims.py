@@ -123,7 +123,7 @@ class EnergyBalance(Claim):
         if not through > 0.0:
             notes = ["the shaft does no work in this run"]
         share = most / through if through > 0.0 and not unwired else math.nan
-        return self.verdict(trace, "energy missing", signal, self.at_most, share, time, *notes)
+        return self.verdict(trace, "missing energy", signal, self.at_most, share, time, *notes)
 
 
 def _loads(trace: Signals) -> list[Load]:

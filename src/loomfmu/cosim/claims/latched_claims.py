@@ -56,7 +56,7 @@ class BeltDeflection(Claim):
             notes.append("the belt folded")
         if trace[f"{self.belt}.too_long"][-1]:
             notes.append("free lengths above 5 times bow_length do not count")
-        text = "largest deflection of the belt"
+        text = "largest deflection"
         return self.verdict(trace, text, latch, self.at_most, worst, time, *notes)
 
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
@@ -112,7 +112,9 @@ class HealdBlows(Claim):
         hardest, blows = trace[latch], int(trace[f"{self.play}.blows"][-1])
         worst = float(hardest[-1])
         time = float(trace.time[np.argmax(hardest == worst)]) if blows else math.nan
-        return self.verdict(trace, "hardest blow", latch, self.at_most, worst, time, f"{blows} blows")
+        return self.verdict(
+            trace, "hardest blow", latch, self.at_most, worst, time, f"{blows} blow{'s' * (blows != 1)}"
+        )
 
 
 def _reached(trace: Signals, latch: str, followed: Floats) -> float:

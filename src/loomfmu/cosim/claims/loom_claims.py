@@ -60,7 +60,7 @@ class RapierInOpenShed(_InShed):
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
         check_lifted_by(self.lifted_by, ())
-        text, limit, travel = "the shed is open for the rapier head", self.head_height, self._travel(trace)
+        text, limit, travel = "smallest shed opening at the head", self.head_height, self._travel(trace)
         in_shed = travel.beyond(self._idle(trace), 1.0)
         warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}
         if not in_shed:
@@ -103,7 +103,10 @@ class ReedClearOfRapier(_InShed):
     needs = ("reed.position", "reed.front_limit", "weft.travel")
 
     def judge(self, trace: Signals) -> Verdict:
-        text, signal = "the reed is clear of the rapier", f"{self.reed}.front_limit - {self.reed}.position"
+        text, signal = (
+            "smallest distance from the front limit",
+            f"{self.reed}.front_limit - {self.reed}.position",
+        )
         travel, position = self._travel(trace), motion_of(trace, f"{self.reed}.position")
         in_shed = travel.beyond(self._idle(trace), 1.0)
         if not in_shed:
@@ -141,7 +144,7 @@ class TransferInTime(_Transfer):
     unit = LENGTH
 
     def judge(self, trace: Signals) -> Verdict:
-        text, signal = f"the heads meet in {self.window}", f"{self.transfer}.overlap"
+        text, signal = f"overlap of the heads in {self.window}", f"{self.transfer}.overlap"
         overlap, needed = self._overlap(trace)
         found = [lowest(overlap, -1.0, [each]) for each in shaft.passes(trace, self.window)]
         if not found:
@@ -176,7 +179,7 @@ class TransferSpeed(_Transfer):
     sense, unit = AT_MOST, VELOCITY
 
     def judge(self, trace: Signals) -> Verdict:
-        text, signal = "relative speed of the heads during the transfer", f"{self.transfer}.closing_velocity"
+        text, signal = "highest relative speed of the heads", f"{self.transfer}.closing_velocity"
         (overlap, needed), closing = self._overlap(trace), motion_of(trace, signal)
         during = overlap.beyond(needed, 1.0)
         if not during:
@@ -208,7 +211,7 @@ class NipHolds(Claim):
         drafting = motion_of(trace, f"{self.roller}.drafting_force")
         holding = motion_of(trace, f"{self.roller}.holding_force")
         most = lowest(drafting, -1.0)
-        text, signal = "the nip holds the fibres", f"{self.roller}.holding_force / drafting_force"
+        text, signal = "holding force over drafting force", f"{self.roller}.holding_force / drafting_force"
         if not most.value > 0.0:
             note = "no fibres are drafted in this run"
             return self.verdict(trace, text, signal, self.at_least, math.nan, math.nan, note)
@@ -234,17 +237,17 @@ class LocksInTime(Claim):
     sense, unit = AT_MOST, SPEED
 
     def judge(self, trace: Signals) -> Verdict:
-        text, limit = "the pattern locks are in time", float(trace[f"{self.lock}.speed_limit"][-1])
+        text, limit = "highest speed of the shaft", float(trace[f"{self.lock}.speed_limit"][-1])
         in_time = np.asarray(trace[f"{self.lock}.in_time"], dtype=bool)
         speed = motion_of(trace, "shaft.velocity", rates=1) if "shaft.velocity" in trace else None
         if speed is None or not np.array_equal(np.abs(speed.values[0]) <= limit, in_time):
-            return self._at_samples(trace, text, in_time)
+            return self._at_samples(trace, in_time)
         fastest = min(lowest(speed, 1.0), lowest(speed, -1.0), key=lambda found: -abs(found.value))
         highest = abs(fastest.value)
         notes = (speed.note, fastest.note)
         return self.verdict(trace, text, "shaft.velocity", limit, highest, fastest.time, *notes)
 
-    def _at_samples(self, trace: Signals, text: str, in_time: NDArray[np.bool_]) -> Verdict:
+    def _at_samples(self, trace: Signals, in_time: NDArray[np.bool_]) -> Verdict:
         """The verdict on a lock that does not follow the main shaft: what it says at the samples."""
         signal = f"{self.lock}.torque_margin"
         margin = np.asarray(trace[signal])
@@ -252,6 +255,6 @@ class LocksInTime(Claim):
         place = int(late[0]) if len(late) else int(np.argmin(margin))
         note = f"{self.lock}.in_time is known only at the samples: the lock does not follow shaft.velocity"
         return self.verdict(
-            trace, text, signal, 0.0, float(margin[place]), float(trace.time[place]), note,
+            trace, "torque margin", signal, 0.0, float(margin[place]), float(trace.time[place]), note,
             holds=not len(late), unit=ONE, sense=AT_LEAST,
         )  # fmt: skip

@@ -27,7 +27,7 @@ class Bounded(Claim, kind=False):
     window: Window | None = argument(Edges("rad", "deg", usual=1.5), None)
 
     grid = LANDINGS
-    side: ClassVar[str]
+    text: ClassVar[str]
 
     def signals(self, instances: Iterable[str]) -> list[str]:
         return [self.signal]
@@ -38,7 +38,7 @@ class Bounded(Claim, kind=False):
     def judge(self, trace: Signals) -> Verdict:
         limit = self._limit(trace)
         unit = (trace.unit(self.signal), trace.display(self.signal))
-        text, within = f"stays {self.side}", None
+        text, within = self.text, None
         if self.window is not None:
             text += f" in {self.window}"
             within = shaft.times_within(trace, self.window)
@@ -76,13 +76,13 @@ class Bounded(Claim, kind=False):
 class Above(Bounded):
     """A signal stays at or above a bound."""
 
-    side, sense = "above", AT_LEAST
+    text, sense = "lowest value", AT_LEAST
 
 
 class Below(Bounded):
     """A signal stays at or below a bound."""
 
-    side, sense = "below", AT_MOST
+    text, sense = "highest value", AT_MOST
 
 
 def check_speed(parameter: str, value: float, unit: str) -> None:

@@ -208,7 +208,7 @@ loomfmu.judge = run => {
     },
     heald_blows: claim => {
       const latch = run.signal(`${claim.play}.hardest_blow`), blows = last(run.signal(`${claim.play}.blows`)), worst = last(latch);
-      return { worst, bound: claim.at_most, time: blows ? time[latch.indexOf(worst)] : NaN, notes: [`${blows} blows`] };
+      return { worst, bound: claim.at_most, time: blows ? time[latch.indexOf(worst)] : NaN, notes: [`${blows} blow${blows === 1 ? "" : "s"}`] };
     },
     motor_power: claim => extreme(`${claim.motor}.motor_power`, claim.at_most, -1),
     speed_fluctuation: claim => {
