@@ -4,7 +4,7 @@ import errno
 import os
 import re
 import signal
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import date, time
 from pathlib import Path
 
@@ -88,6 +88,24 @@ def path_of(given: object, what: str) -> Path:
     return Path(given)
 
 
+def numbered(names: Sequence[str], numbers: Iterable[int]) -> str:
+    """The choices of an enumeration, for a number that is none of theirs.
+
+    >>> numbered(["pinned", "guided"], [1, 2])
+    '1 (pinned) or 2 (guided)'
+    """
+    return listed((f"{number} ({name})" for number, name in zip(numbers, names, strict=True)), "or")
+
+
+def misspelt(name: str, known: Iterable[str]) -> list[str]:
+    """The known name that differs from this one by a slip of spelling, if there is one."""
+    import difflib  # most runs have no such error
+
+    if len(name) > MOST_LETTERS:  # far from any name, and slow to compare
+        return []
+    return difflib.get_close_matches(name, known, n=1, cutoff=0.75)
+
+
 def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] | None = None) -> str:
     """The nearest known name as the end of a message, by its spelling or by a word of its description.
 
@@ -104,11 +122,7 @@ def suggestion(name: str, known: Iterable[str], descriptions: Mapping[str, str] 
     word = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
     described = [each for each, text in (descriptions or {}).items() if name and word.search(text)]
     # a slip of spelling first, then a word that was meant, then a distant likeness
-    near = (
-        difflib.get_close_matches(name, known, n=1, cutoff=0.75)
-        or described
-        or difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    )
+    near = misspelt(name, known) or described or difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     if near:
         return f"; did you mean {near[0]!r}?"
     shown = ", ".join(known[:MOST_SHOWN]) + (", ..." if len(known) > MOST_SHOWN else "")

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from . import units
 from .declarations import MAKERS
-from .errors import LoomfmuError
+from .errors import LoomfmuError, numbered
 
 LARGEST_INTEGER = 2147483647  # of FMI 2
 AT_STEP_END = "inputs_at_step_end"  # false where inputs are values at the start of the step
@@ -128,6 +128,10 @@ class Variable:
         high = math.inf if self.maximum is None else self.maximum
         if low <= value <= high and math.isfinite(value):
             return ""
+        if self.choices:
+            return (
+                f"{self.name} = {value:.7g} must be {numbered(self.choices, range(1, len(self.choices) + 1))}"
+            )
         return f"{self.name} = {units.show(value, self.display)} is outside {self.range}"
 
 

@@ -32,6 +32,18 @@ CASES: dict[str, tuple[str, str]] = {
         "shaft.component = 'HealdFrame': the shaft of a scene must be a MainShaft or a DrivenShaft",
     ),
     "bad TOML": ("a = = 5", "not valid TOML: Invalid value (at line 1, column 5)"),
+    "a number that no choice has": (
+        HEAD + LOOM.replace("[loom]", "[loom]\nbelt_motion = true") + "[belt_motion]\nguide_end = 3\n",
+        "belt_motion.guide_end = 3 must be 1 (calibrated) or 2 (play)",
+    ),
+    "a misspelt choice": (
+        HEAD + LOOM.replace("[loom]", "[loom]\nbelt_motion = true") + "[belt_motion]\nguide_end = 'plya'\n",
+        "belt_motion.guide_end = 'plya' must be 'calibrated' or 'play'; did you mean 'play'?",
+    ),
+    "no choice at all": (
+        HEAD + LOOM.replace("[loom]", "[loom]\nbelt_motion = true") + "[belt_motion]\nhead_end = 'fixed'\n",
+        "belt_motion.head_end = 'fixed' must be 'pinned' or 'guided'",
+    ),
     "zero steps": (
         HEAD.replace("90", "0"),
         "steps_per_revolution = 0 is outside [1, 1e+09]",
@@ -132,7 +144,9 @@ CASES: dict[str, tuple[str, str]] = {
     ),
     "unknown law": (
         HEAD + LOOM + '[dobby]\nlaw = "sloped-sin"\n',
-        "dobby.law = 'sloped-sin' is unknown; did you mean 'sloped_sine'?",
+        "dobby.law = 'sloped-sin' must be 'uniform', 'harmonic_ends', 'sloped_line', 'sloped_sine',"
+        " 'slotted_levers', 'noncircular_gears', 'spline_cam', 'table' or 'plateau';"
+        " did you mean 'sloped_sine'?",
     ),
     "no yes or no": (
         HEAD + LOOM + "[belt]\nprescribe_length_factor = 1\n",

@@ -286,7 +286,7 @@ MISTAKES = {
     "drive_motor.verbose = 'yes' must be true or false": {
         "more": '<ssv:Parameter name="verbose"><ssv:Boolean value="yes"/></ssv:Parameter>'
     },
-    "drive_motor.mode = 99999999999999999999 is outside [1, 2]": {
+    "drive_motor.mode = 99999999999999999999 must be 1 (both_ways) or 2 (no_way_back)": {
         "more": '<ssv:Parameter name="mode"><ssv:Integer value="99999999999999999999"/></ssv:Parameter>'
     },
     "DefaultExperiment stopTime = 'late' is not a finite number": {"experiment": 'stopTime="late"'},

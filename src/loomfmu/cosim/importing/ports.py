@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ... import units
-from ...errors import LoomfmuError, listed, shown, suggestion
+from ...errors import LoomfmuError, listed, misspelt, numbered, shown
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
@@ -152,7 +152,9 @@ class Port:
         alike = [choice for choice in self.choices if _joined(choice) == _joined(given)]
         found = given if given in self.choices else alike[0] if len(alike) == 1 else None
         if found is None:
-            raise LoomfmuError(f"{where} = {given!r} is unknown{suggestion(given, self.choices)}")
+            known = listed((f"{choice!r}" for choice in self.choices), "or")
+            near = "".join(f"; did you mean {choice!r}?" for choice in misspelt(given, self.choices))
+            raise LoomfmuError(f"{where} = {shown(given)} must be {known}{near}")
         return self.numbers[self.choices.index(found)]
 
     def _quantity(self, given: Any) -> float:
@@ -163,6 +165,9 @@ class Port:
         return units.parse(given, "1")
 
     def _within(self, value: float, where: str) -> Value:
+        if self.numbers and value not in self.numbers:
+            found = shown(value) if isinstance(value, int) else f"{value:.7g}"
+            raise LoomfmuError(f"{where} = {found} must be {numbered(self.choices, self.numbers)}")
         low, high = RANGES.get(self.base_type, (-math.inf, math.inf))
         low = low if self.minimum is None else max(low, self.minimum)
         high = high if self.maximum is None else min(high, self.maximum)
@@ -178,9 +183,6 @@ class Port:
         if self.kind == "Integer":
             if value != int(value):
                 raise LoomfmuError(f"{where} = {value:.7g} is not a whole number")
-            if self.numbers and value not in self.numbers:
-                known = listed((f"{n} ({c})" for n, c in zip(self.numbers, self.choices, strict=True)), "or")
-                raise LoomfmuError(f"{where} = {value:.7g} is not one of {known}")
             return int(value)
         return value
 
