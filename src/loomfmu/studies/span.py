@@ -1,5 +1,6 @@
 """What a study varies, and over which range."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -93,14 +94,16 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
     port, value = _port(scene, variable)
     check_effect(scene.instances, variable.targets)
     given = [None if each is None else float(variable.read(each)) for each in (from_, to)]
-    usual, source = _usual(variable, port, value, given)
+    usual = _usual(variable, port, value) if None in given else []
+    source = _source(given, [text for _end, text in usual])
     if any(units.is_plain(each) for each in (from_, to)) and variable.unit not in ("1", variable.display):
-        source += f"; plain numbers are {variable.unit}"
-    low, high = (each if each is not None else other for each, other in zip(given, usual, strict=True))
+        source += f"; numbers without a unit are {variable.unit}"
+    low, high = (usual[place][0] if each is None else each for place, each in enumerate(given))
     doubts = tuple(filter(None, (variable.doubt(each) for each in (from_, to) if each is not None)))
     span = Span(variable, low, high, value, source, doubts)
     if not low < high:
-        raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty")
+        where = f" ({source}); give both ends" if None in given else ""
+        raise LoomfmuError(f"{key}: the range from {span.show(low)} to {span.show(high)} is empty{where}")
     return span
 
 
@@ -131,20 +134,27 @@ def _port(scene: Scene, variable: Varied) -> tuple[Port, float]:
     return port, float(found or 0.0)
 
 
-def _usual(
-    variable: Varied, port: Port, value: float, given: Sequence[float | None]
-) -> tuple[tuple[float, float], str]:
-    """The range where none is given, and where it comes from."""
-    if None not in given:
-        return (0.0, 0.0), "given"
+def _usual(variable: Varied, port: Port, value: float) -> list[tuple[float, str]]:
+    """The ends of the range where none are given, and where each comes from."""
     low, high = port.minimum, port.maximum
-    if low is not None and high is not None and high - low <= SENSIBLE * abs(value):
-        return (low, high), "its bounds"
+    lowest, highest = (-math.inf if low is None else low), (math.inf if high is None else high)
+    bounds = (lowest, "its lower bound"), (highest, "its upper bound")
+    if highest - lowest <= SENSIBLE * abs(value):
+        return [*bounds]
     if not value:
         raise LoomfmuError(f"{variable.key} is 0 in this scene, so there is no usual range: give from and to")
-    ends = sorted((value / AROUND, value * AROUND))
-    if low is not None:
-        ends = [max(each, low) for each in ends]
-    if high is not None:
-        ends = [min(each, high) for each in ends]
-    return (ends[0], ends[1]), f"half to twice the scene's {variable.show(value)}"
+    own = f"the scene's {variable.show(value)}"
+    ends = sorted([(value / AROUND, f"half {own}"), (value * AROUND, f"twice {own}")])
+    return [min(max(each, bounds[0]), bounds[1]) for each in ends]
+
+
+def _source(given: Sequence[float | None], usual: Sequence[str]) -> str:
+    """Where both ends of a range come from."""
+    if not usual:
+        return "given"
+    if any(each is not None for each in given):
+        low, high = (text if each is None else "given" for each, text in zip(given, usual, strict=True))
+        return f"lower end {low}, upper end {high}"
+    first, _, own = usual[0].partition(" ")
+    shared = usual[1].endswith(f" {own}")  # half and twice the same value
+    return f"{first if shared else usual[0]} to {usual[1]}"

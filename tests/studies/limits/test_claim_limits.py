@@ -62,8 +62,8 @@ def test_the_margin_of_the_demo_limits_its_speed() -> None:
     (held,) = found.ranges
     assert (held.low, held.below, held.above) == (300.0 * RPM, "", "the belt keeps a margin of 10 %")
     assert held.high == margin.limits[0].value and found
-    above = "above it 'the belt keeps a margin of 10 %' fails first."
-    assert str(found) == f"All claims hold from 300 to 646.8164 rev/min; {above}"
+    above = "The first to fail is 'the belt keeps a margin of 10 %' above this range."
+    assert str(found) == f"All claims hold from 300 to 646.8164 rev/min. {above}"
     assert found.resolution == pytest.approx(15.0 * RPM)  # a range of 600 rev/min by 41 points
     # the time of the command is that of these runs and of its start
     assert found.runs < 60
@@ -235,6 +235,11 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
     [
         ({"vary": "shaft.speed", "from_": "900 rpm", "to": 5}, "shaft.speed: the range from 900 rev/min to"),
         ({"vary": "shaft.speed=5rpm..5rpm"}, "shaft.speed: the range from 5 rev/min to 5 rev/min is empty"),
+        (
+            {"vary": "shaft.speed", "from_": "1300 rpm"},
+            "shaft.speed: the range from 1300 rev/min to 1200 rev/min is empty (lower end given, upper end"
+            " twice the scene's 600 rev/min); give both ends",
+        ),
         ({"vary": "shaft.speed=300rpm"}, "vary shaft.speed=300rpm: '300rpm' is not a range; write it as"),
         ({"vary": "shaft.speed=1..2", "to": 3}, "vary shaft.speed=1..2: the range is given twice"),
         ({"vary": "shaft.speed", "from_": "3 mm"}, "shaft.speed: '3 mm' is in mm, which does not fit rad/s"),

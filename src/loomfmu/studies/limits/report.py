@@ -34,7 +34,7 @@ def show(found: Limits) -> None:
 
 def _remark(limits: str) -> str:
     """What an entry says of limits beside the range in which the claim holds."""
-    return f"{limits}; " if "jumps" in limits or limits == SAME_EVERYWHERE else ""
+    return f"{limits}; " if "jumps" in limits or limits.startswith(SAME_EVERYWHERE) else ""
 
 
 def _effort(runs: int, found: Limits) -> str:

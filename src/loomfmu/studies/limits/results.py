@@ -11,7 +11,7 @@ from ...traces import Verdict
 from ..span import Span
 
 HEADINGS = ("claim", "holds", "limits", "distance at the scene's value")
-SAME_EVERYWHERE = "does not depend on it"
+SAME_EVERYWHERE = "does not depend on"  # the variable
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ def _range(stretch: Stretch, span: Span) -> str:
 def _limits(each: ClaimLimits, span: Span) -> str:
     """The limits of a claim."""
     if not each.depends:
-        return SAME_EVERYWHERE
+        return f"{SAME_EVERYWHERE} {span.key}"
     return ", ".join(
         f"jumps at {span.number(limit.value)}" if limit.jumps else span.number(limit.value)
         for limit in each.limits
@@ -193,11 +193,11 @@ def conclusion(found: Limits) -> Iterator[str]:
 def _sentence(stretch: Stretch, span: Span) -> str:
     text = f"All claims hold from {span.number(stretch.low)} to {span.show(stretch.high)}"
     ends = [
-        f"{way} it '{claim}' fails first"
+        f"'{claim}' {way} this range"
         for way, claim in (("below", stretch.below), ("above", stretch.above))
         if claim
     ]
-    return f"{text}; {' and '.join(ends)}." if ends else f"{text}, the whole range."
+    return f"{text}. The first to fail is {' and '.join(ends)}." if ends else f"{text}, the whole range."
 
 
 def _names(claims: Sequence[str]) -> str:
