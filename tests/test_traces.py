@@ -800,12 +800,12 @@ def test_files_that_are_something_else_are_refused(tmp_path: Path) -> None:
         Trace(tmp_path / "text.h5")
     with h5py.File(tmp_path / "other.h5", "w") as other:
         other["time"] = [0.0, 1.0]
-    with pytest.raises(LoomfmuError, match=r"not a trace of loomfmu: the dataset /shaft_angle is missing"):
+    with pytest.raises(LoomfmuError, match=r"not a trace of loomfmu \(the dataset /shaft_angle is missing\)"):
         Trace(tmp_path / "other.h5")
     with h5py.File(tmp_path / "other.h5", "a") as other:  # another tool's, much like ours
         other["shaft_angle"] = [0.0, 1.0]
         other.attrs.update({"title": "theirs", "status": "complete"})
-    with pytest.raises(LoomfmuError, match=r"the attribute 'software' is missing$"):
+    with pytest.raises(LoomfmuError, match=r"the attribute 'software' is missing\)$"):
         Trace(tmp_path / "other.h5")
     assert not TRACE.ours(tmp_path / "other.h5")  # it is not replaced
 

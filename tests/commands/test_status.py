@@ -58,7 +58,7 @@ def test_output_that_nobody_takes_is_no_failed_claim() -> None:
         ),
         (
             ["show", "other.h5"],
-            "other.h5: not a trace of loomfmu: the dataset /shaft_angle is missing",
+            "other.h5: not a trace of loomfmu (the dataset /shaft_angle is missing)",
         ),
     ],
 )

@@ -115,7 +115,7 @@ MISTAKES = {
         "    def step(self, time: float, step_size: float) -> int:\n        return 0\n\n\n@dataclass",
         r"2 components; name one: .*bell\.py:Other, .*bell\.py:Bell",
     ),
-    "no component": ("(Component)", "", "it has no component: declare a class on"),
+    "no component": ("(Component)", "", "it has no component; declare a class on"),
 }  # fmt: skip
 
 

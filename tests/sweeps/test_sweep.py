@@ -518,7 +518,7 @@ def test_missing_packages_are_named_with_what_installs_them(
         monkeypatch.setattr(
             "loomfmu.sweeps.place.find_spec", lambda name, missing=package: None if name == missing else name
         )
-        with pytest.raises(LoomfmuError, match=rf'this needs {package}: pip install "loomfmu\[{extra}\]'):
+        with pytest.raises(LoomfmuError, match=rf'needs {package}: pip install "loomfmu\[{extra}\]'):
             loomfmu.sweep(path, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
     assert not (tmp_path / "out").exists()
 

@@ -54,8 +54,8 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
     order, lagged = step_order(needed.instances, needed.wires)
     if lagged:
         raise LoomfmuError(
-            f"loop: {lagged[0]} closes an algebraic loop, which {whole} cannot hold: {instead},"
-            f' or cut the wire: [wires] "{".".join(lagged[0].sink)}" = false'
+            f"loop: {lagged[0]} closes an algebraic loop, which {whole} cannot hold; {instead},"
+            f' or cut the wire by [wires] "{".".join(lagged[0].sink)}" = false'
         )
     parts = tuple(
         _part(needed.instances[name], f"{whole} is made of components alone: {instead}") for name in order

@@ -166,7 +166,7 @@ def _chosen(module: ModuleType, name: str, shown: Path) -> type[Component]:
         return found[name]
     if not found:
         raise LoomfmuError(
-            f"{shown}: it has no component: declare a class on ShaftDriven or Component of loomfmu.mechanism"
+            f"{shown}: it has no component; declare a class on ShaftDriven or Component of loomfmu.mechanism"
         )
     candidates = whole or found
     if len(candidates) > 1:

@@ -99,7 +99,7 @@ def write(
     occasions = Occasions(subject)
     reason = _not_drawn(subject, occasions) if subject.turns else "no shaft turns"
     if reason:
-        raise LoomfmuError(f"{trace.given}: there is no timing diagram: {reason}")
+        raise LoomfmuError(f"{trace.given}: there is no timing diagram, as {reason}")
     numbers = occasions.numbers
     number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
     if number not in numbers:

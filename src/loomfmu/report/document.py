@@ -50,7 +50,7 @@ def write(
         raise LoomfmuError("a report needs a trace: name at least one")
     for trace in opened:
         if not trace.rows:
-            raise LoomfmuError(f"{trace.given}: there is nothing to show: the trace has no samples")
+            raise LoomfmuError(f"{trace.given}: the trace has no samples, so there is nothing to show")
     first = traces[0]
     beside = first.path if isinstance(first, Trace) else Path(first)
     path = Path(output) if output is not None else beside.with_suffix(".html")

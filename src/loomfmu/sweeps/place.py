@@ -44,7 +44,7 @@ def check_packages(path: Path, used: dict[str, bool]) -> None:
     missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
     if missing:
         extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
-        raise LoomfmuError(f'{path}: this needs {listed(missing)}: pip install "loomfmu[{extras}]"')
+        raise LoomfmuError(f'{path} needs {listed(missing)}: pip install "loomfmu[{extras}]"')
 
 
 @contextmanager

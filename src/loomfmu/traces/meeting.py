@@ -134,7 +134,7 @@ def meet(first: Trace, second: Trace, over: str | None) -> Meeting:
     traces = (first, second)
     for trace in traces:
         if not trace.rows:
-            raise LoomfmuError(f"{trace.given}: there is nothing to compare: the trace has no samples")
+            raise LoomfmuError(f"{trace.given}: the trace has no samples, so there is nothing to compare")
     ways = [_way(trace.shaft_angle) for trace in traces]
     turn = ways[0] != 0 and ways[0] == ways[1]
     if over not in (None, *AXES):

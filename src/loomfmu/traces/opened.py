@@ -33,7 +33,7 @@ class TraceFile:
         self._state: tuple[int, ...] = ()
         with self.opened() as file:
             if lacking := _lacking(file):
-                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {lacking} is missing")
+                raise LoomfmuError(f"{self.given}: not a trace of loomfmu ({lacking} is missing)")
             if file.attrs["status"] != "running":  # else it grows
                 self._state = _state(self.path)
 
@@ -62,7 +62,7 @@ class TraceFile:
             try:
                 yield self._file
             except Foreign as error:
-                raise LoomfmuError(f"{self.given}: not a trace of loomfmu: {error}") from None
+                raise LoomfmuError(f"{self.given}: not a trace of loomfmu ({error})") from None
             except (KeyError, OSError, RuntimeError, TypeError, ValueError) as error:
                 raise LoomfmuError(f"{self.given}: the file is damaged ({error.args[0]})") from None
             finally:

@@ -54,7 +54,7 @@ def figure(size: tuple[float, float], shown: bool = False, layout: Any = "constr
 def checked(trace: Signals, over: str | None, fold: bool) -> str:
     """What to plot over: "angle" or "time". Raises LoomfmuError where that makes no sense."""
     if not len(trace.time):
-        raise LoomfmuError(f"{trace.name}: there is nothing to plot: the trace has no samples")
+        raise LoomfmuError(f"{trace.name}: the trace has no samples, so there is nothing to plot")
     if over is None:
         over = "angle" if trace.turns or fold else "time"
     if over not in ("angle", "time"):

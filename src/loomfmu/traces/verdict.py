@@ -61,7 +61,7 @@ class Verdict:
         place = f" at {self.place}" if self.place else ""
         note = f" ({self.note})" if self.note else ""
         return (
-            f"{self.word}: {self.claim}: {self.signal}, {self.shown(self.worst)}{place},"
+            f"{self.word}: {self.claim} ({self.signal}), {self.shown(self.worst)}{place},"
             f" bound {self.shown(self.bound)}{self.reason}{note}"
         )
 

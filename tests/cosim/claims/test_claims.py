@@ -222,7 +222,7 @@ def test_samples_that_do_not_tell_an_oscillation_do_not_make_a_claim_hold(tmp_pa
     assert judged(8)
     assert judged(8).note == ""
     assert not judged(2)
-    assert judged(2).note == "the samples are too far apart to be sure: take more steps"
+    assert judged(2).note == "the samples are too far apart to be sure; take more steps"
 
 
 def test_what_is_not_a_number_does_not_hold(tmp_path: Path) -> None:
@@ -593,10 +593,10 @@ def test_stop_contacts(loom: Callable[..., Trace]) -> None:
 def test_a_verdict_as_a_person_reads_it(loom: Callable[..., Trace]) -> None:
     trace = loom(shaft__speed="700 rpm")
     said = str(judge(trace, kind="lowest_margin", bound=0.1, name="no buckling"))
-    assert said.startswith("FAILS: no buckling: lowest margin: belt.lowest_margin, -0.05")
+    assert said.startswith("FAILS: no buckling: lowest margin (belt.lowest_margin), -0.05")
     assert said.endswith(" deg, rev. 1, bound 0.1")
     said = str(judge(trace, kind="dwell", heald="heald_1", at_least="80 deg"))
-    assert said.startswith("holds: dwell within 1.5 % of the stroke: heald_1.lift, 85.92125 deg at ")
+    assert said.startswith("holds: dwell within 1.5 % of the stroke (heald_1.lift), 85.92125 deg at ")
     assert said.endswith(", bound 80 deg")
 
 
@@ -613,7 +613,7 @@ def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Callable[..., Tra
     assert math.isclose(shown["worst"], found.worst * 30 / math.pi, rel_tol=1e-14)
     # what pytest prints of a failing assert
     assert repr(judge(trace, kind="below", signal="belt.lowest_speed_limit", bound="600 rpm")) == (
-        "<Verdict FAILS: highest value: belt.lowest_speed_limit, 95492.97 rev/min at 0 s, 0.000 deg, rev. 1,"
+        "<Verdict FAILS: highest value (belt.lowest_speed_limit), 95492.97 rev/min at 0 s, 0.000 deg, rev. 1,"
         " bound 600 rev/min>"
     )
     dwelling = judge(trace, kind="dwell_contains", heald="heald_2", angles=["180 deg"])
@@ -640,7 +640,7 @@ def test_a_run_without_a_shaft_tells_the_time_alone(tmp_path: Path) -> None:
     text = 'duration = "1 s"\nstep = "0.01 s"\n[shaft_2]\ncomponent = "MainShaft"\nspeed = "60 rpm"\n'
     claim = '[[claims]]\nkind = "below"\nsignal = "shaft_2.angle"\nbound = "90 deg"\n'
     found = run(scenes.parse(text + claim, "seconds"), output=tmp_path / "seconds.h5")
-    assert str(found.claims[0]) == "FAILS: highest value: shaft_2.angle, 360 deg at 1 s, bound 90 deg"
+    assert str(found.claims[0]) == "FAILS: highest value (shaft_2.angle), 360 deg at 1 s, bound 90 deg"
     stored = found.claims[0].as_dict()
     assert stored["angle"] is stored["revolution"] is None
     with pytest.raises(LoomfmuError, match=r"the claim needs shaft angles, but shaft\.angle is not recorded"):
@@ -899,7 +899,7 @@ def test_the_pattern_locks_are_in_time_up_to_their_speed_limit(tmp_path):
     claim = 'kind = "locks_in_time"'
     fails = judged(tmp_path, claim, **{"shaft.speed": "850 rev/min"})
     assert not fails.holds
-    assert str(fails).startswith("FAILS: highest speed of the shaft: shaft.velocity, 850 rev/min at 0 s")
+    assert str(fails).startswith("FAILS: highest speed of the shaft (shaft.velocity), 850 rev/min at 0 s")
     assert str(fails).endswith(", bound 824.6588 rev/min")
     assert judged(tmp_path, claim, **{"shaft.speed": "800 rev/min"}).holds
     assert not judged(tmp_path, claim, **{"shaft.speed": "-850 rev/min"}).holds
@@ -910,7 +910,7 @@ def test_the_locks_are_judged_by_the_shafts_speed_between_the_samples(tmp_path):
     ripple = {"shaft.speed": "800 rev/min", "shaft.ripple_amplitude": 0.05, "shaft.ripple_order": 8}
     coarse = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=8, **ripple)
     assert not coarse.holds
-    assert coarse.note == "the samples are too far apart to be sure: take more steps"
+    assert coarse.note == "the samples are too far apart to be sure; take more steps"
     fine = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=360, **ripple)
     assert not fine.holds
     # the cubics through 45 samples of an oscillation: (2 pi / 45)^4 / 384 = 1e-6 of its amplitude
@@ -941,7 +941,7 @@ def test_a_frame_that_crosses_the_closed_shed_between_samples_leaves_no_opening(
 
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
-FAR_APART = "the samples are too far apart to be sure: take more steps"
+FAR_APART = "the samples are too far apart to be sure; take more steps"
 
 
 @pytest.mark.parametrize("steps", [1, 2, 3, 4, 6, 8, 12, 16, 19])

@@ -42,7 +42,7 @@ def test_what_is_known_keeps_the_bound_but_the_rest_is_open(trace: Trace) -> Non
     assert (verdict.holds, verdict.decided, verdict.word) == (False, False, "undecided")
     assert math.isnan(verdict.worst) and math.isnan(verdict.time) and math.isnan(verdict.distance)
     assert "numerical error" not in str(verdict)
-    assert "not known from 0.3 s, 10.8 deg, rev. 1 on: a.sure is false (true: it is in sight)" in verdict.note
+    assert "not known from 0.3 s, 10.8 deg, rev. 1 on, as a.sure is false" in verdict.note
 
 
 def test_what_is_known_decides_a_claim_that_it_breaks(trace: Trace) -> None:

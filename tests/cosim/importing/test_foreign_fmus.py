@@ -103,7 +103,7 @@ def test_a_loop_with_an_fmu_that_keeps_no_state_cannot_be_iterated(
     text += "".join(f'"weft.{to}" = "motor.{name}"\n' for to, name in zip(inputs, names[1:], strict=True))
     with pytest.raises(LoomfmuError) as raised:
         ran(place, text, tmp_path)
-    assert str(raised.value).startswith("motor: it cannot save its state, which an iterated loop requires: ")
+    assert str(raised.value).startswith("motor cannot save its state, which an iterated loop requires: ")
     assert "\n" not in str(raised.value)
 
 
@@ -139,7 +139,7 @@ def test_claims_on_other_makers_signals(place: Path, tmp_path: Path) -> None:
     text = MOTOR + '[[claims]]\nkind = "below"\nsignal = "motor.{}"\nbound = {}\n'
     assert ran(place, text.format("flange_w", '"600 rpm"'), tmp_path).holds
     result = ran(place, text.format("winding", "150"), tmp_path)
-    assert not result.holds and "winding, 200 K at 0 s" in str(result.claims[0])
+    assert not result.holds and "winding), 200 K at 0 s" in str(result.claims[0])
     with pytest.raises(
         LoomfmuError, match=r"^claim 'below': window is a shaft angle, but the scene has no sh"
     ):

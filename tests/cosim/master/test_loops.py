@@ -91,7 +91,7 @@ def test_an_unstable_lagged_loop_is_reported_with_its_remedy(inertia: float, fla
     with pytest.raises(LoomfmuError) as raised:
         driven("lagged", inertia, flavour=flavour)
     said = str(raised.value)
-    assert said.startswith(f"loop: {WIRES}: unstable: grows by a factor of ")
+    assert said.startswith(f"loop {WIRES} is unstable, growing by a factor of ")
     assert said.endswith('; set coupling = "iterated"')
     assert "\n" not in said
 
@@ -384,7 +384,7 @@ def test_a_growing_alternation_is_seen_whatever_the_blocks(factor: float, block:
     with np.errstate(over="ignore"):
         values = (1.0 + 1e-9 * (-factor) ** np.minimum(steps, 250.0))[:, None]
     watch = growth()
-    with pytest.raises(LoomfmuError, match=rf"unstable: grows by a factor of {factor:.3g} per step"):
+    with pytest.raises(LoomfmuError, match=rf"is unstable, growing by a factor of {factor:.3g} per step"):
         for start in range(0, 400, block):
             watch.check(steps[start : start + block] * 1e-3, values[start : start + block])
 

@@ -58,6 +58,6 @@ def test_in_a_loop_ours_take_what_theirs_became(late: Path, tmp_path: Path, weft
     assert first > 100.0
     assert result.trace["weft.acceleration"][0] == acceleration(first)
     assert (
-        "loop: weft.shaft_torque -> motor.load_tau changed after motor had left initialization:"
+        "loop: weft.shaft_torque -> motor.load_tau changed after motor had left initialization;"
         " its sample at 0 s is based on the old value"
     ) in result.warnings

@@ -174,7 +174,7 @@ def test_too_few_values_and_places_outside_of_the_run_are_refused(tmp_path: Path
     with pytest.raises(LoomfmuError, match=r"measured from 0\.4 to 1\.4 s, but the run goes from 0 to 1 s"):
         fit(*written(tmp_path, [(0.4, 20.0), (1.4, 5.0)]), vary=vary)
     rows = [(a, BENT / (0.8 * a) ** 2, 1e3 * a if a < 0.5 else "") for a in np.linspace(0.3, 0.9, 25)]
-    with pytest.raises(LoomfmuError, match=r"belt\.free_length has 8 values; .* at least 11"):
+    with pytest.raises(LoomfmuError, match=r"belt\.free_length has 8 values, but .* at least 11"):
         fit(*written(tmp_path, rows, f"{HEADING},belt.free_length [mm]"), vary=vary)
     angles = written(tmp_path, [(10.0, 20.0), (20.0, 5.0)], "shaft_angle [deg],belt.critical_force [N]")
     with pytest.raises(LoomfmuError, match="no shaft turns in this scene"):

@@ -11,7 +11,7 @@ from . import bernstein
 from .curves import BLOCK, ROUNDING, SAME, Floats, Integers, Motion, Stretch, Survey
 
 COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples in an oscillation
-COARSE_NOTE = "the samples are too far apart to be sure: take more steps"
+COARSE_NOTE = "the samples are too far apart to be sure; take more steps"
 
 
 class Extreme(NamedTuple):

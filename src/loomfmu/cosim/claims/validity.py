@@ -55,5 +55,4 @@ def unknown_note(trace: Signals, signal: str, first: Stretch) -> str:
     if turning is not None:
         degrees, revolution = place(turning, first.start)
         at += f", {units.show(degrees, 'deg')}, rev. {revolution}"
-    about = trace.description(str(flag))
-    return f"not known from {at} on: {flag} is false (true: {about[:1].lower()}{about[1:]})"
+    return f'not known from {at} on, as {flag} is false ("{trace.description(str(flag))}")'

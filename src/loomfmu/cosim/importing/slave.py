@@ -209,12 +209,12 @@ class Slave(Logged):
     def not_saved(self) -> LoomfmuError:
         """What to raise where it cannot save its state."""
         return LoomfmuError(
-            f"{self.name}: it cannot save its state, which an iterated loop requires: {self._reason()}"
+            f"{self.name} cannot save its state, which an iterated loop requires: {self._reason()}"
         )
 
     def not_restored(self) -> LoomfmuError:
         """What to raise where it cannot go back."""
-        return LoomfmuError(f"{self.name}: it cannot restore a state that it saved: {self._reason()}")
+        return LoomfmuError(f"{self.name} cannot restore a state that it saved: {self._reason()}")
 
     def rollback(self) -> Rollback | None:
         """What saves and restores it in the compiled stepper; None where only Python can.

@@ -126,7 +126,7 @@ class Loop:
     def unsettled(self, time: float) -> LoomfmuError:
         """What to raise where they do not agree in the step from `time` [s] on."""
         return LoomfmuError(
-            f"loop: {self.wires}: did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
+            f"loop {self.wires} did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
         )
 
 
@@ -304,7 +304,7 @@ class Growth:
             if end - start >= FEW_FLIPS and grows and last > NOTICED * largest:
                 factor = (last / first) ** (1.0 / (end - start))
                 raise LoomfmuError(
-                    f"loop: {self._wires}: unstable: grows by a factor of {factor:.3g} per step from"
+                    f"loop {self._wires} is unstable, growing by a factor of {factor:.3g} per step from"
                     f' {self._times[start]:.6g} s on; set coupling = "iterated"'
                 )
             start = end + 1

@@ -65,7 +65,7 @@ class Start:
         if not settled:
             self.warnings.append(f"loop: the start values did not converge in {MOST_EXCHANGES} exchanges")
         self.warnings += [
-            f"loop: {wire} changed after {wire.sink[0]} had left initialization:"
+            f"loop: {wire} changed after {wire.sink[0]} had left initialization;"
             f" its sample at 0 s is based on the old value"
             for wire, value in handed.items()
             if not math.isclose(value, self._value(wire), rel_tol=ROUNDING)

@@ -100,7 +100,9 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
         raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
     value = scene.instances[instance].effect(variable)
     if value is None:
-        raise LoomfmuError(f"claim: bound = {name!r} has no effect in this scene: {instance} does not use it")
+        raise LoomfmuError(
+            f"claim: bound = {name!r} has no effect in this scene, as {instance} does not use it"
+        )
     wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")

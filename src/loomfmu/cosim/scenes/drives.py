@@ -61,7 +61,7 @@ def drive(name: str, port: Port, table: Any) -> Drive:
             raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not a number")
         if revolutions and not row[0] > revolutions[-1]:
             raise LoomfmuError(
-                f"{where}: the revolutions must increase: {shown(row[0])} follows {revolutions[-1]:g}"
+                f"{where}: the revolutions must increase; {shown(row[0])} follows {revolutions[-1]:g}"
             )
         if not abs(row[0]) <= LATEST:
             raise LoomfmuError(f"{where}: revolution {shown(row[0])} is not within {LATEST:g}")

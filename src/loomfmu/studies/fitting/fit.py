@@ -153,8 +153,8 @@ def _check(spans: Sequence[Span], data: Measured) -> None:
     for signal, values in data.columns.items() if len(data.columns) > 1 else ():
         if (count := int(np.isfinite(values).sum())) < len(spans) + MORE:
             raise LoomfmuError(
-                f"{data.path}: {signal} has {count} values; several signals are weighed by what remains of"
-                f" each, which takes at least {len(spans) + MORE} for {len(spans)} parameters: leave it out"
+                f"{data.path}: {signal} has {count} values, but several signals with {len(spans)} parameters"
+                f" take at least {len(spans) + MORE} values of each, to weigh them; leave it out"
             )
     if data.count <= len(spans):
         raise LoomfmuError(

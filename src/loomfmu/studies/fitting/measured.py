@@ -54,7 +54,7 @@ def read(path: str | Path, scene: Scene, signals: Sequence[str] = ()) -> Measure
     found = _trace(path, signals) if path.suffix in (".h5", ".hdf5") else _table(path, scene, signals)
     for signal in found.columns:
         if output_port(scene, signal, f"{path}").kind != "Real":
-            raise LoomfmuError(f"{path}: {signal} is not a real number: only curves can be fitted")
+            raise LoomfmuError(f"{path}: {signal} is not a real number; only curves can be fitted")
     if not found.count:
         raise LoomfmuError(f"{path}: there are no measured values")
     return found

@@ -38,8 +38,8 @@ def remains(found: Fit) -> list[str]:
 def cautions(found: Fit) -> list[str]:
     """What to be careful about: ends of ranges, correlations, coarse steps."""
     lines = [
-        f"{each.signal}: the fit does not explain the data: {100.0 * each.share:.3g} % of their variation"
-        " remains; check the units and the rest of the scene"
+        f"{each.signal}: the fit leaves {100.0 * each.share:.3g} % of the variation of the data unexplained;"
+        " check the units and the rest of the scene"
         for each in found.curves
         if each.share > UNEXPLAINED
     ]

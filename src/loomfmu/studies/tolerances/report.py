@@ -20,7 +20,7 @@ def show(found: Tolerances) -> None:
         for word, claim, own, worst, where, costs in table
     ]
     printed.show(HEADINGS, table, entries)
-    say(f"{found.runs} runs: a search, not a proof: worse cases may exist")
+    say(f"{found.runs} runs; this is a search, not a proof, so worse cases may exist")
 
 
 def draw(found: Tolerances) -> Any:
