@@ -61,6 +61,11 @@ def complain(*lines: object) -> None:
         say(*lines, to=sys.stderr)
 
 
+def warn(warnings: Iterable[object]) -> None:
+    """Print warnings on standard error."""
+    complain(*(f"warning: {warning}" for warning in warnings))
+
+
 def complain_of(error: BaseException) -> None:
     """Print where an exception comes from on standard error."""
     complain(*"".join(traceback.format_exception(error)).splitlines())

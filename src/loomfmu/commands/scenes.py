@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .. import units
 from ..errors import LoomfmuError
-from ..printed import complain, say
+from ..printed import complain, say, warn
 from .options import pairs, platforms
 from .printing import print_verdicts, revolutions
 from .status import BEGUN, status_of
@@ -45,13 +45,13 @@ def _run_here(options: argparse.Namespace) -> int:
     )  # fmt: skip
     # before anything is printed: the reader of our output may have had enough
     page = _page_of(result.trace, result.path, options.force) if options.report else None
-    for warning in result.warnings:
-        complain(f"warning: {warning}")
+    warn(result.warnings)
     _print_title(result)
     if result.chosen:
         say(result.chosen)
     if options.explain:
-        say("skipped:", *(f"  {line}" for line in result.skipped))
+        heading = ["skipped:"] * (len(result.skipped) > 1)  # the last line counts what ran
+        say(*heading, *(f"  {line}" for line in result.skipped))
     print_verdicts(result.claims)
     scene = result.scene
     if scene.description and not scene.overrides:  # it is about the values that the scene has
@@ -116,8 +116,7 @@ def export(options: argparse.Namespace) -> int:
         warnings = whole.export(loaded, options.fmu, built_for, options.fmi or 2, options.force)
     else:
         warnings = ssp.export(loaded, options.ssp, options.flavour, built_for, options.force)
-    for warning in warnings:
-        complain(f"warning: {warning}")
+    warn(warnings)
     say(options.fmu or options.ssp)
     return 0
 

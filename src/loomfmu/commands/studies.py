@@ -2,7 +2,7 @@
 
 import argparse
 
-from ..printed import complain
+from ..printed import warn
 from .options import pairs
 
 
@@ -15,8 +15,7 @@ def sweep(options: argparse.Namespace) -> int:
         options.sweep, processes=options.processes, output=options.output, scheduler=options.scheduler,
         restart=options.restart, progress=True,
     )  # fmt: skip
-    for warning in found.warnings:
-        complain(f"warning: {warning}")
+    warn(found.warnings)
     show(found)
     return 0 if found.holds and not found.untraced else 1
 

@@ -22,7 +22,7 @@ def show(sweep: Sweep) -> None:
     again = f" ({before} run before)" if before else ""
     counts = [f"{sweep.holding} hold", f"{sweep.failing} fail"]
     counts += [f"{sweep.undecided} undecided"] * bool(sweep.undecided)
-    counts.append(f"{sweep.errors} could not be run")
+    counts += [f"{sweep.errors} could not be run"] * bool(sweep.errors)
     say(f"{sweep.plan.title}: {sweep.rows} combinations{again}: {listed(counts)}")
     if sweep.sensitivity is None:
         _show_worst(sweep)
@@ -70,7 +70,7 @@ def _show_worst(sweep: Sweep) -> None:
             for value in (worst, bound)
         ]
         table.append((word, str(row), *_values(sweep, row), claim, *shown, note or ""))
-        entry = f"{word}  row {row} ({_described(sweep, row)})", f"{claim}: {shown[0]}, bound {shown[1]}"
+        entry = f"{word}  row {row} ({_described(sweep, row)})", f"{claim} {shown[0]}, bound {shown[1]}"
         entries.append((*entry, f"({note})") if note else entry)
     if not any(line[-1] for line in table):
         headings, table = headings[:-1], [line[:-1] for line in table]

@@ -64,7 +64,7 @@ def test_the_table_of_a_scene_is_what_the_command_searches(
     picture = tmp_path / "worst.svg"
     assert main(["tolerances", str(scene), "--picture", str(picture)]) == 0
     said = capsys.readouterr().out
-    assert "belt.guide_clearance 0.2 to 0.35 mm (in the scene 0.3 mm)" in said
+    assert "belt.guide_clearance 0.2 to 0.35 mm (0.3 mm in the scene)" in said
     assert "belt.guide_clearance = 0.35 mm" in said and "not a proof" in said
     assert picture.read_text().startswith("<?xml")
     assert main(["tolerances", str(scene), "--vary", "belt.guide_clearance=0.2mm..0.9mm"]) == 1

@@ -6,7 +6,7 @@ from typing import Any
 from ...cosim.reading import checked
 from ...errors import LoomfmuError
 from ...files import check_target
-from ...printed import complain, say
+from ...printed import say, warn
 from ...report import pictures
 from .. import rewritten
 from .fit import fit
@@ -33,8 +33,7 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
         from .picture import draw
 
         pictures.save(draw(found), picture, found.scene.title, inputs, options.force)
-    for warning in found.warnings:
-        complain(f"warning: {warning}")
+    warn(found.warnings)
     show(found)
     say(*(f"written: {path}" for path in (output, picture) if path is not None))
     return 0

@@ -158,7 +158,8 @@ def _check(spans: Sequence[Span], data: Measured) -> None:
             )
     if data.count <= len(spans):
         raise LoomfmuError(
-            f"{data.path}: {data.count} values are too few to find {len(spans)} parameters with intervals"
+            f"{data.path}: {data.count} value{'s' * (data.count != 1)} cannot determine {len(spans)}"
+            f" parameter{'s' * (len(spans) != 1)} with intervals"
         )
 
 

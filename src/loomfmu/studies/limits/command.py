@@ -6,7 +6,7 @@ from typing import Any
 
 from ...errors import LoomfmuError
 from ...files import Kind, check_target, write_file
-from ...printed import complain, say
+from ...printed import say, warn
 from ...report import pictures
 from .boundary import limit
 from .report import CSV_LIMITS, boundary_table, show, show_boundary, table
@@ -26,8 +26,7 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     )  # fmt: skip
     if output is not None:  # before anything is printed
         _write(found, output, inputs, options.force)
-    for warning in found.warnings:
-        complain(f"warning: {warning}")
+    warn(found.warnings)
     if isinstance(found, Boundary):
         show_boundary(found)
     else:

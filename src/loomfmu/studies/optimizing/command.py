@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...printed import complain
+from ...printed import warn
 from .optimize import optimize
 from .report import show
 
@@ -13,7 +13,6 @@ def run(options: Any) -> int:
         options.study, processes=options.processes, output=options.output, scheduler=options.scheduler,
         restart=options.restart, progress=True,
     )  # fmt: skip
-    for warning in found.warnings:
-        complain(f"warning: {warning}")
+    warn(found.warnings)
     show(found)
     return 0 if found else 1

@@ -15,7 +15,7 @@ from ...traces import Verdict
 from .binding import Limit
 from .study import Goal, Study
 
-HEADINGS = ("", "best", "may be", "")
+HEADINGS = ("", "best", "range", "")
 CLAIMS = ("verdict", "claim", "worst", "bound", "distance", "")
 
 

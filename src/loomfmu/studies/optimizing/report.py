@@ -20,7 +20,7 @@ def show(found: Optimum) -> None:
         rows = claim_rows(found, best)
         printed.show(
             CLAIMS, rows,
-            [(f"{word}  {claim}:", f"{worst}, bound {bound}", _bracketed(distance, note))
+            [(f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
              for word, claim, worst, bound, distance, note in rows],
         )  # fmt: skip
     elif found.front:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from ...printed import complain, say
+from ...printed import say, warn
 from ...report import pictures
 from .report import draw, show
 from .tolerances import tolerances
@@ -18,8 +18,7 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     found = tolerances(options.scene, vary=options.vary, set=overrides, progress=True)
     if picture is not None:
         pictures.save(draw(found), picture, found.title, inputs, options.force)
-    for warning in found.warnings:
-        complain(f"warning: {warning}")
+    warn(found.warnings)
     show(found)
     if picture is not None:
         say(f"written: {picture}")
