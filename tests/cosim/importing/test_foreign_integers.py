@@ -102,7 +102,10 @@ def test_items_of_enumerations_may_have_blanks(tmp_path: Path) -> None:
         scene = scenes.parse(LENGTH + SHAFT3, "x", {"shaft.mode": name}, tmp_path)
         assert scene.instances["shaft"].values["mode"] == 2
     said = refused(tmp_path, LENGTH + SHAFT3 + 'mode = "no ways back"\n')
-    assert said == "shaft.mode = 'no ways back' must be 'free' or 'no way-back'; did you mean 'no way-back'?"
+    assert (
+        said
+        == "shaft.mode = 'no ways back' must be 'both ways' or 'no way-back'; did you mean 'no way-back'?"
+    )
     trace = ran(tmp_path, LENGTH + SHAFT3, tmp_path, shaft__mode="no way-back").trace
     assert set(trace["shaft.mode_used"]) == {2}
     with h5py.File(trace.path) as file:
