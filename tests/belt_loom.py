@@ -59,6 +59,5 @@ def shape(modes, ends, x=X):
 def ends(belt, length, speed=0.0):
     """Amplitudes of the end shapes at guide and head, and their rates."""
     belt.try_modes()
-    guide, head, guide_rate, head_rate = belt.end_excess(length, speed)
-    e, h, e_by_length, h_by_length = belt.end_bow(length)
-    return (e + guide, h + head), (speed * e_by_length + guide_rate, speed * h_by_length + head_rate)
+    _d, _k, guide, head, guide_rate, head_rate, *_rest = belt.ends(length, speed)
+    return (guide, head), (guide_rate, head_rate)

@@ -347,15 +347,21 @@ def test_a_belt_comes_out_at_rest_however_heavy_its_head_is_beside_it(belt_in_c,
     assert 0.1 * given["bow"] < loom.belt.deflection < 1.5 * given["bow"]  # clamped ends straighten it
 
 
-def test_a_step_whose_energy_is_not_balanced_is_not_followed(belt_in_c):
-    """It was accepted where it could not be halved further: 7 of 121 J were missing, and the belt folded."""
-    loom = Loom(
-        belt_in_c, 900.0, steps=360, start=85.0, bow=1e-5, guide_end=2, head_end=2, guide_clearance=3e-3,
-        guide_length=5.0, guide_offset=-0.01,
-    )  # fmt: skip
-    loom.turn_to(360.0)
-    assert not loom.belt.followed
-    assert abs(loom.belt.energy_residual) < 1e-7 * loom.belt.energy_through
+def test_a_belt_that_folds_has_its_energy_balanced_until_then(belt_in_c):
+    """Steps that could not be halved further left 7 of 121 J unexplained."""
+    found = []
+    for steps in (360, 1440):
+        loom = Loom(
+            belt_in_c, 900.0, steps=steps, start=85.0, bow=1e-5, guide_end=2, head_end=2,
+            guide_clearance=3e-3, guide_length=5.0, guide_offset=-0.01,
+        )  # fmt: skip
+        loom.turn_to(264.0)
+        assert loom.belt.folded and loom.belt.followed
+        assert abs(loom.belt.energy_residual) < 1e-8 * loom.belt.energy_through
+        found.append(loom.belt.largest_deflection)
+    assert found[0] == pytest.approx(
+        found[1], rel=3e-3
+    )  # it counts as folded after a step of the integration
 
 
 @pytest.mark.parametrize("beyond", [1.01, 1.4])

@@ -4,19 +4,20 @@ from dataclasses import dataclass
 from math import fabs, sqrt
 
 from ..physics.belt import LARGEST_BEND
+from ..physics.belt_bending import LEAST_SQUARE
 from ..physics.belt_ends import buckling, end_shape
-from ..physics.belt_shape import LEAST_SQUARE, shape_at, shape_extremes, shortening
+from ..physics.belt_shape import shape_at, shape_extremes
 from ..physics.numerics.extremes import highest_so_far
 from ..physics.numerics.motion import met
 from .belt_guide import SHORTEST_SHARE
 from .belt_rest import BeltRest
 
 JUMP = 1e-6  # m, that a standing head may be off
-MOST_SWEEPS = 2500  # over the stages of the integration in one step; both strokes of a loom need fewer
+MOST_SWEEPS = 3500  # over the stages of the integration in one step; both strokes of a loom need fewer
 MOST_HALVINGS = 9
 MORE_SWEEPS = 10000  # as many where an end may be clamped
 MORE_HALVINGS = 13
-BALANCED = 1e-9  # of the energy: what an integration step may leave unexplained, if it can be halved
+BALANCED = 2.5e-10  # of the energy: what an integration step may leave unexplained, if it can be halved
 UNBALANCED = 1e-6  # of the energy: a step that leaves more, however short, cannot be followed
 EASY = 1e-3  # of that: then the next step may be twice as long
 LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
@@ -24,7 +25,6 @@ GROWTH = 0.05  # of the free length in a step of the integration
 MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
-STEEP = 0.1  # sine of the slope up to which clamped ends are followed beyond their Euler load
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
@@ -173,7 +173,7 @@ class BeltDynamics(BeltRest):
         most_halvings = MORE_HALVINGS if self.may_clamp() else MOST_HALVINGS
         self.set_out(start)
         share = start
-        halvings = 0
+        halvings = self.halvings if self.halvings < most_halvings else most_halvings
         reach = 1.0
         while end - share > 1e-12 and halvings <= most_halvings and self.sweeps < most_sweeps:
             taken = self.suited(share, end, size) / 2.0**halvings
@@ -200,31 +200,30 @@ class BeltDynamics(BeltRest):
             share = share + taken
             reach = 1.0
             self.go_on()
+            self.gauss_step = taken * self.path_step
             self.sums()
-            self.note_gap(share)
             self.energy = energy
             self.energy_residual = self.energy_residual + missing
+            self.lean_or_leave(share)
             self.look(share)
             self.take_extremes(share, taken * self.path_step)
             if not self.steepness < STEEPEST:
                 self.fold(share)
                 return
-            if self.is_beyond(share):
-                self.lose()
-                return
+        self.halvings = halvings
         if end - share > 1e-12:
             self.lose()
 
-    def is_beyond(self, share: float) -> bool:
-        """Whether the belt is bent far beyond Euler's load of its clamped ends.
-
-        How far it bends is then a matter of its large rotations, of which the end shapes have no share.
-        """
-        if self.clamped() == 0 or self.steepness < STEEP:
-            return False
-        turn, _wave = buckling(self.clamped())
-        critical = turn / self.length_at(share)
-        return self.pushed_at(share) > self.stiffness * critical * critical
+    def lean_or_leave(self, share: float) -> None:
+        """See to the contact in the guide, and count as work there what a change of it takes."""
+        contact = self.guide_contact
+        self.note_gap(share)
+        if self.guide_contact == contact:
+            return
+        before = self.energy
+        self.energy = self.energy_at(share)
+        self.guide_work = self.guide_work + self.energy - before
+        self.energy_through = self.energy_through + fabs(self.energy - before)
 
     def pieces(self, duration: float) -> int:
         """Number of equal steps of the integration over a time."""
@@ -263,14 +262,13 @@ class BeltDynamics(BeltRest):
         length = self.length_at(share)
         velocity = self.velocity_at(share)
         self.try_modes()
-        e, h, e_by_length, h_by_length = self.end_bow(length)
-        guide, head, guide_rate, head_rate = self.end_excess(length, velocity)
-        guide, head = e + guide, h + head
+        (
+            _d, _k, guide, head, guide_rate, head_rate, _by_length, _head_by_length, _second, _head_second
+        ) = self.ends(length, velocity)  # fmt: skip
         a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode)
         place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, guide, head)
-        guide, head = velocity * e_by_length + guide_rate, velocity * h_by_length + head_rate
-        a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode_rate)
-        rate, _first, _second = shape_at(place, a1, a2, a3, a4, a5, a6, guide, head)
+        a1, a2, a3, a4, a5, a6 = end_shape(guide_rate, head_rate, *self.mode_rate)
+        rate, _first, _twice = shape_at(place, a1, a2, a3, a4, a5, a6, guide_rate, head_rate)
         self.last_deflection = self.deflection
         self.last_rate = self.deflection_rate
         self.deflection = fabs(farthest)
@@ -314,7 +312,6 @@ class BeltDynamics(BeltRest):
         if self.outside and not self.held:
             self.try_modes()
             self.found_a = self.rates_at(1.0)
-            self.guide_moment = self.moment_at_guide()
             turn, wave = buckling(self.clamped())
             critical = turn / self.free_length
             own = 0.5 * self.belt_mass * self.acceleration_at(1.0) * self.free_length
@@ -322,10 +319,24 @@ class BeltDynamics(BeltRest):
             self.growth_rate = (
                 wave / self.free_length * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
             )
-            self.shortening = shortening(self.free_length, *self.mode)
+            self.show_ends()
         self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
         if self.held:
             return 2 if self.lost else 1
         return 0
+
+    def show_ends(self) -> None:
+        """Shortening of the belt, and the moment by which its guide keeps it from turning."""
+        length = self.free_length
+        (
+            d, _k, _guide, _head, _guide_rate, _head_rate, _guide_by_length, _head_by_length, _guide_second,
+            _head_second,
+        ) = self.ends(length, 0.0)  # fmt: skip
+        (
+            _f1, _f2, _f3, _f4, _f5, _f6, _g1, _g2, _g3, _g4, _g5, _g6, self.shortening, _rate, _second,
+            _by_length, _energy, _growth, force, pull,
+        ) = self.bend(length, 0.0)  # fmt: skip
+        bending = self.stiffness * (6.0 * d / (length * length * length) - force)
+        self.guide_moment = length * (bending - self.compression * pull)

@@ -220,14 +220,18 @@ class BeltDynamicsVariables(Component):
     start_tension: float = state("N", "Weft tension at the start of the step")
     stiffness: float = state("N.m2", "Bending stiffness: EI, or EI / mu^2 if guide_end is calibrated")
     gauss_a: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode, first stage") for each in NUMBERS
+        state("m/s2", f"Acceleration of the {each} mode, first stage") for each in NUMBERS
     )
     gauss_b: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode, second stage") for each in NUMBERS
+        state("m/s2", f"Acceleration of the {each} mode, second stage") for each in NUMBERS
     )
     gauss_c: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode, third stage") for each in NUMBERS
+        state("m/s2", f"Acceleration of the {each} mode, third stage") for each in NUMBERS
     )
+    gauss_step: float = state(
+        "s", "Duration of the integration step of these accelerations, 0 if there was none"
+    )
+    halvings: int = state("1", "How often the integration step is halved", start=0)
     found_a: tuple[float, ...] = array(
         auxiliary("m/s2", f"Acceleration of the {each} mode found at the first stage") for each in NUMBERS
     )
@@ -237,6 +241,30 @@ class BeltDynamicsVariables(Component):
     found_c: tuple[float, ...] = array(
         auxiliary("m/s2", f"Acceleration of the {each} mode found at the third stage") for each in NUMBERS
     )
+    bow_a: tuple[float, ...] = array(
+        auxiliary("N", f"Moment of the bow on the {each} mode, first stage") for each in NUMBERS
+    )
+    end_a: tuple[float, ...] = array(
+        auxiliary("m", f"End shapes of the bow and their rates by the relative length, first stage, {each}")
+        for each in NUMBERS
+    )
+    bow_b: tuple[float, ...] = array(
+        auxiliary("N", f"Moment of the bow on the {each} mode, second stage") for each in NUMBERS
+    )
+    end_b: tuple[float, ...] = array(
+        auxiliary("m", f"End shapes of the bow and their rates by the relative length, second stage, {each}")
+        for each in NUMBERS
+    )
+    bow_c: tuple[float, ...] = array(
+        auxiliary("N", f"Moment of the bow on the {each} mode, third stage") for each in NUMBERS
+    )
+    end_c: tuple[float, ...] = array(
+        auxiliary("m", f"End shapes of the bow and their rates by the relative length, third stage, {each}")
+        for each in NUMBERS
+    )
+    load_a: float = auxiliary("N", "Compression at the head at the first stage")
+    load_b: float = auxiliary("N", "Compression at the head at the second stage")
+    load_c: float = auxiliary("N", "Compression at the head at the third stage")
     trial: tuple[float, ...] = array(
         auxiliary("m", f"Amplitude of the {each} mode at a stage") for each in NUMBERS
     )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import fabs
 
-from ..physics.belt_end_forces import end_pull
+from ..physics.belt_bending import bent_belt
 from ..physics.belt_ends import (
     OTHER,
     OWN,
@@ -12,7 +12,7 @@ from ..physics.belt_ends import (
     end_slopes,
     turning,
 )
-from ..physics.belt_modes import bow_forces
+from ..physics.belt_modes import bow_forces, first_modes
 from .belt_dynamics_variables import BeltDynamicsVariables
 
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
@@ -45,8 +45,18 @@ class BeltGuide(BeltDynamicsVariables):
         """Rate of `turn` by the length."""
         return self.guide_contact * self.guide_clearance / self.guide_length
 
-    def end_bow(self, length: float) -> tuple[float, float, float, float]:
-        """Amplitudes of the end shapes at guide and head where both turn freely, and their rates by L."""
+    def bow_moments(self, length: float) -> tuple[float, float, float, float, float, float]:
+        """Moments of the bow on all modes."""
+        b1, b2, b3, b4, b5, b6, _d1, _d2, _d3, _d4, _d5, _d6 = bow_forces(
+            self.bow_of, self.bow, self.bow_length, length
+        )
+        flexural = self.stiffness
+        return (
+            flexural * b1, flexural * b2, flexural * b3, flexural * b4, flexural * b5, flexural * b6,
+        )  # fmt: skip
+
+    def end_bow(self, length: float) -> tuple[float, float, float, float, float, float]:
+        """Amplitudes of the end shapes at guide and head where both turn freely, their rates by L twice."""
         b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(
             self.bow_of, self.bow, self.bow_length, length
         )
@@ -55,26 +65,46 @@ class BeltGuide(BeltDynamicsVariables):
             d3, d4, d5, d6,
         )  # fmt: skip
 
-    def end_excess(self, length: float, velocity: float) -> tuple[float, float, float, float]:
-        """What the end shapes at guide and head exceed those of the bow by, and their rates."""
-        e, h, e_by_length, h_by_length = self.end_bow(length)
+    def ends(
+        self, length: float, velocity: float
+    ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+        """The end shapes in the trial place of a belt at a constant velocity, see `end_motion`."""
+        e, h, e_by_length, h_by_length, e_second, h_second = self.end_bow(length)
         return end_motion(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, velocity, self.clamped(), self.turn(length), self.turn_by_length(), e, h,
-            e_by_length, h_by_length,
+            *self.trial_rate, velocity, 0.0, self.clamped(), self.turn(length), self.turn_by_length(), e, h,
+            e_by_length, h_by_length, e_second, h_second,
         )  # fmt: skip
 
-    def moment_at_guide(self) -> float:
-        """Moment by which the guide keeps the belt from turning, by the end shapes and the push on them."""
-        length = self.free_length
-        guide, head, _guide_rate, _head_rate = self.end_excess(length, 0.0)
-        e, h, _e_by_length, _h_by_length = self.end_bow(length)
-        pull, _pull_head = end_pull(length, self.clamped(), e + guide, h + head)
-        return 6.0 * self.stiffness * guide / (length * length) + self.compression * pull * length
+    def bend(
+        self, length: float, velocity: float
+    ) -> tuple[
+        float, float, float, float, float, float, float, float, float, float, float, float,
+        float, float, float, float, float, float, float, float,
+    ]:  # fmt: skip
+        """Bending and shortening in the trial place, see `bent_belt`, of a belt at a constant velocity."""
+        (
+            _d, _k, guide, head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second,
+            head_second,
+        ) = self.ends(length, velocity)  # fmt: skip
+        return bent_belt(  # type: ignore[call-arg]
+            *self.trial,  # type: ignore[arg-type]
+            *self.trial_rate, length, velocity, 0.0, self.clamped(), guide, head, guide_rate, head_rate,
+            guide_by_length, head_by_length, guide_second, head_second,
+        )  # fmt: skip
+
+    def lag(self, length: float, velocity: float) -> tuple[float, float, float, float, float, float, float]:
+        """Rates of the shortening in the trial place, by the modes that move and in time."""
+        (
+            _f1, _f2, _f3, _f4, _f5, _f6, g1, g2, g3, g4, g5, g6, _short, rate, _second, _by_length, _energy,
+            _growth, _turned_force, _turned_pull,
+        ) = self.bend(length, velocity)  # fmt: skip
+        g1, g2, g3, g4, g5, g6 = first_modes(self.modes, g1, g2, g3, g4, g5, g6)
+        return g1, g2, g3, g4, g5, g6, rate
 
     def free_slope(self, length: float, velocity: float) -> tuple[float, float]:
         """Slope at the guide times the length, as if the belt turned freely there, and its rate."""
-        e, h, e_by_length, h_by_length = self.end_bow(length)
+        e, h, e_by_length, h_by_length, _e_second, _h_second = self.end_bow(length)
         guide, head = end_slopes(*self.trial)
         guide_rate, head_rate = end_slopes(*self.trial_rate)
         guide_growth, head_growth = turning(0.0, e_by_length, h_by_length)

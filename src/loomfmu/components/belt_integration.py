@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import fabs, pi
 
 from ..physics.belt_ends import OTHER, OWN, at_ends
-from ..physics.belt_modes import same, size, summed
+from ..physics.belt_modes import first_modes, same, size, summed
 from ..physics.belt_motion import energy_and_powers
 from ..physics.numerics.gauss import (
     FIRST,
@@ -39,7 +39,7 @@ from ..physics.numerics.gauss import (
 from .belt_path import BeltPath
 
 MOST_REPEATS = 30  # of the sweep over the stages, until the accelerations of an integration step are settled
-SETTLED = 1e-12  # of the modes: what a sweep may still change
+SETTLED = 1e-11  # of the modes: what a sweep may still change
 
 
 @dataclass(slots=True)
@@ -64,22 +64,28 @@ class BeltIntegration(BeltPath):
         near = self.length_at(share + FIRST * taken) > low and self.length_at(share + 0.5 * taken) > low
         if not (near and self.length_at(share + LAST * taken) > low and self.length_at(share + taken) > low):
             return False
-        self.try_modes()
-        self.gauss_b = self.rates_at(share)
-        self.gauss_a = same(*self.gauss_b)
-        self.gauss_c = same(*self.gauss_b)
+        self.foresee(share, duration)
         self.sums()
+        self.bow_a = self.bow_moments(self.length_at(share + FIRST * taken))
+        self.end_a = self.scaled_end_bow(self.length_at(share + FIRST * taken))
+        self.bow_b = self.bow_moments(self.length_at(share + 0.5 * taken))
+        self.end_b = self.scaled_end_bow(self.length_at(share + 0.5 * taken))
+        self.bow_c = self.bow_moments(self.length_at(share + LAST * taken))
+        self.end_c = self.scaled_end_bow(self.length_at(share + LAST * taken))
         settled = SETTLED * (self.mode_sum + duration * self.rate_sum) + 1e-30
         before = 1e300
         change = 1e300
         for repeat in range(MOST_REPEATS):
             self.sweeps = self.sweeps + 1
             self.visit_first(duration)
-            self.found_a = self.rates_at(share + FIRST * taken)
+            self.found_a = self.stage_rates(share + FIRST * taken, *self.bow_a, *self.end_a)
+            self.load_a = self.compression
             self.visit_second(duration)
-            self.found_b = self.rates_at(share + 0.5 * taken)
+            self.found_b = self.stage_rates(share + 0.5 * taken, *self.bow_b, *self.end_b)
+            self.load_b = self.compression
             self.visit_third(duration)
-            self.found_c = self.rates_at(share + LAST * taken)
+            self.found_c = self.stage_rates(share + LAST * taken, *self.bow_c, *self.end_c)
+            self.load_c = self.compression
             change = self.correct(share + 0.5 * taken, duration)
             if change <= settled or not change < 1e200:
                 break
@@ -90,6 +96,33 @@ class BeltIntegration(BeltPath):
             return False
         self.visit_end(duration)
         return True
+
+    def foresee(self, share: float, duration: float) -> None:
+        """First accelerations of the stages: by the parabola of the last integration step, or those now."""
+        if self.gauss_step <= 0.0:
+            self.try_modes()
+            self.gauss_b = self.rates_at(share)
+            self.gauss_a = same(*self.gauss_b)
+            self.gauss_c = same(*self.gauss_b)
+            return
+        longer = duration / self.gauss_step
+        self.gauss_step = 0.0
+        self.found_a = self.foreseen(1.0 + FIRST * longer)
+        self.found_b = self.foreseen(1.0 + 0.5 * longer)
+        self.found_c = self.foreseen(1.0 + LAST * longer)
+        self.gauss_a = same(*self.found_a)
+        self.gauss_b = same(*self.found_b)
+        self.gauss_c = same(*self.found_c)
+
+    def foreseen(self, share: float) -> tuple[float, float, float, float, float, float]:
+        """Accelerations at a share of the last integration step, beyond it, on the parabola of its stages."""
+        far = (share - 0.5) / (LAST - 0.5)
+        square = far * far
+        return stage(
+            0.0, 0.5 * (square - far), 1.0 - square, 0.5 * (square + far),
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+            *self.gauss_a, *self.gauss_b, *self.gauss_c,
+        )  # fmt: skip
 
     def visit(
         self, duration: float, share: float,
@@ -186,13 +219,13 @@ class BeltIntegration(BeltPath):
             o1, o2, o3 = sign * e1, sign * e2, sign * e3
         a1, a2, a3, a4, a5, a6 = at_ends(-o1, -e1)
         a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_a)
-        self.found_a = self.moving(a1, a2, a3, a4, a5, a6)
+        self.found_a = first_modes(self.modes, a1, a2, a3, a4, a5, a6)
         a1, a2, a3, a4, a5, a6 = at_ends(-o2, -e2)
         a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_b)
-        self.found_b = self.moving(a1, a2, a3, a4, a5, a6)
+        self.found_b = first_modes(self.modes, a1, a2, a3, a4, a5, a6)
         a1, a2, a3, a4, a5, a6 = at_ends(-o3, -e3)
         a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_c)
-        self.found_c = self.moving(a1, a2, a3, a4, a5, a6)
+        self.found_c = first_modes(self.modes, a1, a2, a3, a4, a5, a6)
 
     def yielding(
         self, first: int, length: float, pushed: float, square: float
@@ -235,19 +268,17 @@ class BeltIntegration(BeltPath):
         self.step_loss = 0.0
         self.step_through = 0.0
         self.visit_first(duration)
-        self.found_a = self.rates_at(share + FIRST * taken)
-        self.work(share + FIRST * taken, OUTER * duration, *self.found_a)
+        self.work(share + FIRST * taken, OUTER * duration, self.load_a, *self.gauss_a)
         self.visit_second(duration)
-        self.found_b = self.rates_at(share + 0.5 * taken)
-        self.work(share + 0.5 * taken, INNER * duration, *self.found_b)
+        self.work(share + 0.5 * taken, INNER * duration, self.load_b, *self.gauss_b)
         self.visit_third(duration)
-        self.found_c = self.rates_at(share + LAST * taken)
-        self.work(share + LAST * taken, OUTER * duration, *self.found_c)
+        self.work(share + LAST * taken, OUTER * duration, self.load_c, *self.gauss_c)
         self.visit_end(duration)
 
     def work(
-        self, share: float, time: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-    ) -> None:
+        self, share: float, time: float, load: float,
+        a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
+    ) -> None:  # fmt: skip
         """Add the work of all powers at a stage over a time."""
         length = self.length_at(share)
         _energy, push, guide, loss = energy_and_powers(  # type: ignore[call-arg]
@@ -256,7 +287,7 @@ class BeltIntegration(BeltPath):
             self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
             self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
             self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
-            self.turn_by_length(), self.compression,
+            self.turn_by_length(), load,
         )  # fmt: skip
         self.step_push = self.step_push + time * push
         self.step_guide = self.step_guide + time * guide

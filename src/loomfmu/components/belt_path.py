@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from ..physics.belt import weft_load
+from ..physics.belt_modes import dot, same, summed
 from ..physics.belt_motion import accelerations
 from ..physics.numerics.motion import joined, joined_rate, joined_value, met
 from .belt_guide import CALIBRATED, TOUCHING, BeltGuide
@@ -72,34 +73,53 @@ class BeltPath(BeltGuide):
         self, length: float, velocity: float, acceleration: float, tension: float
     ) -> tuple[float, float, float, float, float, float]:
         """Accelerations of the modes in their trial place; the compression is then that at the head."""
+        b1, b2, b3, b4, b5, b6 = self.bow_moments(length)
+        e, h, e_by_length, h_by_length, e_second, h_second = self.end_bow(length)
+        return self.bowed_rates(
+            length, velocity, acceleration, tension, b1, b2, b3, b4, b5, b6,
+            e, h, e_by_length, h_by_length, e_second, h_second,
+        )  # fmt: skip
+
+    def bowed_rates(
+        self, length: float, velocity: float, acceleration: float, tension: float,
+        b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
+        e: float, h: float, e_by_length: float, h_by_length: float, e_second: float, h_second: float,
+    ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+        """As `second_rates`, with `bow_moments` and `end_bow`."""
         a1, a2, a3, a4, a5, a6, load = accelerations(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
             *self.trial_rate, length, velocity, acceleration, tension, self.head_mass,
-            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
-            self.turn_by_length(),
+            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.guide_offset,
+            self.clamped(), self.turn(length), self.turn_by_length(), self.modes, b1, b2, b3, b4, b5, b6,
+            e, h, e_by_length, h_by_length, e_second, h_second,
         )  # fmt: skip
         self.compression = load
-        return self.moving(a1, a2, a3, a4, a5, a6)
-
-    def moving(
-        self, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-    ) -> tuple[float, float, float, float, float, float]:
-        """Modes without those that are held at 0."""
-        return (
-            a1,
-            a2 if self.modes > 1 else 0.0,
-            a3 if self.modes > 2 else 0.0,
-            a4 if self.modes > 3 else 0.0,
-            a5 if self.modes > 4 else 0.0,
-            a6 if self.modes > 5 else 0.0,
-        )
+        return a1, a2, a3, a4, a5, a6
 
     def rates_at(self, share: float) -> tuple[float, float, float, float, float, float]:
         """Accelerations of the modes in their trial place at a share of the step."""
         return self.second_rates(
             self.length_at(share), self.velocity_at(share), self.acceleration_at(share),
             self.tension_at(share),
+        )  # fmt: skip
+
+    def scaled_end_bow(self, length: float) -> tuple[float, float, float, float, float, float]:
+        """As `end_bow`, by the relative length: all amplitudes."""
+        e, h, e_by_length, h_by_length, e_second, h_second = self.end_bow(length)
+        square = length * length
+        return e, h, length * e_by_length, length * h_by_length, square * e_second, square * h_second
+
+    def stage_rates(
+        self, share: float, b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
+        e: float, h: float, e_growth: float, h_growth: float, e_second: float, h_second: float,
+    ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+        """As `rates_at`, with `bow_moments` and `scaled_end_bow`, which only the length changes."""
+        length = self.length_at(share)
+        square = length * length
+        return self.bowed_rates(
+            length, self.velocity_at(share), self.acceleration_at(share), self.tension_at(share),
+            b1, b2, b3, b4, b5, b6, e, h, e_growth / length, h_growth / length, e_second / square,
+            h_second / square,
         )  # fmt: skip
 
     def note_gap(self, share: float) -> None:
@@ -112,9 +132,26 @@ class BeltPath(BeltGuide):
         side = self.side(turn)
         gap, growth = self.gap(turn, rate, length, velocity, side)
         if gap <= TOUCHING * self.mode_sum and growth < 0.0:
-            self.guide_contact = side if self.guide_contact == 0 else 0
+            contact = side if self.guide_contact == 0 else 0
+            self.switch(length, velocity, contact)
+            turn, rate = self.free_slope(length, velocity)
         self.last_slope = turn
         self.last_slope_rate = rate
+
+    def switch(self, length: float, velocity: float, contact: int) -> None:
+        """Begin or end contact in the guide: the end of the belt, which has no mass, changes its speed.
+
+        So does the head, which lags by the shortening; its momentum goes to the modes.
+        """
+        _g1, _g2, _g3, _g4, _g5, _g6, before = self.lag(length, velocity)
+        self.guide_contact = contact
+        self.gauss_step = 0.0
+        g1, g2, g3, g4, g5, g6, rate = self.lag(length, velocity)
+        heavy = 2.0 * self.head_mass / (self.belt_mass * length)
+        square = dot(g1, g2, g3, g4, g5, g6, g1, g2, g3, g4, g5, g6)
+        push = heavy * (before - rate) / (1.0 + heavy * square)
+        self.trial_rate = summed(push, g1, g2, g3, g4, g5, g6, *self.trial_rate)
+        self.mode_rate = same(*self.trial_rate)
 
     def before_switch(self, share: float, taken: float) -> float:
         """Share of an integration step, now in the trial place, after which contact in the guide changes."""

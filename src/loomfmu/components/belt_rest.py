@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from math import cos, fabs, pi, sin
 
 from ..physics.belt_ends import at_ends, reactions
-from ..physics.belt_modes import bow_at, dot, summed
-from ..physics.belt_shape import bent_belt
+from ..physics.belt_modes import bow_at, dot, first_modes, summed
 from .belt_integration import BeltIntegration
 
 REPEATS = 200  # until the belt is in equilibrium
@@ -81,10 +80,7 @@ class BeltRest(BeltIntegration):
 
     def let_go(self, length: float) -> None:
         """Add to the accelerations `found_a` what the mass of the head, by its lag, takes from them."""
-        (
-            _f1, _f2, _f3, _f4, _f5, _f6, g1, g2, g3, g4, g5, g6, _short, _rate, _second, _by_length, _energy,
-            _growth,
-        ) = bent_belt(*self.mode, *self.mode_rate, length, 0.0, 0.0)  # type: ignore[call-arg]  # fmt: skip
+        g1, g2, g3, g4, g5, g6, _rate = self.lag(length, 0.0)
         lag = 2.0 * self.head_mass / (self.belt_mass * length) * dot(g1, g2, g3, g4, g5, g6, *self.found_a)
         self.found_a = summed(lag, g1, g2, g3, g4, g5, g6, *self.found_a)
 
@@ -104,14 +100,14 @@ class BeltRest(BeltIntegration):
         odd, even = reactions(self.clamped(), weight, odd_yield, even_yield, odd, even)
         a1, a2, a3, a4, a5, a6 = at_ends(-odd, -even)
         a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_a)
-        self.found_a = self.moving(a1, a2, a3, a4, a5, a6)
+        self.found_a = first_modes(self.modes, a1, a2, a3, a4, a5, a6)
 
     def lengthened(self, place: int, length: float) -> float:
         """Change of a mode at rest by the free length, over the mode; not counted if an end is clamped."""
         if self.clamped() != 0:
             return 0.0
         turned = pi * length / self.bow_length
-        moment, slope = bow_at(
+        moment, slope, _second = bow_at(
             place + 1, self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
         )
         if moment == 0.0:
@@ -158,6 +154,8 @@ class BeltRest(BeltIntegration):
         self.mode_rate = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.trial = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.trial_rate = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.gauss_step = 0.0
+        self.halvings = 0
         self.gauss_a = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gauss_b = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gauss_c = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -5,9 +5,7 @@ from math import pi
 from .belt_ends import moment_forces, turned_by
 from .belt_modes import dot, summed
 
-# integrals of the square of the slope of psi and of its product with that of the other end, with 1, x and x^2
-SQUARE = 8.8675894457757e-4
-CROSS = 1.9587894996076e-4
+# integrals of the square of the slope of psi and of its product with that of the other end, with x and x^2
 SQUARE_ALONG = 7.6948373537988e-4
 SQUARE_TWICE = 7.0247428329297e-4
 CROSS_ALONG = 9.793947498038e-5
@@ -79,8 +77,7 @@ def end_coupling(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float, offset: float,
-    clamped: int, e: float, h: float, e_by_length: float, h_by_length: float, d: float, k: float,
-    d_rate: float, k_rate: float,
+    clamped: int, guide: float, head: float, guide_rate: float, head_rate: float,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Forces on the modes by the inertia of the end shapes on a belt that moves through its guide.
 
@@ -88,29 +85,22 @@ def end_coupling(
     With them are those of the line between guide and head, see `tilt_forces`.
 
     Args:
-        q1 .. velocity, clamped, e .. h_by_length: as for `end_motion`
-        acceleration: A [m/s2]
+        q1 .. acceleration, clamped: as for `end_motion`
         belt_mass, damping: rho [kg/m] and c [N s/m2]
         thrown: `rho V^2 / L` [kg/s2]
         offset: of the guide's exit from the head's line [m]
-        d .. k_rate: of `end_motion`
+        guide .. head_rate: E, H and their rates, of `end_motion`
     """
     twice = 2.0 * belt_mass * velocity
     pushed = belt_mass * acceleration
     dragged = pushed + damping * velocity
-    guide = e + d
-    f1, f2, f3, f4, f5, f6 = end_forces(
-        twice * velocity * e_by_length + dragged * guide + twice * d_rate, pushed * guide, thrown * guide
-    )
+    f1, f2, f3, f4, f5, f6 = end_forces(dragged * guide + twice * guide_rate, pushed * guide, thrown * guide)
     if offset != 0.0:
         t1, t2, t3, t4, t5, t6 = tilt_forces(offset, pushed, thrown, damping * velocity)
         f1, f2, f3, f4, f5, f6 = summed(1.0, t1, t2, t3, t4, t5, t6, f1, f2, f3, f4, f5, f6)
     if clamped == 0:
         return f1, f2, f3, f4, f5, f6
-    head = h + k
-    g1, g2, g3, g4, g5, g6 = head_forces(
-        twice * velocity * h_by_length + dragged * head + twice * k_rate, pushed * head, thrown * head
-    )
+    g1, g2, g3, g4, g5, g6 = head_forces(dragged * head + twice * head_rate, pushed * head, thrown * head)
     f1, f2, f3, f4, f5, f6 = summed(1.0, g1, g2, g3, g4, g5, g6, f1, f2, f3, f4, f5, f6)
     r1, r2, r3, r4, r5, r6 = end_forces(-dragged, pushed, thrown)
     s1, s2, s3, s4, s5, s6 = end_forces(-twice, 0.0, 0.0)
@@ -125,13 +115,3 @@ def end_coupling(
     at_guide, at_head = turned_by(clamped, at_guide, at_head + across * guide)
     m1, m2, m3, m4, m5, m6 = moment_forces(at_guide, at_head)
     return summed(-1.0, m1, m2, m3, m4, m5, m6, f1, f2, f3, f4, f5, f6)
-
-
-def end_pull(length: float, clamped: int, guide: float, head: float) -> tuple[float, float]:
-    """Moments at guide and head by which the compression acts on the modes through the end shapes, over it.
-
-    By the shortening of the end shapes, `[SQUARE (guide^2 + head^2) / 2 + CROSS guide head] / L`, by their
-    amplitudes; see `moment_forces`. In the lag of the head, of which it is 1e-3, it is neglected.
-    """
-    by_guide, by_head = turned_by(clamped, SQUARE * guide + CROSS * head, SQUARE * head + CROSS * guide)
-    return -by_guide / length, -by_head / length

@@ -13,17 +13,24 @@ whatever the load; the bending energy of what they exceed the bow by holds the m
 
 from math import cos, pi, sin
 
+from .belt_modes import bow_second_rates
+
 # slope of psi at its own end; the opposite of that at the other one: 12 / pi^2 times sums over n up to 6
 OWN = 2.0 - 12.0 / (pi * pi) * (1.0 + 1.0 / 4.0 + 1.0 / 9.0 + 1.0 / 16.0 + 1.0 / 25.0 + 1.0 / 36.0)
 OTHER = 1.0 - 12.0 / (pi * pi) * (1.0 - 1.0 / 4.0 + 1.0 / 9.0 - 1.0 / 16.0 + 1.0 / 25.0 - 1.0 / 36.0)
+# integrals of the square of the slope of psi and of its product with that of the other end
+SQUARE = 8.8675894457757e-4
+CROSS = 1.9587894996076e-4
 
 
 def end_amplitudes(
     bow_of: int, bow: float, bow_length: float, length: float, may_clamp: bool,
     b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
     d1: float, d2: float, d3: float, d4: float, d5: float, d6: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """Amplitudes of the end shapes at guide and head where both turn freely, and their rates by the length.
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """Amplitudes of the end shapes at guide and head where both turn freely, their rates by the length.
+
+    Last come their second rates.
 
     By the belt's own bow (1): 0 for a bow of the span (2). At the guide `bow''(L) L^2 / 6`, by which it is
     bent there as the belt is without load. Where an end may be clamped, the amplitudes of least bending
@@ -39,16 +46,24 @@ def end_amplitudes(
     -0.411233516712
     """
     if bow_of != 1:
-        return 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     cosine = cos(pi * length / bow_length)
     sine = sin(pi * length / bow_length)
     wave = pi / bow_length
     if not may_clamp:
-        bend = -bow * wave * wave * length / 6.0
-        return bend * length * sine, 0.0, bend * (2.0 * sine + wave * length * cosine), 0.0
+        bend = -bow * wave * wave / 6.0
+        turn = wave * length
+        return (
+            bend * length * length * sine, 0.0, bend * length * (2.0 * sine + turn * cosine), 0.0,
+            bend * ((2.0 - turn * turn) * sine + 4.0 * turn * cosine), 0.0,
+        )  # fmt: skip
+    s1, s2, s3, s4, s5, s6 = bow_second_rates(bow, bow_length, length)
     odd, even = by_cubes(b1, b2, b3, b4, b5, b6)
     odd_rate, even_rate = by_cubes(d1, d2, d3, d4, d5, d6)
+    odd_second, even_second = by_cubes(s1, s2, s3, s4, s5, s6)
     cube = length * length * length
+    odd_second = cube * odd_second + 6.0 * length * (length * odd_rate + odd)
+    even_second = cube * even_second + 6.0 * length * (length * even_rate + even)
     odd_rate = cube * odd_rate + 3.0 * length * length * odd
     even_rate = cube * even_rate + 3.0 * length * length * even
     turn = wave * length
@@ -56,9 +71,12 @@ def end_amplitudes(
     head = bow * (sine - turn) + cube * (odd + even)
     guide_rate = odd_rate - even_rate - bow * wave * turn * sine
     head_rate = odd_rate + even_rate - bow * wave * (1.0 - cosine)
+    guide_second = odd_second - even_second - bow * wave * wave * (sine + turn * cosine)
+    head_second = odd_second + even_second - bow * wave * wave * sine
     e, h = turned_by(3, guide, head)
     e_rate, h_rate = turned_by(3, guide_rate, head_rate)
-    return e, h, e_rate, h_rate
+    e_second, h_second = turned_by(3, guide_second, head_second)
+    return e, h, e_rate, h_rate, e_second, h_second
 
 
 def by_cubes(b1: float, b2: float, b3: float, b4: float, b5: float, b6: float) -> tuple[float, float]:
@@ -179,28 +197,36 @@ def turned_by(clamped: int, guide: float, head: float) -> tuple[float, float]:
 def end_motion(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    velocity: float, clamped: int, turn: float, turn_by_length: float,
-    e: float, h: float, e_by_length: float, h_by_length: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """What the end shapes at guide and head exceed those of the bow by, and their rates.
+    velocity: float, acceleration: float, clamped: int, turn: float, turn_by_length: float,
+    e: float, h: float, e_by_length: float, h_by_length: float, e_second: float, h_second: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    """Amplitudes of the end shapes at guide and head, and how they follow the modes and the length.
 
-    The slope at a clamped guide is `turn / L`, at a clamped head 0:
+    The slope at a clamped guide is `turn / L`, at a clamped head 0. With e and h of the bow, and what the
+    amplitudes E = e + d and H = h + k exceed it by:
 
-        sum n pi (-1)^n q_n + OWN (e + d) + OTHER (h + k) = turn
-        -sum n pi q_n + OTHER (e + d) + OWN (h + k) = 0
+        sum n pi (-1)^n q_n + OWN E + OTHER H = turn
+        -sum n pi q_n + OTHER E + OWN H = 0
 
     Args:
         q1 .. v6: modes and their rates [m, m/s]
-        velocity: rate V of the length [m/s]
+        velocity, acceleration: rates V and A of the length [m/s, m/s2]
         clamped: which ends are clamped
         turn, turn_by_length: slope at the guide times L [m], and its rate by L [1]
-        e .. h_by_length: of `end_amplitudes` [m, 1]
+        e .. h_second: of `end_amplitudes` [m, 1, 1/m]
 
     Returns:
-        d, k [m], their rates [m/s]
+        1, 2: d, k [m]
+        3 to 6: E, H [m], their rates [m/s]
+        7, 8: rates of E and H by L [1]
+        9, 10: second rates of E and H without those by q_n'' [m/s2]
     """
+    square = velocity * velocity
     if clamped == 0:
-        return 0.0, 0.0, 0.0, 0.0
+        return (
+            0.0, 0.0, e, h, e_by_length * velocity, h_by_length * velocity, e_by_length, h_by_length,
+            e_second * square + e_by_length * acceleration, h_second * square + h_by_length * acceleration,
+        )  # fmt: skip
     guide, head = end_slopes(q1, q2, q3, q4, q5, q6)
     guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
     d, k = turned_by(clamped, turn - guide - OWN * e - OTHER * h, -head - OTHER * e - OWN * h)
@@ -208,7 +234,17 @@ def end_motion(
     d_rate, k_rate = turned_by(
         clamped, guide_growth * velocity - guide_rate, head_growth * velocity - head_rate
     )
-    return d, k, d_rate, k_rate
+    d_by_length, k_by_length = turned_by(clamped, guide_growth, head_growth)
+    d_second, k_second = turned_by(
+        clamped, -OWN * e_second - OTHER * h_second, -OTHER * e_second - OWN * h_second
+    )
+    d_by_length = d_by_length + e_by_length
+    k_by_length = k_by_length + h_by_length
+    return (
+        d, k, e + d, h + k, e_by_length * velocity + d_rate, h_by_length * velocity + k_rate,
+        d_by_length, k_by_length, (e_second + d_second) * square + d_by_length * acceleration,
+        (h_second + k_second) * square + k_by_length * acceleration,
+    )  # fmt: skip
 
 
 def turning(turn_by_length: float, e_by_length: float, h_by_length: float) -> tuple[float, float]:

@@ -108,6 +108,20 @@ def size(a1: float, a2: float, a3: float, a4: float, a5: float, a6: float) -> fl
     return fabs(a1) + fabs(a2) + fabs(a3) + fabs(a4) + fabs(a5) + fabs(a6)
 
 
+def first_modes(
+    number: int, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
+) -> tuple[float, float, float, float, float, float]:
+    """The first modes up to a number, 0 for the others.
+
+    >>> first_modes(2, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    (1.0, 2.0, 0.0, 0.0, 0.0, 0.0)
+    """
+    return (
+        a1, a2 if number > 1 else 0.0, a3 if number > 2 else 0.0, a4 if number > 3 else 0.0,
+        a5 if number > 4 else 0.0, a6 if number > 5 else 0.0,
+    )  # fmt: skip
+
+
 def harmonics(
     c1: float, s1: float
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
@@ -130,8 +144,8 @@ def harmonics(
 
 def bow_mode(
     number: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float]:
-    """Moment of the belt's own bow on a mode, over its bending stiffness, and its rate by the free length.
+) -> tuple[float, float, float]:
+    """Moment of the belt's own bow on a mode, over its bending stiffness, and its rates by the free length.
 
     `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `bow sin(pi X / bow_length)` from the
     head on, and takes its bow along.
@@ -143,7 +157,7 @@ def bow_mode(
         cosine, sine: of `pi L / bow_length`
 
     Returns:
-        moment [1/m2], its rate [1/m3]
+        moment [1/m2], its rate [1/m3], its second rate [1/m4]
 
     >>> from math import pi
     >>> round(bow_mode(1, 1.0, 1.0, 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)
@@ -154,34 +168,41 @@ def bow_mode(
     turned = wave * length
     beyond = turned - angle
     sign = 1.0 if number % 2 == 0 else -1.0
-    if fabs(beyond) < 1e-4:
-        sinc = 1.0 - beyond * beyond / 6.0
-        slope = -beyond / 3.0
+    if fabs(beyond) < 0.01:
+        square = beyond * beyond
+        sinc = 1.0 - square / 6.0 * (1.0 - square / 20.0)
+        slope = -beyond / 3.0 * (1.0 - square / 10.0 * (1.0 - square / 28.0))
+        curve = -1.0 / 3.0 + square / 10.0 * (1.0 - square * 5.0 / 84.0)
     else:
         sinc = sign * sine / beyond
         slope = (sign * cosine - sinc) / beyond
+        curve = -sinc - 2.0 * slope / beyond
     share = angle / (turned + angle)
     part = share * sinc
     by_turn = share * slope - part / (turned + angle)
+    twice = share * curve - 2.0 * by_turn / (turned + angle)
     scale = bow * wave * wave * angle * angle / length
-    return scale * part, scale * (wave * by_turn - part / length)
+    return (
+        scale * part, scale * (wave * by_turn - part / length),
+        scale * (wave * wave * twice + 2.0 / length * (part / length - wave * by_turn)),
+    )  # fmt: skip
 
 
 def bow_at(
     number: int, bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
     """As `bow_mode`, of the belt's own bow (1), or of one that spans the free part, `bow sin(pi x / L)` (2).
 
     >>> bow_at(2, 2, 1.0, 1.0, 1.0, -1.0, 0.0)
-    (0.0, 0.0)
+    (0.0, 0.0, 0.0)
     """
     if bow_of == 1:
         return bow_mode(number, bow, bow_length, length, cosine, sine)
     if number > 1:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     square = pi * pi / length
     moment = 0.5 * bow * square * square / length
-    return moment, -3.0 * moment / length
+    return moment, -3.0 * moment / length, 12.0 * moment / (length * length)
 
 
 def bow_forces(
@@ -194,10 +215,29 @@ def bow_forces(
     """
     cosine = cos(pi * length / bow_length)
     sine = sin(pi * length / bow_length)
-    b1, d1 = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
-    b2, d2 = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
-    b3, d3 = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
-    b4, d4 = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
-    b5, d5 = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
-    b6, d6 = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
+    b1, d1, _second = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
+    b2, d2, _second = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
+    b3, d3, _second = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
+    b4, d4, _second = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
+    b5, d5, _second = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
+    b6, d6, _second = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
     return b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
+
+
+def bow_second_rates(
+    bow: float, bow_length: float, length: float
+) -> tuple[float, float, float, float, float, float]:
+    """Second rates by the free length of the moments of the belt's own bow on all modes; see `bow_mode`.
+
+    >>> bow_second_rates(1.0, 1.0, 1.0)[0] == bow_mode(1, 1.0, 1.0, 1.0, cos(pi), sin(pi))[2]
+    True
+    """
+    cosine = cos(pi * length / bow_length)
+    sine = sin(pi * length / bow_length)
+    _moment, _rate, s1 = bow_mode(1, bow, bow_length, length, cosine, sine)
+    _moment, _rate, s2 = bow_mode(2, bow, bow_length, length, cosine, sine)
+    _moment, _rate, s3 = bow_mode(3, bow, bow_length, length, cosine, sine)
+    _moment, _rate, s4 = bow_mode(4, bow, bow_length, length, cosine, sine)
+    _moment, _rate, s5 = bow_mode(5, bow, bow_length, length, cosine, sine)
+    _moment, _rate, s6 = bow_mode(6, bow, bow_length, length, cosine, sine)
+    return s1, s2, s3, s4, s5, s6

@@ -14,36 +14,37 @@ for rotations up to 77 degrees; the belt's own axial inertia counts to the secon
 
 from math import pi
 
-from .belt_end_forces import end_coupling, end_pull
-from .belt_ends import end_amplitudes, end_bending, end_motion, end_slopes, moment_forces, turning
-from .belt_modes import bow_forces, carried_along, dot, summed, weighed
-from .belt_shape import bent_belt
+from .belt_bending import bent_belt
+from .belt_end_forces import end_coupling
+from .belt_ends import end_amplitudes, end_bending, end_motion, moment_forces, turning
+from .belt_modes import bow_forces, carried_along, dot, first_modes, summed, weighed
 
 
 def on_mode(
     twice: float, dragged: float, pushed: float, thrown: float, slowed: float, stiffness: float,
-    y: float, x: float, w: float, z: float, v: float, bend: float, end: float,
+    y: float, x: float, w: float, z: float, v: float, bend: float, bow: float, end: float,
 ) -> float:  # fmt: skip
     """Force on a mode, without the compression; see `accelerations`."""
-    return twice * y + dragged * x + pushed * w + thrown * z - slowed * v + stiffness * bend + end
+    return twice * y + dragged * x + pushed * w + thrown * z - slowed * v + stiffness * bend + bow + end
 
 
 def accelerations(
     q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
     v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
     length: float, velocity: float, acceleration: float, tension: float, head_mass: float, belt_mass: float,
-    damping: float, stiffness: float, bow_of: int, bow: float, bow_length: float,
-    offset: float, may_clamp: bool, clamped: int, turn: float, turn_by_length: float,
+    damping: float, stiffness: float, offset: float, clamped: int, turn: float, turn_by_length: float,
+    modes: int, b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
+    e: float, h: float, e_by_length: float, h_by_length: float, e_second: float, h_second: float,
 ) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
     """Second rates of the modes, and the compression P0 of the belt at the head.
 
         M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e
-                + P0 (g + h)
+                + P0 g
         P0 = m (A - S'') + T,   M = rho L / 2
 
     G is `carried_along`, J and H are `weighed` by x and x^2, f and g are of `bent_belt`, b is of
-    `bow_forces`, e and h follow from `end_actions`; S is the shortening, by which the head lags behind its
-    drive.
+    `bow_forces`, e is of `end_coupling` and the bending of the end shapes; S is the shortening, by which the
+    head lags behind its drive.
 
     Args:
         q1 .. v6: modes and their rates [m, m/s]
@@ -52,10 +53,11 @@ def accelerations(
         head_mass, belt_mass: m and rho [kg, kg/m]
         damping: c [N s/m2]
         stiffness: B [N m2]
-        bow_of, bow, bow_length: see `bow_at`
         offset: see `tilt_forces` [m]
-        may_clamp: see `end_amplitudes`
         clamped, turn, turn_by_length: see `end_motion`
+        modes: number of modes that move; the others stay as they are
+        b1 .. b6: moments of the bow on the modes, B b of `bow_forces` [N]
+        e .. h_second: of `end_amplitudes` [m, 1, 1/m]
 
     Returns:
         second rates [m/s2], compression at the head [N]
@@ -64,71 +66,47 @@ def accelerations(
     y1, y2, y3, y4, y5, y6 = carried_along(v1, v2, v3, v4, v5, v6)
     w1, w2, w3, w4, w5, w6 = weighed(0.0, 0.0, 0.25 * pi * pi, q1, q2, q3, q4, q5, q6)
     z1, z2, z3, z4, z5, z6 = weighed(0.25, 1.0, pi * pi / 6.0, q1, q2, q3, q4, q5, q6)
-    (
-        f1, f2, f3, f4, f5, f6, g1, g2, g3, g4, g5, g6, _short, _rate, second, _by_length, _energy, _growth
-    ) = bent_belt(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration
-    )  # fmt: skip
     twice = 2.0 * belt_mass * velocity
     pushed = belt_mass * acceleration
     dragged = pushed + damping * velocity
     thrown = belt_mass * velocity * velocity / length
     slowed = 0.5 * damping * length
     half = 0.5 * belt_mass * length
-    b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(bow_of, bow, bow_length, length)
-    e, h, e_by_length, h_by_length = end_amplitudes(
-        bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
-    )
-    c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head = end_actions(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        thrown, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
+    (
+        d, k, guide, head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second, head_second
+    ) = end_motion(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, clamped, turn, turn_by_length,
+        e, h, e_by_length, h_by_length, e_second, h_second,
+    )  # fmt: skip
+    (
+        f1, f2, f3, f4, f5, f6, g1, g2, g3, g4, g5, g6, _short, _rate, second, _by_length, _energy, _growth,
+        _turned_force, _turned_pull,
+    ) = bent_belt(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, clamped, guide, head,
+        guide_rate, head_rate, guide_by_length, head_by_length, guide_second, head_second,
+    )  # fmt: skip
+    c1, c2, c3, c4, c5, c6 = end_coupling(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
+        offset, clamped, guide, head, guide_rate, head_rate,
     )  # fmt: skip
     moment = 6.0 * stiffness / (length * length * length)
     m1, m2, m3, m4, m5, m6 = moment_forces(moment * d, moment * k)
     e1, e2, e3, e4, e5, e6 = summed(1.0, m1, m2, m3, m4, m5, m6, c1, c2, c3, c4, c5, c6)
-    u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1 + b1, e1) / half
-    u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2 + b2, e2) / half
-    u3 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y3, x3, w3, z3, v3, f3 + b3, e3) / half
-    u4 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y4, x4, w4, z4, v4, f4 + b4, e4) / half
-    u5 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y5, x5, w5, z5, v5, f5 + b5, e5) / half
-    u6 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y6, x6, w6, z6, v6, f6 + b6, e6) / half
+    u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1, b1, e1) / half
+    u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2, b2, e2) / half
+    u3 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y3, x3, w3, z3, v3, f3, b3, e3) / half
+    u4 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y4, x4, w4, z4, v4, f4, b4, e4) / half
+    u5 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y5, x5, w5, z5, v5, f5, b5, e5) / half
+    u6 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y6, x6, w6, z6, v6, f6, b6, e6) / half
+    u1, u2, u3, u4, u5, u6 = first_modes(modes, u1, u2, u3, u4, u5, u6)
+    g1, g2, g3, g4, g5, g6 = first_modes(modes, g1, g2, g3, g4, g5, g6)
     along = dot(g1, g2, g3, g4, g5, g6, u1, u2, u3, u4, u5, u6)
-    m1, m2, m3, m4, m5, m6 = moment_forces(pull_guide, pull_head)
-    h1, h2, h3, h4, h5, h6 = summed(1.0, m1, m2, m3, m4, m5, m6, g1, g2, g3, g4, g5, g6)
-    square = dot(g1, g2, g3, g4, g5, g6, h1, h2, h3, h4, h5, h6)
+    square = dot(g1, g2, g3, g4, g5, g6, g1, g2, g3, g4, g5, g6)
     load = (head_mass * (acceleration - second - along) + tension) / (1.0 + head_mass * square / half)
     lift = load / half
     return (
-        u1 + lift * h1, u2 + lift * h2, u3 + lift * h3, u4 + lift * h4, u5 + lift * h5, u6 + lift * h6, load,
+        u1 + lift * g1, u2 + lift * g2, u3 + lift * g3, u4 + lift * g4, u5 + lift * g5, u6 + lift * g6, load,
     )  # fmt: skip
-
-
-def end_actions(
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
-    offset: float, clamped: int, turn: float, turn_by_length: float,
-    e: float, h: float, e_by_length: float, h_by_length: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """What the end shapes do to the modes.
-
-    Args:
-        q1 .. acceleration, offset .. turn_by_length: as for `accelerations`
-        belt_mass, damping, thrown, e .. h_by_length: as for `end_coupling`
-
-    Returns:
-        forces of `end_coupling` [N], d and k of `end_motion` [m], moments of `end_pull` [1]
-    """
-    d, k, d_rate, k_rate = end_motion(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, clamped, turn, turn_by_length, e, h,
-        e_by_length, h_by_length,
-    )  # fmt: skip
-    c1, c2, c3, c4, c5, c6 = end_coupling(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping, thrown,
-        offset, clamped, e, h, e_by_length, h_by_length, d, k, d_rate, k_rate,
-    )  # fmt: skip
-    pull_guide, pull_head = end_pull(length, clamped, e + d, h + k)
-    return c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head
 
 
 def energy_and_powers(
@@ -147,7 +125,9 @@ def energy_and_powers(
 
     Args:
         q1 .. a6: modes and their rates [m, m/s, m/s2]
-        length .. turn_by_length: as for `accelerations`
+        length .. stiffness, offset, clamped .. turn_by_length: as for `accelerations`
+        bow_of, bow, bow_length: see `bow_at`
+        may_clamp: see `end_amplitudes`
         load: compression at the head P0 [N]
 
     Returns:
@@ -156,12 +136,6 @@ def energy_and_powers(
     x1, x2, x3, x4, x5, x6 = carried_along(q1, q2, q3, q4, q5, q6)
     w1, w2, w3, w4, w5, w6 = weighed(0.0, 0.0, 0.25 * pi * pi, q1, q2, q3, q4, q5, q6)
     z1, z2, z3, z4, z5, z6 = weighed(0.25, 1.0, pi * pi / 6.0, q1, q2, q3, q4, q5, q6)
-    (
-        _f1, _f2, _f3, _f4, _f5, _f6, _g1, _g2, _g3, _g4, _g5, _g6, _shortening, rate, _second, by_length,
-        bent, bent_by_length,
-    ) = bent_belt(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration
-    )  # fmt: skip
     b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(bow_of, bow, bow_length, length)
     bowed = dot(b1, b2, b3, b4, b5, b6, q1, q2, q3, q4, q5, q6)
     bowed_by_length = dot(d1, d2, d3, d4, d5, d6, q1, q2, q3, q4, q5, q6)
@@ -173,46 +147,34 @@ def energy_and_powers(
     weight = dot(v1, v2, v3, v4, v5, v6, w1, w2, w3, w4, w5, w6)
     share = velocity / length
     moving = 0.5 * length * (0.5 * speeds - 2.0 * share * drift + share * share * spread)
-    e, h, e_by_length, h_by_length = end_amplitudes(
+    e, h, e_by_length, h_by_length, e_second, h_second = end_amplitudes(
         bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
     )
-    end_energy, end_power = end_powers(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        belt_mass * velocity * share, stiffness, offset, clamped, turn, turn_by_length, e, h, e_by_length,
-        h_by_length, load,
+    (
+        d, k, at_guide, at_head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second,
+        head_second,
+    ) = end_motion(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, clamped, turn, turn_by_length,
+        e, h, e_by_length, h_by_length, e_second, h_second,
     )  # fmt: skip
+    (
+        _f1, _f2, _f3, _f4, _f5, _f6, _g1, _g2, _g3, _g4, _g5, _g6, _short, rate, _second, by_length, bent,
+        bent_by_length, _turned_force, _turned_pull,
+    ) = bent_belt(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, clamped, at_guide,
+        at_head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second, head_second,
+    )  # fmt: skip
+    c1, c2, c3, c4, c5, c6 = end_coupling(
+        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, velocity, acceleration, belt_mass, damping,
+        belt_mass * velocity * share, offset, clamped, at_guide, at_head, guide_rate, head_rate,
+    )  # fmt: skip
+    guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
+    end_energy, end_growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
     energy = belt_mass * moving + 0.5 * head_mass * rate * rate + stiffness * (bent - bowed) + end_energy
     push = (head_mass * acceleration + tension) * rate + belt_mass * acceleration * weight
     inertia = (acceleration / length - 0.5 * share * share) * spread + 2.0 * share * sweep - swing
-    elastic = stiffness * (bent_by_length - bowed_by_length)
+    elastic = stiffness * (bent_by_length - bowed_by_length) + end_growth
     drag = damping * (share * spread - drift)
-    guide = velocity * (belt_mass * inertia + elastic - load * by_length + drag) + end_power
+    guide = velocity * (belt_mass * inertia + elastic - load * by_length + drag)
+    guide = guide + dot(v1, v2, v3, v4, v5, v6, c1, c2, c3, c4, c5, c6)
     return energy, push, guide, 2.0 * damping * moving
-
-
-def end_powers(
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    length: float, velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float,
-    stiffness: float, offset: float, clamped: int, turn: float, turn_by_length: float,
-    e: float, h: float, e_by_length: float, h_by_length: float, load: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Share of the end shapes in energy and powers.
-
-    Args:
-        q1 .. h_by_length: as for `end_actions`
-        stiffness: B [N m2]
-        load: compression at the head P0 [N]
-
-    Returns:
-        bending energy [J], power at the guide [W]
-    """
-    c1, c2, c3, c4, c5, c6, d, k, pull_guide, pull_head = end_actions(
-        q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, length, velocity, acceleration, belt_mass, damping,
-        thrown, offset, clamped, turn, turn_by_length, e, h, e_by_length, h_by_length,
-    )  # fmt: skip
-    guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
-    energy, growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
-    guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
-    power = dot(v1, v2, v3, v4, v5, v6, c1, c2, c3, c4, c5, c6) + velocity * growth
-    return energy, power + load * (pull_guide * guide_rate + pull_head * head_rate)

@@ -63,7 +63,7 @@ def bent(turn: float, clearance: float, guide: float, length: float) -> float:
     belt.yarn_tension = belt.bending_stiffness * (turn / length) ** 2
     for n in range(RELAXING):
         belt.step(n * 5e-4, 5e-4)
-    at_guide, at_head, _rate, _head_rate = belt.end_excess(length, 0.0)
+    at_guide, at_head = belt.ends(length, 0.0)[2:4]
     from_line = [
         shape_at(x, *end_shape(at_guide, at_head, *belt.mode), at_guide, at_head)[0] for x in PLACES.tolist()
     ]

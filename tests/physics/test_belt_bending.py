@@ -1,0 +1,127 @@
+"""Bending and shortening of the belt against fine quadrature of its shape; the balance of its energy."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from loomfmu.physics.belt_bending import bent_belt
+from loomfmu.physics.belt_ends import end_amplitudes, end_motion, end_shape
+from loomfmu.physics.belt_modes import bow_forces
+from loomfmu.physics.belt_motion import accelerations, energy_and_powers
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
+X, Y, W = 0.5 * (1.0 + NODES), 0.5 * (1.0 - NODES), 0.5 * WEIGHTS
+NUMBERS = np.arange(1, 7)
+LENGTH, VELOCITY, ACCELERATION = 0.7, 12.0, 800.0
+BOW, BOW_LENGTH = 1e-3, 0.9
+CLAMPED = 4.493409457909064  # k L at Euler's load with one end clamped
+
+
+def buckled(clamped):
+    """Sines of the shape in which the belt buckles, 0.08 of its length high or so."""
+    if clamped == 0:
+        return 0.08 * LENGTH * np.array([1.0, 0.1, 0.02, 5e-3, 1e-3, 2e-4])
+    n, high = NUMBERS, 0.08 * LENGTH
+    if clamped == 3:
+        return np.where(n % 2, -8.0 * high / (pi * n * (n * n - 4.0 + (n == 2))), 0.0)
+    sines = 1.2 * high * CLAMPED**2 / (n * (n * n * pi * pi - CLAMPED**2)) * np.where(n % 2, -1.0, 1.0)
+    return sines if clamped == 1 else np.where(n % 2, sines, -sines)
+
+
+def bow(length):
+    """Amplitudes of the end shapes of an unloaded belt, and their rates by its length."""
+    return end_amplitudes(1, BOW, BOW_LENGTH, length, True, *bow_forces(1, BOW, BOW_LENGTH, length))
+
+
+def free_turn(clamped, length):
+    """Slope of a clamped guide times the length, and its rate by it."""
+    return (1e-3 * (length + 0.4), 1e-3) if clamped % 2 else (0.0, 0.0)
+
+
+def integrals(clamped, modes, length):
+    """Bending energy over the stiffness without the end shapes' own to the second order, and shortening."""
+    turn = free_turn(clamped, length)
+    guide, head = end_motion(*modes, *modes, 0.0, 0.0, clamped, *turn, *bow(length))[2:4]
+    a = np.array(end_shape(guide, head, *modes)) * NUMBERS * pi
+    slope = a @ np.cos(pi * np.outer(NUMBERS, X)) + guide * (3.0 * X**2 - 1.0) - head * (3.0 * Y**2 - 1.0)
+    bend = 6.0 * (guide * X + head * Y) - (a * NUMBERS * pi) @ np.sin(pi * np.outer(NUMBERS, X))
+    slope, bend = slope / length, bend / length**2
+    alone = pi**4 / (4.0 * length**3) * (NUMBERS**4 * modes**2).sum()
+    more = length * W @ (0.5 * bend**2 * slope**2 / (1.0 - slope**2))
+    return np.array([alone + more, length * W @ (1.0 - np.sqrt(1.0 - slope**2))])
+
+
+def difference(function, step):
+    return (function(step) - function(-step)) / (2.0 * step)
+
+
+@pytest.mark.parametrize("clamped", [0, 1, 2, 3])
+def test_bending_and_shortening_and_their_rates_are_those_of_the_shape(clamped):
+    modes = buckled(clamped)
+    speeds = modes * np.array([30.0, -20.0, 40.0, 10.0, -60.0, 20.0])
+    state = end_motion(
+        *modes, *speeds, VELOCITY, ACCELERATION, clamped, *free_turn(clamped, LENGTH), *bow(LENGTH)
+    )  # fmt: skip
+    found = np.array(bent_belt(*modes, *speeds, LENGTH, VELOCITY, ACCELERATION, clamped, *state[2:]))
+
+    def later(time):
+        length = LENGTH + time * VELOCITY + 0.5 * time**2 * ACCELERATION
+        return integrals(clamped, modes + time * speeds, length)
+
+    energies, shortenings = np.array(
+        [difference(lambda step, n=n: integrals(clamped, modes + step * n, LENGTH), 1e-6) for n in np.eye(6)]
+    ).T
+    by_length = difference(lambda step: integrals(clamped, modes, LENGTH + step), 1e-6)
+    tiny = 2e-5
+    second = (later(tiny) - 2.0 * later(0.0) + later(-tiny))[1] / tiny**2
+    within = 6e-3 if clamped else 3e-4  # of 12 panels, whose sum is exact but for what the end shapes add
+    assert found[[16, 12]] == pytest.approx(integrals(clamped, modes, LENGTH), rel=within)
+    assert -found[:6] == pytest.approx(energies, abs=within * np.abs(energies).max())
+    assert found[6:12] == pytest.approx(shortenings, abs=within * np.abs(shortenings).max())
+    assert found[13] == pytest.approx(difference(later, tiny)[1], rel=within)
+    assert found[14] == pytest.approx(second, rel=within)
+    assert found[[17, 15]] == pytest.approx(by_length, rel=within)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    clamped=st.integers(0, 3),
+    shape=st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6),
+    swing=st.lists(st.floats(-100.0, 100.0), min_size=6, max_size=6),
+    size=st.floats(1e-4, 0.05),
+    velocity=st.floats(-30.0, 30.0),
+    acceleration=st.floats(-2000.0, 2000.0),
+    head_mass=st.floats(0.0, 1.0),
+)
+def test_the_energy_changes_by_the_powers(clamped, shape, swing, size, velocity, acceleration, head_mass):
+    """To rounding, however coarse the sums over panels are: all forces come of one energy."""
+    modes = LENGTH * size * np.array(shape) / NUMBERS**2
+    speeds = modes * np.array(swing)
+    turn, by_length = free_turn(clamped, LENGTH)
+    tension, belt_mass, damping, stiffness, offset = 3.0, 0.05, 0.4, 0.39, 2e-4
+
+    def energy(time, load=0.0):
+        length = LENGTH + time * velocity + 0.5 * time**2 * acceleration
+        return energy_and_powers(
+            *(modes + time * speeds + 0.5 * time**2 * found), *(speeds + time * found), *found, length,
+            velocity + time * acceleration, acceleration, tension, head_mass, belt_mass, damping, stiffness,
+            1, BOW, BOW_LENGTH, offset, True, clamped, turn + by_length * (length - LENGTH), by_length, load,
+        )  # fmt: skip
+
+    b = stiffness * np.array(bow_forces(1, BOW, BOW_LENGTH, LENGTH)[:6])
+    *found, load = accelerations(
+        *modes, *speeds, LENGTH, velocity, acceleration, tension, head_mass, belt_mass, damping, stiffness,
+        offset, clamped, turn, by_length, 6, *b, *bow(LENGTH),
+    )  # fmt: skip
+    found = np.array(found)
+    fastest = 1e3 + np.abs(swing).max() + np.sqrt(np.abs(found).max() / (np.abs(modes).max() + 1e-9))
+    step = 1e-3 / fastest
+    growth = (
+        8.0 * difference(lambda t: energy(t)[0], step) - 2.0 * difference(lambda t: energy(t)[0], 2.0 * step)
+    ) / 6.0
+    held, push, guide, loss = energy(0.0, load)
+    through = abs(push) + abs(guide) + abs(loss) + abs(held) / step
+    assert growth == pytest.approx(push + guide - loss, abs=1e-7 * through)  # of the differences
