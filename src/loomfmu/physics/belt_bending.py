@@ -83,30 +83,31 @@ def bent_belt(
         y = 1.0 - x
         by_x = 3.0 * x * x - 1.0
         by_y = 3.0 * y * y - 1.0
+        # x and its mirror image y have the same harmonics but for the signs of the even ones
         c2, c3, c4, c5, c6, s2, s3, s4, s5, s6 = harmonics(c1, s1)
         odd = a1 * c1 + a3 * c3 + a5 * c5
         even = a2 * c2 + a4 * c4 + a6 * c6
         slope = even + odd + over * (guide * by_x - head * by_y)
-        mirrored = even - odd + over * (guide * by_y - head * by_x)
+        slope_2 = even - odd + over * (guide * by_y - head * by_x)
         odd = b1 * c1 + b3 * c3 + b5 * c5
         even = b2 * c2 + b4 * c4 + b6 * c6
         turning = even + odd + over * (guide_rate * by_x - head_rate * by_y) - drift * slope
-        back = even - odd + over * (guide_rate * by_y - head_rate * by_x) - drift * mirrored
+        turning_2 = even - odd + over * (guide_rate * by_y - head_rate * by_x) - drift * slope_2
         odd = k1 * s1 + k3 * s3 + k5 * s5
         even = k2 * s2 + k4 * s4 + k6 * s6
         bend = odd + even + 6.0 * over * over * (guide * x + head * y)
-        bow = odd - even + 6.0 * over * over * (guide * y + head * x)
+        bend_2 = odd - even + 6.0 * over * over * (guide * y + head * x)
         weight = 0.5 if pair == 0 or 2 * pair == PANELS else 1.0
         tilt, moment, twist, short, spin = bent_place(weight, slope, turning, bend)
-        tilt_2, moment_2, twist_2, short_2, spin_2 = bent_place(weight, mirrored, back, bow)
+        tilt_2, moment_2, twist_2, short_2, spin_2 = bent_place(weight, slope_2, turning_2, bend_2)
         shortening = shortening + short + short_2
-        rate = rate + tilt * turning + tilt_2 * back
+        rate = rate + tilt * turning + tilt_2 * turning_2
         second = second + spin - tilt * (2.0 * drift * turning + growth * slope)
-        second = second + spin_2 - tilt_2 * (2.0 * drift * back + growth * mirrored)
-        by_length = by_length + short - tilt * slope + short_2 - tilt_2 * mirrored
-        energy = energy + 0.5 * (moment * bend + moment_2 * bow)
+        second = second + spin_2 - tilt_2 * (2.0 * drift * turning_2 + growth * slope_2)
+        by_length = by_length + short - tilt * slope + short_2 - tilt_2 * slope_2
+        energy = energy + 0.5 * (moment * bend + moment_2 * bend_2)
         energy_by_length = energy_by_length - 1.5 * moment * bend - twist * slope
-        energy_by_length = energy_by_length - 1.5 * moment_2 * bow - twist_2 * mirrored
+        energy_by_length = energy_by_length - 1.5 * moment_2 * bend_2 - twist_2 * slope_2
         guide_force = guide_force + twist * by_x + twist_2 * by_y + 6.0 * over * (moment * x + moment_2 * y)
         head_force = head_force - twist * by_y - twist_2 * by_x + 6.0 * over * (moment * y + moment_2 * x)
         guide_pull = guide_pull + tilt * by_x + tilt_2 * by_y
@@ -139,16 +140,9 @@ def bent_belt(
     g1, g2, g3, g4, g5, g6, guide_pull, head_pull, turned_pull = by_modes(
         clamped, share, guide_pull, head_pull, g1, g2, g3, g4, g5, g6
     )
-    n1, n2, n3, n4, n5, n6 = numbered(wave, q1, q2, q3, q4, q5, q6)
-    p1, p2, p3, p4, p5, p6 = numbered(0.5 * pi, n1, n2, n3, n4, n5, n6)
-    r1, r2, r3, r4, r5, r6 = numbered(-wave, p1, p2, p3, p4, p5, p6)
-    r1, r2, r3, r4, r5, r6 = numbered(wave, r1, r2, r3, r4, r5, r6)
-    bent = -0.5 * dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6)
-    stretch, working, spinning = end_shortening(over, guide, head, guide_rate, head_rate)
-    stretch = stretch + 0.5 * dot(p1, p2, p3, p4, p5, p6, q1, q2, q3, q4, q5, q6)
-    working = working + dot(p1, p2, p3, p4, p5, p6, v1, v2, v3, v4, v5, v6)
-    w1, w2, w3, w4, w5, w6 = numbered(pi, v1, v2, v3, v4, v5, v6)
-    spinning = spinning + 0.5 * over * dot(w1, w2, w3, w4, w5, w6, w1, w2, w3, w4, w5, w6)
+    r1, r2, r3, r4, r5, r6, p1, p2, p3, p4, p5, p6, stretch, working, spinning, bent = slightly_bent(
+        wave, q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, guide, head, guide_rate, head_rate
+    )
     return (
         r1 + f1, r2 + f2, r3 + f3, r4 + f4, r5 + f5, r6 + f6,
         p1 + g1, p2 + g2, p3 + g3, p4 + g4, p5 + g5, p6 + g6,
@@ -162,6 +156,41 @@ def bent_belt(
         share * energy_by_length - 3.0 * over * bent - guide_force * guide_by_length
         - head_force * head_by_length,
         turned_force, turned_pull,
+    )  # fmt: skip
+
+
+def slightly_bent(
+    wave: float,
+    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
+    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
+    guide: float, head: float, guide_rate: float, head_rate: float,
+) -> tuple[
+    float, float, float, float, float, float, float, float, float, float, float, float,
+    float, float, float, float,
+]:  # fmt: skip
+    """Bending by the modes and shortening to the second order of the slope, and rates while L stays.
+
+    Args:
+        wave: pi / L [1/m]
+        q1 .. head_rate: as for `bent_belt`
+
+    Returns:
+        1 to 12: as of `bent_belt`, but for what the end shapes add to the shortening
+        13 to 15: shortening [m], its rate [m/s], its second rate without those of the modes' rates [m/s2]
+        16: bending energy over the stiffness [1/m]
+    """
+    n1, n2, n3, n4, n5, n6 = numbered(wave, q1, q2, q3, q4, q5, q6)
+    p1, p2, p3, p4, p5, p6 = numbered(0.5 * pi, n1, n2, n3, n4, n5, n6)
+    r1, r2, r3, r4, r5, r6 = numbered(-wave, p1, p2, p3, p4, p5, p6)
+    r1, r2, r3, r4, r5, r6 = numbered(wave, r1, r2, r3, r4, r5, r6)
+    w1, w2, w3, w4, w5, w6 = numbered(pi, v1, v2, v3, v4, v5, v6)
+    stretch, working, spinning = end_shortening(wave / pi, guide, head, guide_rate, head_rate)
+    return (
+        r1, r2, r3, r4, r5, r6, p1, p2, p3, p4, p5, p6,
+        stretch + 0.5 * dot(p1, p2, p3, p4, p5, p6, q1, q2, q3, q4, q5, q6),
+        working + dot(p1, p2, p3, p4, p5, p6, v1, v2, v3, v4, v5, v6),
+        spinning + 0.5 * wave / pi * dot(w1, w2, w3, w4, w5, w6, w1, w2, w3, w4, w5, w6),
+        -0.5 * dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6),
     )  # fmt: skip
 
 
