@@ -13,7 +13,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.claims.lifted import lift_of
-from ..cosim.planning.requested import claims_of
+from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
 from ..cosim.run import run
 from ..cosim.scenes.keys import UNIFORM
@@ -23,18 +23,20 @@ from ..cosim.whole import system
 from ..errors import path_of
 from ..files import check_target, starts_with, write_file
 from ..fmi.system.builder import module
-from ..fmi.system.system import component_of
+from ..fmi.system.system import System, component_of
 from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
 from ..report.templates import check, template
 from ..traces import Trace
+from ..upstream import sources_of, upstream
 from ..variables import Variable, variables_of
 from .knobs import Knob, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
+Rows = dict[str, tuple[int, Variable]]  # the variables of the module, by name, with their numbers
 POLICY = " 'wasm-unsafe-eval'"
-SCRIPTS = ("live.js", "live_rules.js", "live_curves.js", "live_judge.js", "live_claims.js")
+SCRIPTS = ("live_steps.js", "live.js", "live_rules.js", "live_curves.js", "live_judge.js", "live_claims.js")
 
 
 def write(
@@ -72,7 +74,8 @@ def write(
         started = run(loaded, output=Path(directory) / "start.h5")
         with started.trace as trace:
             subject = Subject([trace], live=True)
-            data = _data(loaded, subject, rows, varied, wasm) | {"fmus": len(whole.parts)}
+            data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
+            data["wasm"] = b64encode(wasm).decode()
             controls = template("live.html.j2").render(knobs=varied)
             live = Section("live", "Values", controls, SCRIPTS, data)
             content = assembled(subject, [live, *sections(subject)], MARK, POLICY)
@@ -82,11 +85,10 @@ def write(
 
 
 def _data(
-    scene: Scene, subject: Subject, rows: dict[str, tuple[int, Variable]], varied: Sequence[Knob], wasm: bytes
+    scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]
 ) -> dict[str, Any]:
     """What the script needs to run the module: rows of variables, and values that it does not hold."""
     trace = subject.trace
-    names = [name for name in trace if name in rows]
     parameters = {name: row for name, (row, each) in rows.items() if each.settable}
     constants = {
         f"{name}.{port}": value
@@ -95,9 +97,8 @@ def _data(
         if f"{name}.{port}" not in rows
     }
     return {
-        "wasm": b64encode(wasm).decode(),
         "steps": scene.steps,
-        "signals": {name: _signal(trace, name, *rows[name]) for name in names},
+        "signals": {name: _signal(trace, name, rows[name][1]) for name in trace if name in rows},
         "parameters": parameters,
         "constants": constants,
         "knobs": [asdict(knob) for knob in varied],
@@ -106,10 +107,26 @@ def _data(
     }
 
 
-def _signal(trace: Trace, name: str, row: int, variable: Variable) -> dict[str, Any]:
+def _stepping(whole: System, trace: Trace, rows: Rows) -> dict[str, Any]:
+    """What the script needs to step no more than a value reaches.
+
+    `samples` are the row of each signal, the number of the part that it is of, and whether it feeds another
+    part; those that are not recorded come last. `reaches` are the parts that depend on each part, with itself.
+    """
+    numbers = {part.name: number for number, part in enumerate(whole.parts, start=1)}  # 0 is what is driven
+    owner = {name: name.partition(".")[0] for name in rows}
+    sources = set(whole.wires.values())
+    names = [*(name for name in trace if name in rows), *sorted(sources - set(trace))]
+    sinks = sources_of((owner[sink], owner[source]) for sink, source in whole.wires.items())
+    return {
+        "samples": [(rows[name][0], numbers[owner[name]], int(name in sources)) for name in names],
+        "reaches": {name: sorted(upstream([name], sinks), key=numbers.__getitem__) for name in numbers},
+    }
+
+
+def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
     display = trace.display(name)
     return {
-        "row": row,
         "rate": trace.rate(name),
         "validity": trace.validity(name),
         "unit": "" if display == "1" else display,
@@ -122,7 +139,7 @@ def _signal(trace: Trace, name: str, row: int, variable: Variable) -> dict[str, 
 def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """What the script judges: the kind and the arguments of each claim, and how its values are shown.
 
-    `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
+    `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
     the page holds, whether its bound is met exactly, and its numerical error: the script leaves out a claim
     that it would judge otherwise, or that is too near to its bound for that error.
     """
@@ -133,14 +150,16 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
         if arguments.get("healds") == ():  # all of them
             frames = sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
         unit = "" if verdict.label == "1" else verdict.label
-        lifted_by = str(arguments.get("lifted_by", ""))
+        lifts = {frame: lift_of(frame, str(arguments.get("lifted_by", "")), trace) for frame in frames}
+        read = [*signals_of(scene, claim), *shaft_angle(scene), *lifts.values()]
         found.append({
             **arguments,
             "kind": table["kind"],
             "sense": verdict.sense,
             "signal": verdict.signal,
             "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
-            "lifts": {frame: lift_of(frame, lifted_by, trace) for frame in frames},
+            "parts": sorted({*(name.partition(".")[0] for name in read), *claim.parameter_owners()}),
+            "lifts": lifts,
             "shown": {"factor": verdict.displayed(1.0), "unit": unit},
             "native": {
                 "holds": verdict.holds or verdict.distance >= 0.0,

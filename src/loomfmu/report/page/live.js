@@ -1,67 +1,72 @@
-/* The FMUs of the page, compiled to WebAssembly: `loomfmu.live.follow(part, run => ...)` is called after every run.
- * Of a run there are `time`, `positions`, `signal(name)`, `rate(name)`, `validity(name)` and `parameter(name)`, all in
- * SI; it is null where the values cannot be run. */
+/* The page whose FMUs run: its sliders, and what follows them. `loomfmu.live.follow(part, run => ...)` is called after
+ * every run, and once more when FMUs that take long have followed. Of a run there are `time`, `positions`,
+ * `signal(name)`, `rate(name)`, `validity(name)` and `parameter(name)`, all in SI; `waits(name)` while its FMU is still
+ * being stepped, so that its samples are of other values; `count(name)`, another number for other samples. It is null
+ * where the values cannot be run. */
 loomfmu.live = (() => {
-  const plan = loomfmu.data("live"), names = Object.keys(plan.signals), listeners = new Map();
+  const plan = loomfmu.data("live"), listeners = new Map();
   const form = document.getElementById("live-knobs"), problem = document.getElementById("live-problem");
-  const pace = document.getElementById("live-pace"), reset = form.querySelector("button");
+  const pace = document.getElementById("live-pace");
   const values = plan.knobs.map(knob => knob.start);
-  let wasm = null, rows = 0, samples = 0, current = null, waiting = false;
+  const SLICE = 12, slices = new MessageChannel(); // ms between which the page draws; timers would wait 4 ms more
+  let steps = null, current = null, waiting = false, last = null, asked = false;
 
   // ---- the run
 
-  function complaint() {
-    const bytes = new Uint8Array(wasm.memory.buffer, wasm.messages());
-    return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0))).trim().split("\n").pop();
-  }
+  const since = begun => performance.now() - begun;
 
-  /* Set, start and step; returns a run, or what is wrong. */
-  function simulate() {
-    const { steps } = plan, length = steps + 1;
-    wasm.reset();
-    for (const [number, knob] of plan.knobs.entries())
-      for (const target of knob.targets)
-        if (wasm.set(plan.parameters[target], values[number]) !== 0) return complaint();
-    if (wasm.start() !== 0 || wasm.run(steps, rows, names.length, samples) < steps) return complaint();
-    const size = wasm.step(), time = Float64Array.from({ length }, (_, number) => number * size);
-    const table = new Map(names.map((name, place) =>
-      [name, new Float64Array(wasm.memory.buffer, samples + 8 * place * length, length)]));
-    const parameters = new Map();
-    return {
-      time, has: name => table.has(name), signal: name => table.get(name), rate: name => plan.signals[name].rate,
-      validity: name => plan.signals[name]?.validity,
-      positions: plan.turns ? table.get("shaft.angle") : time,
-      parameter: name => {
-        if (!parameters.has(name))
-          parameters.set(name, name in plan.parameters ? wasm.get(plan.parameters[name]) : plan.constants[name]);
-        return parameters.get(name);
-      },
-    };
-  }
-
+  /* Step what is quick, and show it; the rest follows in slices. */
   function run() {
-    const begun = performance.now(), found = simulate(), stepped = performance.now();
-    const failed = typeof found === "string";
-    current = failed ? null : found;
-    problem.hidden = !failed;
-    problem.textContent = failed ? `These values cannot be run: ${found}` : "";
-    const took = { run: stepped - begun };
-    let before = stepped;
+    const begun = performance.now(), took = {}; // in ms, by parts
+    let wrong = steps.start(plan.knobs.flatMap((knob, number) => knob.targets.map(target => [target, values[number]])));
+    const wanted = steps.behind.size;
+    wrong ||= steps.quick();
+    took.run = since(begun);
+    last = { begun, took, wrong, wanted, late: wrong ? [] : [...steps.behind] };
+    show(last, "all", took);
+  }
+
+  function slice() {
+    if (!asked) slices.port2.postMessage(null);
+    asked = true;
+  }
+
+  slices.port1.onmessage = () => {
+    asked = false;
+    if (waiting || !steps.behind.size || last.wrong) return; // other values come, or nothing is left to do
+    last.wrong = steps.advance(performance.now() + SLICE);
+    if (last.wrong || !steps.behind.size) show(last, "late"); else slice();
+  };
+
+  /* Show a run, and say how long it took until then; `took` gets the times of the parts of the page. */
+  function show(shown, until, took = {}) {
+    const { wrong, late, begun } = shown;
+    let before = performance.now();
     const mark = part => { const now = performance.now(); took[part] = now - before; before = now; };
+    current = wrong ? null : steps.found();
+    problem.hidden = !wrong;
+    problem.textContent = wrong && `These values cannot be run: ${wrong}`;
     for (const [part, listener] of listeners) { listener(current); mark(part); }
-    if (current) loomfmu.lay(current.positions, current.time); else loomfmu.seek(loomfmu.position);
+    if (current && !current.waits("shaft")) loomfmu.lay(current.positions, current.time); else loomfmu.seek(loomfmu.position);
     mark("cursor");
     setTimeout(() => { // plots are painted in microtasks
       mark("paint");
-      took.all = before - begun;
-      pace.textContent = failed ? "" : `${plan.steps} steps of ${plan.fmus} FMUs in ${took.run.toFixed(0)} ms,`
-        + ` judged and drawn in ${(took.all - took.run).toFixed(0)} ms`;
-      loomfmu.live.pace = took; // in ms, by parts
+      shown.took[until] = since(begun);
+      if (shown !== last) return;
+      pace.textContent = wrong ? "" : paceOf(shown);
+      if (current && steps.behind.size) slice(); else loomfmu.live.pace = shown.took;
     });
   }
 
+  function paceOf({ wanted, late, took }) {
+    const ms = time => `${time.toFixed(0)} ms`, rest = took.late ? `${ms(took.late)} after the change` : "will follow";
+    return `${plan.steps} steps of ${wanted - late.length} FMUs in ${ms(took.run)}, judged and drawn in`
+      + ` ${ms(took.all - took.run)}${late.length ? `; ${late.join(", ")} ${rest}` : ""}`;
+  }
+
   function soon() {
-    if (waiting || !wasm) return;
+    loomfmu.live.pace = null; // until the page shows the values
+    if (waiting || !steps) return;
     waiting = true;
     requestAnimationFrame(() => { waiting = false; run(); });
   }
@@ -125,6 +130,7 @@ loomfmu.live = (() => {
   // ---- the module
 
   addEventListener("load", async () => {
+    let wasm;
     try {
       const bytes = Uint8Array.from(atob(plan.wasm), letter => letter.charCodeAt(0));
       wasm = (await WebAssembly.instantiate(bytes)).instance.exports;
@@ -134,12 +140,10 @@ loomfmu.live = (() => {
       return;
     }
     wasm._initialize();
-    rows = wasm.allocate(4 * names.length);
-    samples = wasm.allocate(8 * names.length * (plan.steps + 1));
-    new Uint32Array(wasm.memory.buffer, rows, names.length).set(names.map(name => plan.signals[name].row));
+    steps = loomfmu.steps(plan, wasm);
     for (const input of form.elements) input.disabled = false;
     run();
   });
   const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
-  return { plan, changed, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
+  return { plan, changed, get steps() { return steps; }, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
 })();

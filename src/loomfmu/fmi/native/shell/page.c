@@ -1,4 +1,4 @@
-/* A page in a browser, as WebAssembly: one instance, and a whole run in one call. Nothing is imported.
+/* A page in a browser, as WebAssembly: one instance, and steps of some of its parts. Nothing is imported.
  *
  * Variables go by their row. What a start or a run complains of is kept as text.
  */
@@ -71,6 +71,22 @@ EXPORT(set) int page_set(unsigned row, double value)
     return fmu_set_boolean(&instance, reference, value > 0.0);
 }
 
+static void page_put(const Row *row, double value)
+{
+    void *place = fmu_place(&instance, row);
+    switch (row->kind) {
+    case REAL:
+        *(double *)place = value;
+        return;
+    case INTEGER:
+        *(int64_t *)place = (int64_t)value;
+        return;
+    case BOOLEAN:
+        break;
+    }
+    *(bool *)place = value > 0.0;
+}
+
 EXPORT(get) double page_get(unsigned row)
 {
     return row < VARIABLES ? fmu_value(&instance, &rows[row]) : 0.0;
@@ -90,26 +106,100 @@ EXPORT(step) double page_step(void)
     return INNER_STEP(&instance.state.component);
 }
 
-static void page_sample(double *samples, size_t length, size_t place, const unsigned *wanted, size_t count)
+/* A variable whose samples are kept, the part that computes it, and whether it feeds another part. */
+typedef struct {
+    unsigned row;
+    unsigned part;
+    unsigned feeds;
+} Signal;
+
+/* What a run does with a part. One that it leaves alone keeps its state. */
+enum { LEFT, STEPPED, SAMPLED };
+
+/* What is stepped and sampled. Signals go by their place in the list. */
+static struct {
+    const Signal *signals;
+    size_t count;
+    double *samples; /* one signal after the other */
+    size_t length;   /* samples of each: one more than there are steps */
+    const unsigned char *use; /* of each part: LEFT, STEPPED, or SAMPLED already, so that it feeds the others */
+    size_t taken[VARIABLES];  /* signals of the parts that are stepped */
+    size_t taken_count;
+    size_t fed[VARIABLES]; /* signals by which the others feed them */
+    size_t fed_count;
+} record;
+
+EXPORT(record) void page_record(const Signal *signals, size_t count, double *samples, size_t length)
+{
+    record.signals = signals;
+    record.count = count;
+    record.samples = samples;
+    record.length = length;
+}
+
+/* Choose what the next runs do with each part. */
+EXPORT(choose) void page_choose(const unsigned char *use)
 {
     size_t i;
-    for (i = 0; i < count; i++) {
-        samples[i * length + place] = fmu_value(&instance, &rows[wanted[i]]);
+    record.use = use;
+    record.taken_count = record.fed_count = 0;
+    for (i = 0; i < record.count; i++) {
+        unsigned char its = use[record.signals[i].part];
+        if (its == STEPPED) {
+            record.taken[record.taken_count++] = i;
+        } else if (its == SAMPLED && record.signals[i].feeds) {
+            record.fed[record.fed_count++] = i;
+        }
     }
 }
 
-/* All steps, and the samples at their ends, the start included: one signal after the other. Returns the number
- * of steps that were made; fewer if one of them failed. */
-EXPORT(run) size_t page_run(size_t steps, const unsigned *wanted, size_t count, double *samples)
+static void page_sample(size_t place)
+{
+    size_t i;
+    for (i = 0; i < record.taken_count; i++) {
+        size_t signal = record.taken[i];
+        record.samples[signal * record.length + place] = fmu_value(&instance, &rows[record.signals[signal].row]);
+    }
+}
+
+/* Set what feeds the parts that are stepped, as it was sampled. */
+static void page_feed(size_t place)
+{
+    size_t i;
+    for (i = 0; i < record.fed_count; i++) {
+        size_t signal = record.fed[i];
+        page_put(&rows[record.signals[signal].row], record.samples[signal * record.length + place]);
+    }
+}
+
+static Status page_step_chosen(double time, double size)
+{
+    Status status = OK;
+    int i;
+    for (i = 0; i < PARTS && status == OK; i++) {
+        if (record.use[i] == STEPPED) {
+            int64_t problem = parts[i].step(&instance.state.component, time, size);
+            status = fmu_report_part(&instance, &parts[i], problem, DISCARD);
+        }
+    }
+    return status == OK ? fmu_check_finite(&instance, false, time, DISCARD) : status;
+}
+
+/* Steps from one sample to another. Returns the sample that was reached: an earlier one if a
+ * step failed. */
+EXPORT(run) size_t page_run(size_t from, size_t to)
 {
     double size = page_step();
-    size_t i;
-    page_sample(samples, steps + 1, 0, wanted, count);
-    for (i = 0; i < steps; i++) {
-        if (fmu_step_parts(&instance, (double)i * size, size) != OK) {
-            return i;
-        }
-        page_sample(samples, steps + 1, i + 1, wanted, count);
+    size_t k;
+    if (from == 0) {
+        page_sample(0);
     }
-    return steps;
+    for (k = from; k < to; k++) {
+        page_feed(k + 1);
+        if (page_step_chosen((double)k * size, size) != OK) {
+            return k;
+        }
+        page_sample(k + 1);
+    }
+    return to;
 }
