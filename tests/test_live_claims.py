@@ -27,6 +27,14 @@ pytestmark = [
 ]
 NOWHERE = "\u2013"  # as the place of a claim
 NOT_JUDGED = {"energy_balance"}  # by the page
+# instances that each claim reads, beside those of which it is kept where they stay the same
+OTHERS = """() => loomfmu.live.plan.claims.map(claim => {
+    const { current } = loomfmu.live, read = new Set()
+    const noted = look => name => { read.add(name.split(".")[0]); return look(name) }
+    const run = { ...current, signal: noted(current.signal), parameter: noted(current.parameter), count: () => NaN }
+    loomfmu.judge(run)(claim)
+    return [...read].filter(name => !claim.parts.includes(name)).join(" ")
+})"""
 
 # They hold, fail, have no value, or spans that the ends of the run cut off; on carriers and frames.
 ON_THE_LOOM = [
@@ -111,9 +119,9 @@ def agree(opened: Open, tmp_path: Path, scene: Any, other: float) -> None:
     page = opened(live_page.write(scene, [], tmp_path / "page.html"))
     for speed in (None, other):
         if speed is not None:
-            page.evaluate("loomfmu.live.verdicts = null")
             page.locator(".knob input[type=number]").fill(str(speed))
-        until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+        until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+        assert not any(page.evaluate(OTHERS))
         found = page.evaluate("loomfmu.live.verdicts")
         rows = page.locator("#claims tbody tr").evaluate_all(
             "rows => rows.map(row => [...row.cells].map(cell => cell.innerText))"

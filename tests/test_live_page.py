@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import sys
 from base64 import b64decode
 from collections.abc import Callable
@@ -61,15 +62,15 @@ def written_whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def running(page: Any) -> Any:
-    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+    """A page once all of it shows its values, those that take long, too."""
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
     return page
 
 
 def turned(page: Any, value: float, number: int = 0) -> None:
     """Type a value into a knob, and wait for its run."""
-    page.evaluate("loomfmu.live.verdicts = null")
     page.locator(".knob input[type=number]").nth(number).fill(str(value))
-    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+    running(page)
 
 
 def values_of(page: Any, signal: str) -> Any:
@@ -127,6 +128,73 @@ def test_so_are_those_of_a_loom_with_every_mechanism(
     values_agree(page, result.trace)
     verdicts_agree(page, result.claims)
     assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))
+
+
+def test_only_what_a_value_reaches_is_stepped_again(opened: Open, tmp_path: Path) -> None:
+    """One value after the other, of a scene that does not record all that feeds its FMUs."""
+    scene = tmp_path / "scene.toml"
+    text = WHOLE.read_text().replace("revolutions = 8", "revolutions = 2")
+    recorded = ["damper_*.*", "play_*.*", "belt_motion.deflection", "belt.margin", "wrap.*"]
+    text = text.replace('weave = "weaves', f'weave = "{SIMS}/weaves')
+    scene.write_text(f"record = {json.dumps(recorded)}\n{text}")
+    vary = ["shaft.speed", "damper.damping_ratio", "belt_motion.damping=0..20", "wrap.block_clearance"]
+    page = running(opened(live_page.write(scene, vary, tmp_path / "page.html")))
+    counts = "Object.fromEntries(Object.keys(loomfmu.live.plan.reaches).map(part => [part, loomfmu.live.current.count(part)]))"
+    given: dict[str, str] = {}
+    for number, value, unit, reached in [
+        (1, 0.055, "", {f"{each}_{k}" for each in ("damper", "warp", "play") for k in range(1, 5)}),
+        (0, 470.0, "rpm", None),
+        (2, 6.0, "1/s", {"belt_motion"}),
+        (3, 0.25, "mm", {"wrap"}),
+        (1, 0.045, "", {f"{each}_{k}" for each in ("damper", "warp", "play") for k in range(1, 5)}),
+    ]:
+        before = page.evaluate(counts)
+        turned(page, value, number)
+        after = page.evaluate(counts)
+        stepped = {part for part in after if after[part] == before[part] + 1}
+        assert stepped == (reached or after.keys())  # the speed sets the step of all
+        given[vary[number].partition("=")[0]] = f"{value} {unit}".strip()
+        result = loomfmu.run(scene, set=given, output=tmp_path / "run.h5", overwrite=True)
+        values_agree(page, result.trace)
+        verdicts_agree(page, result.claims)
+
+
+def test_what_takes_long_follows_and_says_so_meanwhile(
+    written_whole: Path, opened: Open, tmp_path: Path
+) -> None:
+    """Nothing that is shown is of other values: the belts in motion wait, all else is there."""
+    page = opened(written_whole, (1200, 12000))  # all plots are in sight
+    # a clock that runs fast, so that the run takes long on any machine
+    page.add_init_script("const now = performance.now.bind(performance); performance.now = () => 50 * now()")
+    page.reload()
+    running(page)
+    page.evaluate("""() => {
+        const shown = window.shown = [], words = query => Array.from(document.querySelectorAll(query), each => each.innerText)
+        loomfmu.live.follow("test", run => setTimeout(() => shown.push({
+            waits: Object.keys(loomfmu.live.plan.reaches).filter(run.waits),
+            verdicts: loomfmu.live.verdicts.map(({ holds, waits = false }) => [holds, waits]),
+            words: words("#claims tbody td:first-child"), outcome: words("#claims .outcome")[0],
+            faded: words("#motion figure.stale .waits"), plots: words("#plots figcaption"),
+        })))
+    }""")
+    turned(page, 470.0)
+    result = loomfmu.run(WHOLE, set={"shaft.speed": "470 rpm"}, output=tmp_path / "run.h5")
+    first, *_, last = page.evaluate("shown")
+    assert first["waits"] == ["belt_motion", "belt_motion_2"] and last["waits"] == []
+    moving = [claim.signal.startswith("belt_motion") for claim in result.claims]
+    assert sum(moving) == 2
+    for wait, its, (holds, waits), word in zip(
+        moving, result.claims, first["verdicts"], first["words"], strict=True
+    ):
+        assert (holds, waits) == ((None, True) if wait else (its.holds, False))
+        assert word.strip("✓✗ \n") == ("computing" if wait else its.word)
+    assert first["outcome"].endswith("16 of 18 claims hold, 2 being computed")
+    assert first["faded"] == ["being computed"] * 2 and last["faded"] == []
+    waiting = [each for each in first["plots"] if "being computed" in each]
+    assert len(waiting) == 2 and all(f" {NOT_THERE} | " in each for each in waiting), waiting
+    assert not any("being computed" in each or f" {NOT_THERE} " in each for each in last["plots"])
+    assert all("holds" in word for word in last["words"])
+    assert re.search("; belt_motion, belt_motion_2 .* after the change$", page.inner_text("#live-pace"))
 
 
 def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_path: Path) -> None:
@@ -214,9 +282,8 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(written: Path, opened
     assert words()[:2] == ["FAILS", "holds"]
     slider = page.locator(".knob input[type=range]").first
     slider.focus()
-    page.evaluate("loomfmu.live.verdicts = null")
     page.keyboard.press("ArrowRight")  # 682 rev/min: the safe speed is 681.8
-    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+    running(page)
     assert words()[:2] == ["FAILS", "FAILS"]
     assert page.inner_text(".outcome").endswith("2 of 6 claims fail")
     page.locator("#live-knobs button").click()
@@ -325,9 +392,7 @@ def test_how_long_a_change_takes(written: Path, opened: Open) -> None:
     page = running(opened(written))
     paces = []
     for speed in range(500, 520):
-        page.evaluate("loomfmu.live.pace = null")
-        page.locator(".knob input[type=number]").first.fill(str(speed))
-        until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+        turned(page, speed)
         paces.append(page.evaluate("loomfmu.live.pace"))
     medians = {part: float(np.median([each[part] for each in paces])) for part in paces[0]}
     print("; ".join(f"{part} {median:.1f} ms" for part, median in medians.items()))

@@ -84,9 +84,7 @@ def write(
     return write_file(path, content.encode(), PAGE, inputs, overwrite)
 
 
-def _data(
-    scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]
-) -> dict[str, Any]:
+def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) -> dict[str, Any]:
     """What the script needs to run the module: rows of variables, and values that it does not hold."""
     trace = subject.trace
     parameters = {name: row for name, (row, each) in rows.items() if each.settable}

@@ -145,5 +145,5 @@ loomfmu.live = (() => {
     run();
   });
   const changed = () => plan.knobs.flatMap((knob, number) => values[number] === knob.start ? [] : knob.targets);
-  return { plan, changed, get steps() { return steps; }, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
+  return { plan, changed, follow: (part, listener) => { listeners.set(part, listener); }, get current() { return current; } };
 })();

@@ -13,6 +13,7 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
   const { claims } = loomfmu.live.plan, TURN = 2 * Math.PI, DEGREE = Math.PI / 180;
 
   const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector("#claims .outcome");
+  const kept = [], bases = []; // verdicts, and the samples that they are of
   let checked = false;
 
   /* A claim that is judged otherwise than loomfmu did at the scene's own values is left out from then on. */
@@ -33,13 +34,13 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
   function show(row, claim, verdict) {
     const [word, name, worst, bound, distance, where] = row.cells;
     const shown = value => loomfmu.shownIn(claim, value), code = name.querySelector("code");
-    const known = verdict.holds !== null;
+    const known = verdict.holds !== null, unknown = verdict.waits ? "computing" : "not judged";
     word.className = known ? (verdict.holds ? "holds" : "fails") : "";
     word.replaceChildren();
     const mark = document.createElement("span");
     mark.className = "mark";
     mark.setAttribute("aria-hidden", "true");
-    word.append(...(known ? [mark, verdict.holds ? "holds" : "FAILS"] : ["not judged"]));
+    word.append(...(known ? [mark, verdict.holds ? "holds" : "FAILS"] : [unknown]));
     code.textContent = verdict.signal || claim.signal;
     for (const old of name.querySelectorAll("small, code + br")) old.remove();
     if (verdict.note) {
@@ -66,12 +67,13 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
 
   function conclude(verdicts, failed) {
     const failing = verdicts.filter(each => each.holds === false).length, all = verdicts.length;
-    const open = verdicts.filter(each => each.holds === null).length;
+    const open = verdicts.filter(each => each.holds === null).length, waiting = verdicts.filter(each => each.waits).length;
     const text = failed ? "Not judged: these values cannot be run" : !all ? "No claims"
       : failing ? `${failing} of ${all} claims fail${failing === 1 ? "s" : ""}`
       : open ? `${all - open} of ${all} claims hold` : all === 1 ? "The claim holds" : `All ${all} claims hold`;
     const mark = outcome.querySelector(".mark");
-    outcome.replaceChildren(mark, text + (open && !failed ? `, ${open} not judged here` : ""));
+    const rest = [open > waiting && `${open - waiting} not judged here`, waiting && `${waiting} being computed`];
+    outcome.replaceChildren(mark, [text, ...rest.filter(each => each && !failed)].join(", "));
     outcome.className = `outcome ${failed || !all ? "unknown" : failing ? "fails" : open ? "unknown" : "holds"}`;
   }
 
@@ -92,6 +94,14 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
     return nearest ? nearest.verdict.place.position : null;
   };
 
+  function verdictOf(run, judge, claim) {
+    const waiting = run ? claim.parts.filter(run.waits) : [];
+    if (!run) return { holds: null, note: "these values cannot be run" };
+    if (waiting.length) return { holds: null, waits: true, note: `${waiting.join(", ")} still being stepped` };
+    const verdict = judge(claim);
+    return verdict.holds === null ? verdict : { ...verdict, place: place(run, verdict) };
+  }
+
   outcome.setAttribute("aria-live", "polite");
   loomfmu.live.follow("claims", run => {
     const judge = run && loomfmu.judge(run);
@@ -99,10 +109,13 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
       for (const claim of claims) check(claim, judge(claim));
       checked = true;
     }
-    const verdicts = claims.map(claim => run ? judge(claim) : { holds: null, note: "these values cannot be run" });
-    verdicts.forEach((verdict, number) => {
-      if (verdict.holds !== null) verdict.place = place(run, verdict);
-      show(rows[number], claims[number], verdict);
+    const verdicts = claims.map((claim, number) => {
+      const basis = run ? claim.parts.map(part => run.waits(part) ? "waits" : run.count(part)).join() : "none";
+      if (basis === bases[number]) return kept[number]; // of the same samples
+      bases[number] = basis;
+      kept[number] = verdictOf(run, judge, claim);
+      show(rows[number], claim, kept[number]);
+      return kept[number];
     });
     conclude(verdicts, !run);
     loomfmu.live.verdicts = verdicts;

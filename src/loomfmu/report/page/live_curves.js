@@ -11,19 +11,30 @@ loomfmu.motion = (run, name, rates = 2) => {
     : steady ? "" : `${name} is known only at the samples: its rate is not recorded`;
   const largest = own.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
 
-  function points(i) {
+  const fewer = [2, 4, 6][values.length - 1], [second, third] = values.slice(1);
+  function points(i, all = new Array(fewer)) {
     const h = time[i + 1] - time[i], y0 = own[i], y1 = own[i + 1];
-    if (values.length === 1) return [y0, y1];
-    const v0 = values[1][i] * h, v1 = values[1][i + 1] * h;
-    if (values.length === 2) return [y0, y0 + v0 / 3, y1 - v1 / 3, y1];
-    const a0 = values[2][i] * (h * h), a1 = values[2][i + 1] * (h * h);
-    return [y0, y0 + 0.2 * v0, y0 + 0.4 * v0 + 0.05 * a0, y1 - 0.4 * v1 + 0.05 * a1, y1 - 0.2 * v1, y1];
+    all[0] = y0;
+    all[fewer - 1] = y1;
+    if (fewer === 2) return all;
+    const v0 = second[i] * h, v1 = second[i + 1] * h;
+    if (fewer === 4) {
+      all[1] = y0 + v0 / 3;
+      all[2] = y1 - v1 / 3;
+      return all;
+    }
+    const a0 = third[i] * (h * h), a1 = third[i + 1] * (h * h);
+    all[1] = y0 + 0.2 * v0;
+    all[2] = y0 + 0.4 * v0 + 0.05 * a0;
+    all[3] = y1 - 0.4 * v1 + 0.05 * a1;
+    all[4] = y1 - 0.2 * v1;
+    return all;
   }
 
   /* Lowest and highest of the points of each interval: the motion stays between them. */
-  const lows = new Float64Array(count - 1), highs = new Float64Array(count - 1);
+  const lows = new Float64Array(count - 1), highs = new Float64Array(count - 1), some = points(0);
   for (let i = 0; i < count - 1; i++) {
-    const all = points(i);
+    const all = points(i, some); // no array for each
     let low = all[0], high = all[0];
     for (const each of all) { if (each < low) low = each; else if (each > high) high = each; }
     lows[i] = low;
@@ -120,6 +131,8 @@ loomfmu.motion = (run, name, rates = 2) => {
   function lowest(sign, within) {
     const found = [];
     let best = Infinity, sample = Infinity;
+    for (const [i, low, high] of pieces(within)) // what lies above all samples is not searched
+      if (low === 0 && high === 1) best = Math.min(best, sign * own[i], sign * own[i + 1]);
     for (const [i, low, high] of pieces(within)) {
       if (low === 0 && high === 1) {
         sample = Math.min(sample, sign * own[i], sign * own[i + 1]);
@@ -154,3 +167,13 @@ loomfmu.motion = (run, name, rates = 2) => {
 
   return { values: own, note, at, passages, beyond, lowest, nearest };
 };
+
+/* The same, kept until its samples change. */
+loomfmu.motionOf = (() => {
+  const kept = new Map();
+  return (run, name, rates = 2) => {
+    const key = `${name} ${rates}`, count = run.count(name);
+    if (kept.get(key)?.count !== count) kept.set(key, { count, motion: loomfmu.motion(run, name, rates) });
+    return kept.get(key).motion;
+  };
+})();

@@ -4,7 +4,7 @@
   const SVG = "http://www.w3.org/2000/svg", CURVE_POINTS = 180;
   const pictures = ["straight", "round"].map(name => document.getElementById(`diagram-${name}`));
   const details = document.querySelector("#diagram details"), drawings = [];
-  let run = null, bars = [], curves = [], drawn = null, begun = false; // bars and curves: functions of live_rules.js
+  let run = null, bars = [], curves = [], drawn = null, begun = false; // bars and curves: functions of live_rules.js, null while they wait
 
   // ---- one revolution
 
@@ -62,6 +62,7 @@
     rows.forEach((row, place) => {
       const low = top + height * place, outside = outer - width * place;
       row.bars.forEach((bar, k) => {
+        if (!bars[place][k]) { words.push([row.label, bar.label, "being computed"]); return; }
         const intervals = positive(along(bars[place][k], number));
         words.push([row.label, bar.label, intervals.map(degrees).join(", ") || "never"]);
         for (const [from, to] of intervals) {
@@ -71,6 +72,7 @@
           round.push(shape(ring(outside - 0.85 * width, outside - 0.15 * width, from, to), bar.role, text));
         }
       });
+      if (!curves[place]) return;
       const [angles, values] = along(curves[place], number), every = Math.max(1, Math.floor(angles.length / CURVE_POINTS));
       if (!values.every(Number.isFinite)) return;
       const kept = angles.map((_, k) => k).filter(k => k % every === 0 || k === angles.length - 1);
@@ -142,7 +144,7 @@
     if (!begun) begin();
     [run, drawn] = [found, null];
     if (!run) { for (const drawing of drawings) drawing.replaceChildren(); return; }
-    const rule = loomfmu.rules(run);
+    const rules = loomfmu.rules(run), rule = each => loomfmu.waits(run, each) ? null : rules(each);
     bars = rows.map(row => row.bars.map(bar => rule(bar.rule)));
     curves = rows.map(row => rule(row.curve === null ? NaN : row.curve));
   });

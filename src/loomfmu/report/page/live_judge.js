@@ -6,15 +6,11 @@ loomfmu.judge = run => {
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
   const NEVER = "the head never enters the shed in this run";
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
-  const { time } = run, last = values => values[values.length - 1], end = last(time), kept = new Map();
+  const { time } = run, last = values => values[values.length - 1], end = last(time);
 
   // ---- what claims have in common
 
-  const motion = (name, rates = 2) => {
-    const key = `${name} ${rates}`;
-    if (!kept.has(key)) kept.set(key, loomfmu.motion(run, name, rates));
-    return kept.get(key);
-  };
+  const motion = (name, rates) => loomfmu.motionOf(run, name, rates);
   const unknown = note => ({ holds: null, note });
   const never = (bound, ...notes) => ({ holds: false, worst: NaN, bound, notes }); // a claim without a value fails
   const shown = (value, factor, unit) => `${loomfmu.general(value * factor)} ${unit}`;

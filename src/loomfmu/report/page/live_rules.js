@@ -37,3 +37,11 @@ loomfmu.rules = (run, tracks = {}) => {
   }
   return follow;
 };
+
+/* Whether a rule needs an FMU that is still being stepped. */
+loomfmu.waits = (run, rule, tracks = {}) => {
+  if (typeof rule === "string") return tracks[rule] ? loomfmu.waits(run, tracks[rule].rule, tracks) : run.has(rule) && run.waits(rule);
+  if (!Array.isArray(rule)) return false;
+  const [operation, ...operands] = rule;
+  return (operation === "table" ? operands.slice(0, 1) : operands).some(each => loomfmu.waits(run, each, tracks));
+};

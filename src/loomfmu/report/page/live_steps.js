@@ -4,13 +4,14 @@ loomfmu.steps = (plan, wasm) => {
   const AT_ONCE = 100, SHARE = 0.1, PIECE = 64; // ms; of a whole run, for one FMU; steps between looks at the clock
   const [LEFT, STEPPED, SAMPLED] = [0, 1, 2]; // as in page.c
   const { steps, samples: signals } = plan, names = Object.keys(plan.signals), length = steps + 1;
-  const parts = Object.keys(plan.reaches), behind = new Set(parts), costs = new Map(), values = new Map();
+  const parts = Object.keys(plan.reaches), behind = new Set(parts), values = new Map();
   const counts = new Map(parts.map(part => [part, 0])); // how often each was stepped
+  const costs = new Map(parts.map(part => [part, 1])); // of each, in ms once it was stepped
   const list = wasm.allocate(12 * signals.length), uses = wasm.allocate(parts.length + 1);
   const samples = wasm.allocate(8 * signals.length * length);
   new Uint32Array(wasm.memory.buffer, list, 3 * signals.length).set(signals.flat());
   wasm.record(list, signals.length, samples, length);
-  let size = NaN, group = [], at = 0;
+  let size = NaN, group = [], at = 0, spent = 0, first = true;
 
   const owner = name => name.split(".")[0];
   const cost = some => some.reduce((sum, part) => sum + costs.get(part), 0);
@@ -37,38 +38,46 @@ loomfmu.steps = (plan, wasm) => {
   }
 
   function take(some) {
-    [group, at] = [some, 0];
+    [group, at, spent] = [some, 0, 0];
     const use = part => some.includes(part) ? STEPPED : behind.has(part) ? LEFT : SAMPLED;
     new Uint8Array(wasm.memory.buffer, uses, parts.length + 1).set([STEPPED, ...parts.map(use)]); // first what is driven
     wasm.choose(uses);
   }
 
-  /* Step what was taken, as far as time allows. */
+  /* Step what was taken until then. */
   function advance(deadline = Infinity) {
-    while (group.length && at < steps) {
+    const begun = performance.now();
+    while (group.length && at < steps && performance.now() < deadline) {
       const to = Math.min(at + PIECE, steps);
       at = wasm.run(at, to);
       if (at < to) return complaint();
-      if (performance.now() > deadline) break;
     }
-    if (at < steps) return "";
-    for (const part of group) { behind.delete(part); counts.set(part, counts.get(part) + 1); }
+    spent += performance.now() - begun;
+    if (at === steps) finish();
     return "";
+  }
+
+  function finish() {
+    const share = spent / cost(group);
+    for (const part of group) {
+      behind.delete(part);
+      counts.set(part, counts.get(part) + 1);
+      costs.set(part, share * costs.get(part));
+    }
   }
 
   /* Step all that is quick, and take the rest. The first run takes the time of each FMU. */
   function quick() {
-    for (const part of costs.size ? [] : parts) {
-      const begun = performance.now();
+    let problem = "";
+    for (const part of first ? parts : []) {
       take([part]);
-      const problem = advance();
-      if (problem) return problem;
-      costs.set(part, performance.now() - begun);
+      problem ||= advance();
     }
+    first = false;
     const wanted = [...behind], long = parts.filter(part => costs.get(part) > SHARE * cost(parts));
     const slow = long.flatMap(part => plan.reaches[part]);
     take(cost(wanted) > AT_ONCE ? wanted.filter(part => !slow.includes(part)) : wanted);
-    const problem = advance();
+    problem ||= advance();
     if (!problem) take([...behind]);
     return problem;
   }
@@ -92,5 +101,5 @@ loomfmu.steps = (plan, wasm) => {
     };
   }
 
-  return { start, quick, advance, found, behind, costs, wasm };
+  return { start, quick, advance, found, behind };
 };

@@ -5,7 +5,7 @@
   for (const track of Object.values(tracks))
     if (track.frames) track.frames = track.frames.map(steps => { let sum = 0; return steps.map(step => sum += step); });
   const windows = live ? Infinity : Math.max(...Object.values(tracks).map(track => track.shown.length));
-  let ran = false, known = false, window_ = 0, share = 0, sample = null; // share of the window that is past; place and share among the samples
+  let ran = false, known = false, window_ = 0, share = 0, sample = null, waiting = new Set(); // share of the window that is past; place and share among the samples
 
   const between = (values, place, part) => {
     const next = values[Math.min(place + 1, values.length - 1)];
@@ -20,8 +20,8 @@
   };
   const follower = word => Number.isNaN(Number(word)) ? () => value(word) : () => Number(word);
   const followers = (how, move) => [...root.querySelectorAll(`[data-${how}]`)].map(element => {
-    const words = element.getAttribute(`data-${how}`).split(" ").map(follower);
-    return { element, move: () => move(element, words.map(word => word())) };
+    const names = element.getAttribute(`data-${how}`).split(" "), words = names.map(follower);
+    return { figure: element.closest("figure"), names, move: () => move(element, words.map(word => word())) };
   });
 
   /* Points of an elastica by half the slope of its ends, between the two computed ones that are next to it. */
@@ -53,7 +53,7 @@
     if (live) missing.textContent = `The drawings have the scene’s own ${varied().join(", ")}, so they do not show this run.`;
     root.classList.toggle("stale", !known);
     if (!known) return; // drawings and caption stay as they were, together
-    for (const { move } of moves) move();
+    for (const { figure, move } of moves) if (!waiting.has(figure)) move();
     document.getElementById("motion-place").textContent = loomfmu.label(position);
   }
 
@@ -65,6 +65,12 @@
       ran = true;
       const rule = run && loomfmu.rules(run, tracks);
       for (const track of Object.values(tracks)) if (run && track.rule) track.value = rule(track.rule);
+      const waits = ({ names }) => names.some(name => tracks[name] && loomfmu.waits(run, name, tracks));
+      waiting = new Set(run ? moves.filter(waits).map(({ figure }) => figure) : []);
+      for (const figure of root.querySelectorAll("figure")) { // those that wait fade and say so
+        figure.classList.toggle("stale", waiting.has(figure));
+        figure.querySelector(".waits").hidden = !waiting.has(figure);
+      }
     });
   loomfmu.follow(draw);
   // on paper the whole page stands where the cursor was moved to, else where the worst claim of this run is

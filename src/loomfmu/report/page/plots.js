@@ -70,14 +70,12 @@
     };
   }
 
-  /* Curves at the same places as one table, of what is in sight the lowest and the highest of each few values; null if
-   * their places differ. A run is drawn in half the time that all its samples would take. */
-  function together(found) {
-    const [[along], ...others] = found, last = along.length - 1;
-    const alike = ([its]) => its.length === along.length && [0, last >> 1, last].every(k => Math.abs(its[k] - along[k]) < 1e-9 * along[last]);
-    if (last < 0 || !others.every(alike)) return null;
+  /* Curves at the same places as one table, of what is in sight the lowest and the highest of each few values. A run is
+   * drawn in half the time that all its samples would take. */
+  function thinned(found) {
+    const along = found[0][0], last = along.length - 1, places = new Set([0, last]);
     const { min, max } = bounded(range), from = loomfmu.locate(along, min)[0], to = Math.min(loomfmu.locate(along, max)[0] + 1, last);
-    const size = Math.max(1, Math.ceil((to - from) / BUCKETS)), places = new Set([0, last]);
+    const size = Math.max(1, Math.ceil((to - from) / BUCKETS));
     for (let start = from; start <= to; start += size)
       for (const [, values] of found) {
         let low = start, high = start;
@@ -91,10 +89,20 @@
     return [along, ...found.map(([, values]) => values)].map(each => kept.map(k => each[k]));
   }
 
+  /* The curves of runs as one table; one that is not known yet is empty. */
+  function together(found) {
+    const [[along]] = found, last = along.length - 1;
+    const alike = ([its]) => its.length === along.length && [0, last >> 1, last].every(k => Math.abs(its[k] - along[k]) < 1e-9 * along[last]);
+    if (along.length && found.every(alike)) return thinned(found);
+    return uPlot.join(found.map(each => each[0].length ? thinned([each]) : each));
+  }
+
   function contents(name) {
     const found = tables(name), ends = whole(), { bounds } = signals[name];
-    const one = loomfmu.live && together(found);
-    if (one) return { found, data: [...one, ...bounds.map(bound => one[0].map(() => bound.value))] };
+    if (loomfmu.live) {
+      const table = together(found);
+      return { found, data: [...table, ...bounds.map(bound => table[0].map(() => bound.value))] };
+    }
     const lines = bounds.map(bound => [ends, [bound.value, bound.value]]);
     const all = [...found, ...lines];
     return { found, data: all.length === 1 ? found[0] : uPlot.join(all) };
@@ -124,7 +132,7 @@
   /* Draw a plot, or with other curves than before, if it is not to be made anew. */
   function render(made, fresh = true) {
     const { found, data } = contents(made.name), logarithmic = wide(data), { about, bounds } = made.signal;
-    made.about.textContent = [about, ...bounds.map(bound => bound.text)].filter(Boolean).join("; ");
+    made.about.textContent = [about, made.signal.note, ...bounds.map(bound => bound.text)].filter(Boolean).join("; ");
     made.found = found;
     made.largest = found.map(([, values]) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0));
     made.stale = false;
@@ -273,10 +281,10 @@
 
   loomfmu.plots = {
     traces, signals,
-    /* Other curves, of the same signals; drawn as the cursor moves. */
-    show(found) {
+    /* Other curves, of the same signals, some of which differ; drawn as the cursor moves. */
+    show(found, differs) {
       curves = found;
-      for (const made of plots.values()) made.stale = true;
+      for (const made of plots.values()) made.stale ||= differs(made.name);
     },
   };
   for (const box of boxes) box.checked = first.includes(box.value);
