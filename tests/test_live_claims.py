@@ -31,8 +31,8 @@ NOT_JUDGED = {"energy_balance"}  # by the page
 OTHERS = """() => loomfmu.live.plan.claims.map(claim => {
     const { current } = loomfmu.live, read = new Set()
     const noted = look => name => { read.add(name.split(".")[0]); return look(name) }
-    const run = { ...current, signal: noted(current.signal), parameter: noted(current.parameter), count: () => NaN }
-    loomfmu.judge(run)(claim)
+    const [signal, parameter] = [current.signal, current.parameter].map(noted)
+    loomfmu.judge({ ...current, signal, parameter, count: () => NaN })(claim)
     return [...read].filter(name => !claim.parts.includes(name)).join(" ")
 })"""
 

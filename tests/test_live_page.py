@@ -139,24 +139,42 @@ def test_only_what_a_value_reaches_is_stepped_again(opened: Open, tmp_path: Path
     scene.write_text(f"record = {json.dumps(recorded)}\n{text}")
     vary = ["shaft.speed", "damper.damping_ratio", "belt_motion.damping=0..20", "wrap.block_clearance"]
     page = running(opened(live_page.write(scene, vary, tmp_path / "page.html")))
-    counts = "Object.fromEntries(Object.keys(loomfmu.live.plan.reaches).map(part => [part, loomfmu.live.current.count(part)]))"
+    count = "part => [part, loomfmu.live.current.count(part)]"
+    counts = f"Object.fromEntries(Object.keys(loomfmu.live.plan.reaches).map({count}))"
+    dampers = {f"{each}_{k}" for each in ("damper", "warp", "play") for k in range(1, 5)}
     given: dict[str, str] = {}
     for number, value, unit, reached in [
-        (1, 0.055, "", {f"{each}_{k}" for each in ("damper", "warp", "play") for k in range(1, 5)}),
-        (0, 470.0, "rpm", None),
+        (1, 0.055, "", dampers),
+        (0, 470.0, "rpm", None),  # all: it sets the step
         (2, 6.0, "1/s", {"belt_motion"}),
         (3, 0.25, "mm", {"wrap"}),
-        (1, 0.045, "", {f"{each}_{k}" for each in ("damper", "warp", "play") for k in range(1, 5)}),
+        (1, 0.045, "", dampers),
     ]:
         before = page.evaluate(counts)
         turned(page, value, number)
         after = page.evaluate(counts)
         stepped = {part for part in after if after[part] == before[part] + 1}
-        assert stepped == (reached or after.keys())  # the speed sets the step of all
+        assert stepped == (reached or after.keys())
         given[vary[number].partition("=")[0]] = f"{value} {unit}".strip()
         result = loomfmu.run(scene, set=given, output=tmp_path / "run.h5", overwrite=True)
         values_agree(page, result.trace)
         verdicts_agree(page, result.claims)
+
+
+def test_values_that_an_fmu_rejects_leave_nothing_behind(opened: Open, tmp_path: Path) -> None:
+    """What was rejected is stepped anew as soon as it can be, and what else was changed meanwhile."""
+    phase, ratio = "weft.crank_phase", "damper.damping_ratio"
+    page = running(opened(live_page.write(DEMO, [f"{phase}=-10deg..80deg", ratio], tmp_path / "page.html")))
+    turned(page, 70.0)
+    assert "These values cannot be run: weft: " in page.inner_text("#live-problem")
+    assert page.inner_text(".outcome").endswith("Not judged: these values cannot be run")
+    turned(page, 0.055, 1)
+    assert page.evaluate("loomfmu.live.current") is None
+    turned(page, 5.0)
+    assert page.locator("#live-problem").is_hidden()
+    result = loomfmu.run(DEMO, set={phase: "5 deg", ratio: 0.055}, output=tmp_path / "run.h5")
+    values_agree(page, result.trace)
+    verdicts_agree(page, result.claims)
 
 
 def test_what_takes_long_follows_and_says_so_meanwhile(
@@ -169,7 +187,8 @@ def test_what_takes_long_follows_and_says_so_meanwhile(
     page.reload()
     running(page)
     page.evaluate("""() => {
-        const shown = window.shown = [], words = query => Array.from(document.querySelectorAll(query), each => each.innerText)
+        const shown = window.shown = []
+        const words = query => Array.from(document.querySelectorAll(query), each => each.innerText)
         loomfmu.live.follow("test", run => setTimeout(() => shown.push({
             waits: Object.keys(loomfmu.live.plan.reaches).filter(run.waits),
             verdicts: loomfmu.live.verdicts.map(({ holds, waits = false }) => [holds, waits]),

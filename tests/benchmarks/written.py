@@ -8,6 +8,7 @@ import belt_motion
 import cost
 import guard
 import limits
+import live_pages
 import precision
 import pruning
 import scaling
@@ -32,6 +33,7 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     pruning.NAME: ("Running only what is requested", pruning),
     sweep_runs.NAME: ("Sweeps", sweep_runs),
     start_up.NAME: ("Start-up", start_up),
+    live_pages.NAME: ("The page in which the loom runs", live_pages),
     writing.NAME: ("Writing traces", writing),
     guard.NAME: ("Guard", guard),
 }

@@ -109,7 +109,7 @@ def _stepping(whole: System, trace: Trace, rows: Rows) -> dict[str, Any]:
     """What the script needs to step no more than a value reaches.
 
     `samples` are the row of each signal, the number of the part that it is of, and whether it feeds another
-    part; those that are not recorded come last. `reaches` are the parts that depend on each part, with itself.
+    part; those that are not recorded come last. `reaches` are each part and those that depend on it.
     """
     numbers = {part.name: number for number, part in enumerate(whole.parts, start=1)}  # 0 is what is driven
     owner = {name: name.partition(".")[0] for name in rows}
@@ -137,9 +137,10 @@ def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
 def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """What the script judges: the kind and the arguments of each claim, and how its values are shown.
 
-    `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is about, and `native` is the verdict on the run that
-    the page holds, whether its bound is met exactly, and its numerical error: the script leaves out a claim
-    that it would judge otherwise, or that is too near to its bound for that error.
+    `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
+    about, and `native` is the verdict on the run that the page holds, whether its bound is met exactly, and
+    its numerical error: the script leaves out a claim that it would judge otherwise, or that is too near to
+    its bound for that error.
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):

@@ -62,7 +62,7 @@ loomfmu.steps = (plan, wasm) => {
     for (const part of group) {
       behind.delete(part);
       counts.set(part, counts.get(part) + 1);
-      costs.set(part, share * costs.get(part));
+      costs.set(part, Math.max(share * costs.get(part), 1e-3)); // clocks are coarse
     }
   }
 
