@@ -413,7 +413,7 @@ def test_how_long_a_change_takes(written: Path, opened: Open) -> None:
     for speed in range(500, 520):
         turned(page, speed)
         paces.append(page.evaluate("loomfmu.live.pace"))
-    medians = {part: float(np.median([each[part] for each in paces])) for part in paces[0]}
+    medians = {part: float(np.median([each[part] for each in paces])) for part in paces[0].keys() - {"late"}}
     print("; ".join(f"{part} {median:.1f} ms" for part, median in medians.items()))
     assert set(medians) >= {"run", "claims", "diagram", "motion", "plots", "all"}
 
