@@ -139,8 +139,8 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
 
     `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
     about, and `native` is the verdict on the run that the page holds, whether its bound is met exactly, and
-    its numerical error: the script leaves out a claim that it would judge otherwise, or that is too near to
-    its bound for that error.
+    its numerical error: the script leaves out a claim that it would judge otherwise, that is too near to its
+    bound for that error, or whose error half of the steps could not tell (`coarse`).
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
@@ -150,6 +150,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
             frames = sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
         unit = "" if verdict.label == "1" else verdict.label
         lifts = {frame: lift_of(frame, str(arguments.get("lifted_by", "")), trace) for frame in frames}
+        estimated = math.isfinite(verdict.error)
         read = [*signals_of(scene, claim), *shaft_angle(scene), *lifts.values()]
         found.append({
             **arguments,
@@ -163,7 +164,8 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
             "native": {
                 "holds": verdict.holds or verdict.distance >= 0.0,
                 "worst": verdict.worst,
-                "error": verdict.error if math.isfinite(verdict.error) else 0.0,
+                "error": verdict.error if estimated else 0.0,
+                "coarse": math.isfinite(verdict.worst) and not verdict.decided and not estimated,
                 "met": verdict.decided and verdict.distance == 0.0,
             },
         })  # fmt: skip

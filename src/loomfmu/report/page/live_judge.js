@@ -311,7 +311,7 @@ loomfmu.judge = run => {
     const judge = judges[claim.kind];
     if (!judge) return unknown(`the page does not judge ${claim.kind}; ${NOT_HERE}`);
     if (claim.left) return unknown(`the page would judge it unlike the native run; ${NOT_HERE}`);
-    if (tooCoarse) return unknown(COARSE);
+    if (tooCoarse || claim.native.coarse) return unknown(COARSE);
     const found = judge(claim);
     if (found.holds === null) return found;
     const at = run.has("shaft.angle") && Number.isFinite(found.time) ? motion("shaft.angle").at(found.time) : NaN;
