@@ -247,6 +247,27 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
     assert "free lengths above 5 times bow_length do not count" in found[2]["note"]
 
 
+def test_what_the_belt_leaves_undecided_with_other_ends_is_not_judged(opened: Open, tmp_path: Path) -> None:
+    """With play, modes leave 1 % of a deflection; the page has the error at the scene's own values, less."""
+    text = (
+        "revolutions = 0.5\nsteps_per_revolution = 360\n[loom]\nbelt_motion = true\n"
+        "[shaft]\nspeed = '600 rpm'\n"
+    )
+    claim = '[[claims]]\nkind = "below"\nsignal = "belt_motion.largest_deflection"\nbound = '
+    scene, play = tmp_path / "ends.toml", {"belt_motion.guide_end": "play"}
+    scene.write_text(f"{text}{claim}1\n")
+    bounds = [share * loomfmu.evaluate(scene, set=play).claims[0].worst for share in (1.005, 1.1)]
+    scene.write_text(text + "".join(f"{claim}{bound!r}\n" for bound in bounds))
+    page = running(opened(live_page.write(scene, ["belt_motion.guide_end"], tmp_path / "page.html")))
+    page.evaluate("loomfmu.live.verdicts = null")
+    page.locator(".knob select").select_option(label="play")
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+    found = page.evaluate("loomfmu.live.verdicts.map(each => each.holds)")
+    words = [verdict.word for verdict in loomfmu.evaluate(scene, set=play).claims]
+    assert words == ["undecided", "holds"]
+    assert found == [None, True]
+
+
 def test_a_claim_that_the_page_would_judge_otherwise_is_left_out(
     written: Path, tmp_path: Path, opened: Open
 ) -> None:

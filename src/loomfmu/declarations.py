@@ -104,13 +104,14 @@ def output(
     highest_of: str | None = None,
     pole: bool = False,
     valid_if: str | None = None,
+    error: str | None = None,
 ) -> Any:
     """A value that the component computes; integers and booleans are discrete by default."""
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "output", variability or usual, unit, start, description, display,
         nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of, pole=pole, valid_if=valid_if,
+        lowest_of=lowest_of, highest_of=highest_of, pole=pole, valid_if=valid_if, error=error,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from itertools import groupby
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from . import units
 from .declarations import MAKERS
@@ -35,7 +35,8 @@ class Variable:
     is off at the first of its choices; `pole` says that an output grows without bound at the edges of its
     component's windows; `element` is its place in an array,
     such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
-    before the step; `valid_if` names the yes-or-no output that says when an output can be relied on.
+    before the step; `valid_if` names the yes-or-no output that says when an output can be relied on; `error`
+    the output, in the same unit, that says how far this one may be off whatever the steps.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Variable:
     element: str = ""
     carried: bool = False
     valid_if: str | None = None
+    error: str | None = None
 
     @property
     def member(self) -> str:
@@ -244,6 +246,30 @@ def variables_of(component: type[Component]) -> tuple[Variable, ...]:
     if component not in _variables:
         _variables[component] = component.declared()
     return _variables[component]
+
+
+class Beside(NamedTuple):
+    """The outputs that say more of an output: when it is known, how far it is off, its extremes."""
+
+    valid_if: str | None = None
+    error: str | None = None
+    lowest: str | None = None
+    highest: str | None = None
+
+
+ALONE = Beside()
+
+
+def beside(component: type[Component]) -> dict[str, Beside]:
+    """The outputs that say more of each output of a component."""
+    outputs = [variable for variable in variables_of(component) if variable.causality == "output"]
+    reals = [variable for variable in outputs if variable.type is float]
+    lowest = {each.lowest_of: each.name for each in reals}
+    highest = {each.highest_of: each.name for each in reals}
+    return {
+        each.name: Beside(each.valid_if, each.error, lowest.get(each.name), highest.get(each.name))
+        for each in outputs
+    }
 
 
 def arrays_of(component: type[Component]) -> dict[str, tuple[Variable, ...]]:

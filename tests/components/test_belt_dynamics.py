@@ -9,8 +9,9 @@ from belt_loom import Loom, X, ends, shape
 from belt_reference import FiniteElements
 from scipy.optimize import minimize_scalar
 
-from loomfmu import LoomfmuError, Trace, run
+from loomfmu import LoomfmuError, Trace, evaluate, run
 from loomfmu.components.belt_dynamics import BeltDynamics
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.physics.belt import LARGEST_BEND, critical_force, elastica_deflection
 from loomfmu.physics.belt_end_forces import end_forces
 
@@ -419,9 +420,64 @@ def test_the_error_of_the_claim_has_the_share_of_modes_and_integration(tmp_path)
     scene = "sims/belt_motion.toml"
     dynamic = run(scene, output=tmp_path / "run.h5").claims[1]
     finer = run(scene, output=tmp_path / "finer.h5", set={"steps_per_revolution": 11520}).claims[1]
-    assert 1e-4 * dynamic.bound <= dynamic.error <= 2e-4 * dynamic.bound
+    assert dynamic.error == pytest.approx(1e-2 * dynamic.worst)  # it swings on after the push
     assert abs(dynamic.worst - finer.worst) < dynamic.error
-    play = run(scene, output=tmp_path / "play.h5", set={"belt_motion.guide_end": "play"}).claims[1]
-    assert play.error == pytest.approx(1e-2 * play.worst)  # clamped in its guide, at times
-    with pytest.raises(LoomfmuError, match=r"stays within the 2 mm .* is at least 0\.0001 of its bound"):
+    with pytest.raises(
+        LoomfmuError, match=r"2 mm .* is at least 0\.008 of its bound \(belt_motion\.defl.*_error"
+    ):
         run(scene, output=tmp_path / "never.h5", set={"accuracy": 1e-6})
+
+
+ON_DEFLECTIONS = [
+    'kind = "belt_deflection"\nat_most',
+    'kind = "below"\nsignal = "belt_motion.largest_deflection"\nbound',
+    'kind = "below"\nsignal = "belt_motion.largest_at_risk"\nbound',
+    'kind = "below"\nsignal = "belt_motion.deflection"\nwindow = ["80 deg", "100 deg"]\nbound',
+    'kind = "lowest_margin"\nbelt = "belt_motion"\nbound',
+    'kind = "above"\nsignal = "belt_motion.lowest_margin"\nbound',
+    'kind = "above"\nsignal = "belt_motion.margin"\nwindow = ["80 deg", "100 deg"]\nbound',
+]
+
+
+@pytest.mark.parametrize("claim", ON_DEFLECTIONS)
+@pytest.mark.parametrize(
+    ("ends", "pushed"), [({}, 2.5e-4), ({"guide_end": "play"}, 1e-2), ({"head_end": "guided"}, 1e-2)]
+)
+def test_each_claim_on_a_deflection_has_that_share(claim, ends, pushed):
+    """Within it of the bound none is decided, whatever its kind and its output."""
+    of_margin, share = "margin" in claim, pushed if "window" in claim else 1e-2
+    text = "[loom]\nbelt_motion = true\n[shaft]\nspeed = '600 rpm'\n[[claims]]\n" + claim
+    values = {"revolutions": 0.5, "steps_per_revolution": 1440}
+    values |= {f"belt_motion.{end}": choice for end, choice in ends.items()}
+    (far,) = evaluate(parse(f"{text} = {-9.0 if of_margin else 1.0}", "far", values)).claims
+    deflection = 1.0 - far.worst if of_margin else far.worst
+    assert far.holds
+    assert share * deflection * (1.0 - 1e-9) <= far.error <= 2.0 * share * deflection
+    for side in (-0.9, 0.9):
+        bound = far.worst + side * share * deflection
+        assert evaluate(parse(f"{text} = {bound!r}", "near", values)).claims[0].word == "undecided"
+
+
+# Four of seventy random looms in which the margin was lower between two samples than its error allowed: the
+# estimate looked at the second difference about the lowest sample alone.
+PASSED = [
+    (475.4, 0.0459, 0.118, "belt", "calibrated", "guided"),
+    (663.1, 0.0591, 0.068, "belt", "play", "guided"),
+    (490.1, 0.0691, 0.082, "belt", "play", "pinned"),
+    (607.5, 0.0305, 0.460, "span", "calibrated", "guided"),
+]
+
+
+@pytest.mark.parametrize("drawn", PASSED)
+def test_a_margin_on_the_way_back_is_known_between_the_samples(drawn):
+    rpm, mass, bow, bow_of, guide, head = drawn
+    text = (
+        f"revolutions = 1\n[loom]\nbelt_motion = true\n[shaft]\nspeed = '{rpm} rpm'\n[belt_motion]\n"
+        f"belt_mass = {mass}\nbow = '{bow} mm'\nbow_of = '{bow_of}'\n"
+        f"guide_end = '{guide}'\nhead_end = '{head}'\n"
+        '[[claims]]\nkind = "above"\nsignal = "belt_motion.margin"\nbound = 0.5\n'
+    )
+    window = 'window = ["235 deg", "275 deg"]\n'
+    found = evaluate(parse(text + window, "found", {"steps_per_revolution": 90})).claims[0]
+    finer = evaluate(parse(text + window, "finer", {"steps_per_revolution": 720})).claims[0]
+    assert abs(found.worst - finer.worst) <= found.error

@@ -65,6 +65,9 @@ MISTAKES = {
     "a number that vouches": (
         '"Rate")', '"Rate", valid_if="sound")', "rate: valid_if = 'sound' is not a yes-or-no output",
     ),
+    "an error in another unit": (
+        '"Rate")', '"Rate", error="sound")', "rate is in m/s, but its error sound in m",
+    ),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',

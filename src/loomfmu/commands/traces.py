@@ -55,19 +55,37 @@ def _summarise(trace: "Trace") -> None:
             values = values / factor
             shown = (f"{value:12.6g}" for value in (values.min(), values.max(), values[-1]))
             rows.append((printed.safe(name), *shown, unit))
-    say(*printed.in_columns(rows), *_unknown(trace), "")
+    say(*printed.in_columns(rows), *_unknown(trace), *(_off(trace) if trace.rows else ()), "")
     if trace.judged:
         print_verdicts(trace.verdicts)
     else:
         say("claims not judged: the run did not finish")
 
 
+def _beside(trace: "Trace", role: str) -> dict[str, list[str]]:
+    """The signals that say more of others in a role of `Beside`, each with these."""
+    found: dict[str, list[str]] = {}
+    for name in trace:
+        if beside := trace.beside(name, role):
+            found.setdefault(beside, []).append(printed.safe(name))
+    return found
+
+
+def _off(trace: "Trace") -> list[str]:
+    """Lines on the signals that may be off whatever the steps, by the signals that say so."""
+    lines = []
+    for error, names in _beside(trace, "error").items():
+        factor, unit = trace.displayed(error)
+        most = f"{trace.read(error).max() / factor:.2g}" + ("" if unit == "1" else f" {unit}")
+        lines.append(
+            f"with any steps, these may be off by up to {most} ({printed.safe(error)}): {', '.join(names)}"
+        )
+    return lines
+
+
 def _unknown(trace: "Trace") -> list[str]:
     """Lines on the signals that are not known at all samples, by the signals that say so."""
-    vouching: dict[str, list[str]] = {}
-    for name in trace:
-        if flag := trace.validity(name):
-            vouching.setdefault(flag, []).append(printed.safe(name))
+    vouching = _beside(trace, "valid_if")
     no = {flag: trace.rows - int(trace.read(flag).sum()) for flag in vouching}
     return [
         f"{printed.safe(flag)} is false at {no[flag]} of {trace.rows} samples; not known there: "

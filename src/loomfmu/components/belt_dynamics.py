@@ -26,6 +26,8 @@ MOST_STEPS = 50  # of the integration in one step, before they are halved
 LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
+LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
+MORE_LEFT = 1e-2  # later, when the belt swings on and comes back, or where an end may be clamped
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
 
@@ -321,6 +323,10 @@ class BeltDynamics(BeltRest):
             )
             self.show_ends()
         self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
+        pushed_out = self.compression > 0.0 and self.velocity > 0.0
+        left = LEFT if pushed_out and not self.may_clamp() else MORE_LEFT
+        self.deflection_error = left * self.largest_deflection
+        self.margin_error = self.deflection_error / self.allowed_deflection
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
         if self.held:

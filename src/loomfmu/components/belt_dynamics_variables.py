@@ -11,6 +11,7 @@ from .terminals import HEAD
 
 NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth")
 KNOWN, FOLLOWED = "deflection_known", "followed"  # what says when other outputs are known
+ERROR, MARGIN_ERROR = "deflection_error", "margin_error"  # and how far they may be off
 
 
 @dataclass(slots=True)
@@ -129,7 +130,7 @@ class BeltDynamicsVariables(Component):
         nominal=100.0,
     )
     deflection: float = output(
-        "m", "Largest deflection along the belt", display="mm", nominal=5e-3, valid_if=KNOWN
+        "m", "Largest deflection along the belt", display="mm", nominal=5e-3, valid_if=KNOWN, error=ERROR
     )
     deflection_rate: float = output("m/s", "Rate of the deflection where it is largest", valid_if=KNOWN)
     deflection_place: float = output(
@@ -145,14 +146,25 @@ class BeltDynamicsVariables(Component):
     largest_deflection: float = output(
         "m", "Largest deflection so far, at free lengths up to 5 times bow_length if the belt has the bow",
         display="mm", nominal=5e-3, highest_of="deflection", valid_if=FOLLOWED,
+        error=ERROR,
     )  # fmt: skip
     largest_at_risk: float = output(
         "m", "That of largest_deflection while the head was pushed", display="mm", nominal=5e-3,
-        valid_if=FOLLOWED,
+        valid_if=FOLLOWED, error=ERROR,
     )  # fmt: skip
-    margin: float = output("1", "Dynamic margin, 1 - deflection / allowed_deflection", valid_if=KNOWN)
+    deflection_error: float = output(
+        "m", "How far deflections may be off with any steps, by modes and integration: 1e-2 of the largest so"
+        " far; 2.5e-4 while the head is pushed outwards and no end may be clamped",
+        display="mm", nominal=1e-5,
+    )  # fmt: skip
+    margin: float = output(
+        "1", "Dynamic margin, 1 - deflection / allowed_deflection", valid_if=KNOWN, error=MARGIN_ERROR
+    )
     lowest_margin: float = output(
-        "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=FOLLOWED
+        "1", "Dynamic margin of largest_deflection", lowest_of="margin", valid_if=FOLLOWED, error=MARGIN_ERROR
+    )
+    margin_error: float = output(
+        "1", "How far margins may be off, deflection_error / allowed_deflection", nominal=1e-2
     )
     growth_rate: float = output(
         "1/s", "Rate at which the belt would grow in the shape in which it buckles; 0 while it is stable",

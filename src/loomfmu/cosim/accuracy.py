@@ -33,13 +33,6 @@ def chosen(
     LoomfmuError where the accuracy is not reached.
     """
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
-    for claim, table in zip(estimates.claims, scene.claims, strict=True):
-        if claim.resolved > wanted:
-            raise LoomfmuError(
-                f"accuracy = {wanted:g} cannot be reached: with any steps, the error of"
-                f" {table.get('name') or table['kind']!r} is at least {claim.resolved:g} of its bound;"
-                " set a larger accuracy, or steps_per_revolution"
-            )
     before: list[tuple[float, ...]] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in (FEWEST << doubled for doubled in range(DOUBLED + 1)):
@@ -51,11 +44,10 @@ def chosen(
         if before:
             quarter = before[1] if len(before) > 1 else (math.nan,) * len(verdicts)
             coarser = Coarser(everything, before[0], quarter)
+            estimated = estimates.of(trace, verdicts, coarser)
             errors = [
                 _share(verdict, claim.noise)
-                for verdict, claim in zip(
-                    estimates.of(trace, verdicts, coarser), estimates.claims, strict=True
-                )
+                for verdict, claim in zip(estimated, estimates.claims, strict=True)
             ]
             number, error = max(enumerate(errors), key=lambda each: each[1])
             if error <= wanted:
@@ -63,7 +55,13 @@ def chosen(
                     f"chose {steps} steps in a revolution: estimated error {error:.1g}, accuracy {wanted:g}"
                 )
                 return Choice(tried, coarser, text)
-            name = called(scene.claims[number], verdicts[number])
+            name, signal = called(scene.claims[number], verdicts[number]), verdicts[number].signal
+            if estimated[number].error <= estimates.claims[number].left_by_model(trace, verdicts[number]):
+                raise LoomfmuError(
+                    f"accuracy = {wanted:g} cannot be reached: with any steps, the error of {name!r} is at"
+                    f" least {error:.1g} of its bound ({trace.error(signal)}); set a larger accuracy, or"
+                    " steps_per_revolution"
+                )
             reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
         before = [tuple(verdict.worst for verdict in verdicts), *before[:1]]
     raise LoomfmuError(

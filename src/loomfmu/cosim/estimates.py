@@ -159,8 +159,7 @@ def _estimated(
         return replace(_noted(verdict, note), decided=False, holds=False)
     changes = [method.halved * abs(worst - half), method.quartered * abs(half - quarter)]
     spread = max(change for change in changes if math.isfinite(change))
-    share = max(method.floor, claim.resolved)
-    floor = max(claim.noise, share * max(abs(worst), abs(verdict.bound)))
+    floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
     return verdict.estimated(max(spread, claim.unresolved(trace, verdict), floor), spread)
 
 

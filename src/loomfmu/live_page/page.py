@@ -36,7 +36,10 @@ MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
 Rows = dict[str, tuple[int, Variable]]  # the variables of the module, by name, with their numbers
 POLICY = " 'wasm-unsafe-eval'"
-SCRIPTS = ("live_steps.js", "live.js", "live_rules.js", "live_curves.js", "live_judge.js", "live_claims.js")
+SCRIPTS = (
+    "live_steps.js", "live.js", "live_rules.js", "live_curves.js", "live_latches.js", "live_judge.js",
+    "live_claims.js",
+)  # fmt: skip
 
 
 def write(
@@ -127,6 +130,7 @@ def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
     return {
         "rate": trace.rate(name),
         "validity": trace.validity(name),
+        **{role: trace.beside(name, role) for role in ("error", "lowest", "highest")},
         "unit": "" if display == "1" else display,
         "factor": units.unit(display).factor,
         "about": trace.description(name),

@@ -110,6 +110,7 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
             ("lowest_of", variable.lowest_of, "output"),
             ("highest_of", variable.highest_of, "output"),
             ("valid_if", variable.valid_if, "output"),
+            ("error", variable.error, "output"),
             ("when", variable.when, "parameter"),
             ("unless", variable.unless, "parameter"),
             *(("depends", name, "input") for name in variable.depends or ()),
@@ -121,6 +122,9 @@ def _of_references(component: type[Component]) -> Iterator[Fault]:
         if variable.valid_if in known and known[variable.valid_if].type is not bool:
             text = f"{variable.name}: valid_if = {variable.valid_if!r} is not a yes-or-no output"
             yield Fault(variable.name, text)
+        if variable.error in known and known[variable.error].unit != variable.unit:
+            text = f"{variable.name} is in {variable.unit}, but its error {variable.error} in"
+            yield Fault(variable.name, f"{text} {known[variable.error].unit}")
         if variable.rate is not None:
             yield from _of_rate(variable, known[variable.rate])
     for terminal in component.terminals:

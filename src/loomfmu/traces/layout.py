@@ -5,6 +5,7 @@ from typing import Any
 import h5py
 
 FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
+BESIDE = {"valid_if": "ancillary_variables"}  # roles of `Beside` that have another name in CF
 EXPANSION = 1100  # bytes that a stored byte may become: gzip makes up to 1032 of it
 
 

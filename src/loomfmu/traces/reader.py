@@ -17,7 +17,7 @@ from ..components import COMPONENTS
 from ..errors import LoomfmuError, shown
 from ..units import UnitError
 from ..variables import SHARED, variables_of
-from .layout import check_link, column, has, member
+from .layout import BESIDE, check_link, column, has, member
 from .opened import TraceFile
 from .signals import Floats, Signals
 from .verdict import HEADINGS, Verdict
@@ -257,15 +257,17 @@ class Trace(Signals):
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
-        name = self._text(signal, "rate")
-        rate = f"{signal.split('.')[0]}.{name}"
-        return rate if name and rate in self else None
+        return self._named(signal, "rate")
 
-    def validity(self, signal: str) -> str | None:
-        """The recorded yes-or-no signal that says when this one is known, if there is one."""
-        name = self._text(signal, "ancillary_variables")
-        flag = f"{signal.split('.')[0]}.{name}"
-        return flag if name and flag in self else None
+    def beside(self, signal: str, role: str) -> str | None:
+        """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
+        return self._named(signal, BESIDE.get(role, role))
+
+    def _named(self, signal: str, attribute: str) -> str | None:
+        """The recorded signal of the same instance that an attribute names, if there is one."""
+        variable = self._text(signal, attribute)
+        name = f"{signal.split('.')[0]}.{variable}"
+        return name if variable and name in self else None
 
     def is_real(self, signal: str) -> bool:
         """Whether a signal holds real numbers; whole numbers, choices and yes or no do not vary smoothly."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import LoomfmuError, shown, suggestion
 from ..units import unit
+from ..variables import ALONE, Beside
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -33,7 +34,7 @@ class Channel:
     meanings: tuple[str, ...] = ()
     first_flag: int = 0
     boolean: bool = False
-    valid_if: str | None = None
+    beside: Beside = ALONE
 
     @cached_property
     def signal(self) -> str:
@@ -114,8 +115,20 @@ class Signals(ABC):
         """The recorded signal that is this one's time derivative, if there is one."""
 
     @abstractmethod
+    def beside(self, signal: str, role: str) -> str | None:
+        """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
+
     def validity(self, signal: str) -> str | None:
         """The recorded yes-or-no signal that says when this one is known, if there is one."""
+        return self.beside(signal, "valid_if")
+
+    def error(self, signal: str) -> str | None:
+        """The recorded signal that says how far this one may be off whatever the steps, if there is one."""
+        return self.beside(signal, "error")
+
+    def held(self, signal: str, sign: float) -> str | None:
+        """The recorded signal that holds the lowest value of this one so far, or with sign -1 the highest."""
+        return self.beside(signal, "lowest" if sign > 0.0 else "highest")
 
     @abstractmethod
     def parameter(self, signal: str) -> float:
@@ -262,13 +275,16 @@ class Recording(Signals):
 
     def rate(self, signal: str) -> str | None:
         """The recorded signal that is this one's time derivative, if there is one."""
-        rate = f"{signal.split('.')[0]}.{self._channel(signal).rate}"
-        return rate if rate in self._channels else None
+        return self._recorded(signal, self._channel(signal).rate)
 
-    def validity(self, signal: str) -> str | None:
-        """The recorded yes-or-no signal that says when this one is known, if there is one."""
-        flag = f"{signal.split('.')[0]}.{self._channel(signal).valid_if}"
-        return flag if flag in self._channels else None
+    def beside(self, signal: str, role: str) -> str | None:
+        """The recorded signal that says more of this one in a role of `Beside`, if there is one."""
+        return self._recorded(signal, getattr(self._channel(signal).beside, role))
+
+    def _recorded(self, signal: str, variable: str | None) -> str | None:
+        """A variable of the instance that a signal is of, if it is recorded."""
+        name = f"{signal.split('.')[0]}.{variable}"
+        return name if name in self._channels else None
 
     def parameter(self, signal: str) -> float:
         """A parameter of an instance as it was set, such as `heald_1.stroke`."""

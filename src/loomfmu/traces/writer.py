@@ -21,6 +21,7 @@ from .chunks import ROWS, Columns
 from .created import INTEGERS, REALS, annotate, dataset
 from .disk import reserve
 from .edit import edited
+from .layout import BESIDE
 from .places import replace
 from .reader import Trace
 from .signals import Channel, Floats, Integers
@@ -206,8 +207,9 @@ def _about_channel(channel: Channel) -> dict[str, Any]:
         about["DISPLAY_UNIT"] = channel.display
     if channel.rate:
         about["rate"] = channel.rate
-    if channel.valid_if:
-        about["ancillary_variables"] = channel.valid_if  # by CF
+    for role, variable in channel.beside._asdict().items():
+        if variable:
+            about[BESIDE.get(role, role)] = variable
     if channel.meanings:
         flags = range(channel.first_flag, channel.first_flag + len(channel.meanings))
         about["flag_values"] = np.array(flags, dtype="i4")

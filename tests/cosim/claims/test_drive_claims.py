@@ -112,8 +112,8 @@ class Altered(Signals):
     def display(self, signal):
         return self._trace.display(signal)
 
-    def validity(self, signal):
-        return self._trace.validity(signal)
+    def beside(self, signal, role):
+        return self._trace.beside(signal, role)
 
     def rate(self, signal):
         return self._trace.rate(signal)

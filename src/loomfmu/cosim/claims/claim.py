@@ -12,7 +12,7 @@ from . import shaft
 from .arguments import Argument, Name, argument, argument_of
 from .curves import Stretch, motion_of
 from .extremes import COARSE_NOTE
-from .validity import gaps, unknown_note
+from .validity import gaps, off_by, unknown_note
 
 AT_LEAST, AT_MOST = 1, -1
 
@@ -46,7 +46,7 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit, and `resolved` the same as a share of that number.
+    may be off by with any steps, in its unit.
     """
 
     name: str = argument(Name(), "")
@@ -58,7 +58,6 @@ class Claim(ABC):
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
-    resolved: ClassVar[float] = 0.0
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)
@@ -91,10 +90,20 @@ class Claim(ABC):
 
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
         """What a verdict on a trace may be off by and runs on other steps may not show."""
-        signal = verdict.signal  # it may only name where to look
-        if signal not in trace or verdict.unit != trace.unit(signal) or not math.isfinite(verdict.time):
-            return 0.0
-        return motion_of(trace, signal).gap_at(verdict.time)
+        return max(self.between(trace, verdict), self.left_by_model(trace, verdict))
+
+    def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
+        """What it may be off by whatever the steps, as a signal beside the one that is judged says."""
+        return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0
+
+    def within(self, trace: Signals) -> list[Stretch] | None:
+        """The stretches of time that are judged; None for the whole run."""
+        return None
+
+    def between(self, trace: Signals, verdict: Verdict) -> float:
+        """What it may be off by because the signal that is judged is known only at the samples."""
+        known = _judges(trace, verdict) and math.isfinite(verdict.time)
+        return motion_of(trace, verdict.signal).gap_at(verdict.time) if known else 0.0
 
     def landings(self, trace: Signals) -> Landings:
         """Where steps of the window grid must land, as far as a coarse run of its signals tells."""
@@ -132,3 +141,8 @@ class Claim(ABC):
             claim, signal, holds, bound, worst, *(unit or self.unit), time, angle, revolution, note,
             sense=sense or self.sense, decided=decided,
         )  # fmt: skip
+
+
+def _judges(trace: Signals, verdict: Verdict) -> bool:
+    """Whether the number of a verdict is one of its signal, which may only name where to look."""
+    return verdict.signal in trace and verdict.unit == trace.unit(verdict.signal)

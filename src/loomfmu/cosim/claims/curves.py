@@ -153,16 +153,20 @@ class Motion:
         return rounding + float(self.doubt(self.interval(np.array([time])))[0])
 
     def gap_at(self, time: float) -> float:
-        """How far a motion that is known only at the samples may go on beyond one of them.
+        """How far a motion that is known only at the samples may go on beyond one of them."""
+        return float(self.gaps[min(int(self.time.searchsorted(time)), len(self.time) - 1)])
+
+    @cached_property
+    def gaps(self) -> Floats:
+        """How far the motion may go on beyond each sample; 0 where it is known between them.
 
         A parabola through three samples has its vertex beyond the middle one by up to an eighth of their
         second difference, the corner of two straight lines by up to a half.
         """
         if not self.finite or not self.note or len(self.time) < 3:
-            return 0.0
-        place = min(max(int(self.time.searchsorted(time)), 1), len(self.time) - 2)
-        before, here, after = self.values[0][place - 1 : place + 2].tolist()
-        return 0.5 * float(abs(before - 2.0 * here + after))
+            return np.zeros(len(self.time))
+        inner = 0.5 * np.abs(np.diff(self.values[0], 2))
+        return np.pad(inner, 1, mode="edge")
 
     @cached_property
     def _bends(self) -> Floats:

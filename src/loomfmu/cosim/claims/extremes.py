@@ -63,7 +63,7 @@ def _lowest_of_pieces(
         edges = np.array([time for each in within for time in each[:2]])
         found, times = [sign * motion.along(edges)], [edges]
         best = float(np.min(found[0], initial=math.inf))
-        sure = float(np.min(values[_inside(motion, within)], initial=math.inf))
+        sure = float(np.min(values[inside(motion.time, within)], initial=math.inf))
         pieces = _pieces(motion, within)
     for intervals, low, high in pieces:
         points = bernstein.clipped(sign * motion.points(intervals), low, high)
@@ -83,21 +83,29 @@ def _lowest_of_pieces(
 
 
 def _lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None) -> Extreme:
-    inside = _inside(motion, within)
-    if not inside.any():
+    there = inside(motion.time, within)
+    if not there.any():
         return Extreme(math.nan, math.nan)
-    value, time = _first_lowest(sign * motion.values[0][inside], motion.time[inside])
+    value, time = _first_lowest(sign * motion.values[0][there], motion.time[there])
     return Extreme(sign * value, time, sure=sign * value)
 
 
-def _inside(motion: Motion, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
+def gap_beyond(motion: Motion, sign: float, found: Extreme, within: Sequence[Stretch] | None) -> float:
+    """How far below its lowest sample `sign` times a motion may be, if it is known only at the samples.
+
+    Where it swings fast it may be lower between samples that are not the lowest ones.
+    """
+    low = sign * motion.values[0] - motion.gaps
+    lowest_of_all = float(np.min(low[inside(motion.time, within)], initial=math.inf))
+    return max(sign * found.value - lowest_of_all, motion.gap_at(found.time))
+
+
+def inside(time: Floats, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
     """Which samples are in some stretches of time, or in the whole run."""
     if within is None:
-        return np.ones(len(motion.time), dtype=bool)
+        return np.ones(len(time), dtype=bool)
     starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
-    return np.asarray(
-        np.searchsorted(starts, motion.time, "right") > np.searchsorted(ends, motion.time, "left")
-    )
+    return np.asarray(np.searchsorted(starts, time, "right") > np.searchsorted(ends, time, "left"))
 
 
 def _ends(motion: Motion, time: float) -> list[int]:

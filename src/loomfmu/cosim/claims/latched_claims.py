@@ -8,10 +8,8 @@ from ... import units
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
 from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim, Landings
-from .curves import Floats
+from .latches import reached
 
-ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
-CLAMPED_END = 1e-2  # of the deflection: what six modes leave where an end of the belt may be clamped
 NO_RISK = "the belt is never at risk in this run"
 
 
@@ -27,7 +25,7 @@ class LowestMargin(Claim):
 
     def judge(self, trace: Signals) -> Verdict:
         latch = f"{self.belt}.lowest_margin"
-        worst, time = float(trace[latch][-1]), _reached(trace, latch, trace[f"{self.belt}.margin"])
+        worst, time = float(trace[latch][-1]), reached(trace, latch, trace[f"{self.belt}.margin"])
         note = NO_RISK if worst >= 1.0 else ""
         return self.verdict(trace, "lowest margin", latch, self.bound, worst, time, note)
 
@@ -45,11 +43,10 @@ class BeltDeflection(Claim):
         "belt.deflection", "belt.largest_deflection", "belt.largest_at_risk", "belt.folded", "belt.too_long",
     )  # fmt: skip
     sense, unit, grid = AT_MOST, LENGTH, NOTHING
-    resolved = 1e-4  # six modes and the integration steps inside, which the steps of a run do not show
 
     def judge(self, trace: Signals) -> Verdict:
         latch = f"{self.belt}.largest_deflection"
-        worst, time = float(trace[latch][-1]), _reached(trace, latch, -trace[f"{self.belt}.deflection"])
+        worst, time = float(trace[latch][-1]), reached(trace, latch, -trace[f"{self.belt}.deflection"])
         pushed = units.show(float(trace[f"{self.belt}.largest_at_risk"][-1]), "mm")
         notes = [f"while the head was pushed: {pushed}"]
         if trace[f"{self.belt}.folded"][-1]:
@@ -58,12 +55,6 @@ class BeltDeflection(Claim):
             notes.append("free lengths above 5 times bow_length do not count")
         text = "largest deflection"
         return self.verdict(trace, text, latch, self.at_most, worst, time, *notes)
-
-    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
-        """The modes leave more where an end of the belt may be clamped."""
-        ends = (trace.parameter(f"{self.belt}.{end}") for end in ("guide_end", "head_end"))
-        share = CLAMPED_END if any(end > 1.0 for end in ends) else 0.0
-        return max(super().unresolved(trace, verdict), share * verdict.worst)
 
 
 class PeakLoad(Claim):
@@ -77,7 +68,7 @@ class PeakLoad(Claim):
 
     def judge(self, trace: Signals) -> Verdict:
         latch, force = f"{self.damper}.peak_load", trace[f"{self.damper}.transmitted_force"]
-        worst, time = float(trace[latch][-1]), _reached(trace, latch, -np.abs(force))
+        worst, time = float(trace[latch][-1]), reached(trace, latch, -np.abs(force))
         return self.verdict(trace, "peak load", latch, self.at_most, worst, time)
 
 
@@ -115,29 +106,3 @@ class HealdBlows(Claim):
         return self.verdict(
             trace, "hardest blow", latch, self.at_most, worst, time, f"{blows} blow{'s' * (blows != 1)}"
         )
-
-
-def _reached(trace: Signals, latch: str, followed: Floats) -> float:
-    """When a latched extreme was reached, as well as the samples show it.
-
-    The latch gives the step. Within it, the time is the vertex of the parabola through the lowest samples of
-    what the latch follows.
-
-    Args:
-        latch: the signal that keeps the extreme
-        followed: samples of what it follows, with a sign by which the extreme is the lowest
-    """
-    time, latched = trace.time, trace[latch]
-    largest = max(float(followed.max()), -float(followed.min()))
-    step = int(np.argmax(np.abs(latched - latched[-1]) <= ALIKE * largest))
-    if step == 0:
-        return float(time[0])
-    lowest = step if followed[step] <= followed[step - 1] else step - 1
-    if not 0 < lowest < len(time) - 1:
-        return float(time[lowest])
-    (t0, t1, t2), (y0, y1, y2) = (each[lowest - 1 : lowest + 2].tolist() for each in (time, followed))
-    before, after = (y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1)
-    if after <= before:
-        return float(t1)
-    turn = 0.5 * (t0 + t1) - 0.5 * before * (t2 - t0) / (after - before)
-    return float(min(max(turn, time[step - 1]), time[step]))

@@ -11,8 +11,9 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Bound, Edges, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
-from .curves import motion_of
+from .curves import Stretch, motion_of
 from .extremes import Extreme, lowest
+from .latches import beyond_found, latched
 from .validity import gaps, known_within
 
 
@@ -38,20 +39,18 @@ class Bounded(Claim, kind=False):
     def judge(self, trace: Signals) -> Verdict:
         limit = self._limit(trace)
         unit = (trace.unit(self.signal), trace.display(self.signal))
-        text, within = self.text, None
+        text, (within, unknown) = self.text, self._known(trace)
+        nowhere = within == []
         if self.window is not None:
             text += f" in {self.window}"
-            within = shaft.times_within(trace, self.window)
-            if not within:
+            if nowhere and not unknown:
                 reason = "the run never enters that window"
                 return self.verdict(trace, text, self.signal, limit, math.nan, math.nan, reason, unit=unit)
-        motion, unknown = motion_of(trace, self.signal), gaps(trace, self.signal, within)
-        if unknown:
-            within = known_within(trace, unknown, within)
-        nowhere = within == []
+        motion = motion_of(trace, self.signal)
         worst = Extreme(math.nan, math.nan) if nowhere else lowest(motion, self.sense, within)
+        worst, note = latched(trace, self.signal, self.sense, worst, within)
         found = self.verdict(
-            trace, text, self.signal, limit, worst.value, worst.time, motion.note, worst.note,
+            trace, text, self.signal, limit, worst.value, worst.time, note, worst.note,
             holds=nowhere or self.sense * worst.sure >= self.sense * limit, unit=unit, unknown=unknown,
         )  # fmt: skip
         if found and found.distance < 0.0:
@@ -60,6 +59,19 @@ class Bounded(Claim, kind=False):
             note = f"passes the bound only between samples, where the curve may be off by {doubt:.1e}{label}"
             return replace(found, note="; ".join(filter(None, (found.note, note))))
         return found
+
+    def between(self, trace: Signals, verdict: Verdict) -> float:
+        found = Extreme(verdict.worst, verdict.time)
+        return beyond_found(trace, self.signal, self.sense, found, self.within(trace))
+
+    def within(self, trace: Signals) -> list[Stretch] | None:
+        return self._known(trace)[0]
+
+    def _known(self, trace: Signals) -> tuple[list[Stretch] | None, list[Stretch]]:
+        """When the signal is judged, None for the whole run, and when it is not known."""
+        within = None if self.window is None else shaft.times_within(trace, self.window)
+        unknown = gaps(trace, self.signal, within)
+        return (known_within(trace, unknown, within) if unknown else within), unknown
 
     def _limit(self, trace: Signals) -> float:
         if not isinstance(self.bound, str):

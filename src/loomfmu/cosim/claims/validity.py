@@ -1,12 +1,13 @@
-"""Where a signal is not known: where the yes-or-no signal that vouches for it says no."""
+"""Where a signal is not known, and how far it may be off whatever the steps: as signals beside it say."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from ... import units
-from ...traces import Signals
+from ...traces import Signals, Verdict
 from .curves import Stretch
+from .extremes import inside
 from .shaft import angle, place
 
 
@@ -28,6 +29,21 @@ def gaps(trace: Signals, signal: str, within: Sequence[Stretch] | None = None) -
     if within is None:
         return found
     return [gap for gap in found if any(gap.start < each.end and each.start < gap.end for each in within)]
+
+
+def off_by(trace: Signals, verdict: Verdict, within: Sequence[Stretch] | None) -> float:
+    """How far the signal of a verdict may be off whatever the steps, as a signal beside it says.
+
+    That counts wherever the signal is as near to the worst value as it may be off.
+    """
+    name = trace.error(verdict.signal)
+    if name is None:
+        return 0.0
+    errors = np.abs(trace[name])
+    near = (np.abs(trace[verdict.signal] - verdict.worst) <= errors) & inside(trace.time, within)
+    place = min(int(trace.time.searchsorted(verdict.time)), len(errors) - 1)
+    near[[max(place - 1, 0), place]] = True
+    return float(np.max(errors[near]))
 
 
 def known_within(

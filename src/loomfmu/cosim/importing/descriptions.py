@@ -9,7 +9,7 @@ from typing import Any
 from ... import units
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
-from ...variables import SHARED, Component, Variable, variables_of
+from ...variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out
@@ -45,17 +45,20 @@ def ports_of(description: Any, component: type[Component] | None) -> dict[str, P
     rates = _rates(description, names, component)
     definitions = {unit.name: _definition(unit.baseUnit) for unit in description.unitDefinitions}
     ports = [_port(variable, names[variable.name], rates, definitions) for variable in known]
-    vouching = {v.name: v.valid_if for v in variables_of(component)} if component else {}
-    return {port.name: replace(port, valid_if=vouching.get(port.name)) for port in ports}
+    more = beside(component) if component else {}
+    return {port.name: replace(port, beside=more.get(port.name, ALONE)) for port in ports}
 
 
 def declared_ports(component: type[Component]) -> dict[str, Port]:
     """The variables of a component as `ports_of` would read them in the model description made of it."""
-    numbered = enumerate(variables_of(component), start=FIRST_REFERENCE)
-    return {variable.name: _declared(variable, reference) for reference, variable in numbered}
+    numbered, more = enumerate(variables_of(component), start=FIRST_REFERENCE), beside(component)
+    return {
+        variable.name: _declared(variable, reference, more.get(variable.name, ALONE))
+        for reference, variable in numbered
+    }
 
 
-def _declared(variable: Variable, reference: int) -> Port:
+def _declared(variable: Variable, reference: int, more: Beside) -> Port:
     real, number = variable.type is float, variable.type is not bool
     limits = (variable.minimum, variable.maximum) if number else (None, None)
     minimum, maximum = (None if each is None else variable.type(each) for each in limits)
@@ -80,7 +83,7 @@ def _declared(variable: Variable, reference: int) -> Port:
         discrete=variable.variability == "discrete",
         definition=own_definition(unit),
         nominal=variable.nominal if real else None,
-        valid_if=variable.valid_if,
+        beside=more,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from ... import units
 from ...errors import LoomfmuError, listed, misspelt, numbered, shown
+from ...variables import ALONE, Beside
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite
@@ -85,6 +86,7 @@ class Port:
 
     `name` is what scenes and traces call it: letters, digits and _. `own` is the FMU's own name for it,
     `base_type` its type there.
+    `beside` are the outputs that say more of it.
     """
 
     name: str
@@ -106,7 +108,7 @@ class Port:
     has_unit: bool = True
     definition: Definition | None = None
     nominal: float | None = None
-    valid_if: str | None = None
+    beside: Beside = ALONE
 
     def doubt(self, given: Any, where: str) -> str:
         """What is odd about a number without unit, as `units.doubt` tells it, or an empty text."""

@@ -117,7 +117,7 @@ def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Chan
                 column=slot,
                 real=kind == "Real",
                 rate=port.rate,
-                valid_if=port.valid_if,
+                beside=port.beside,
                 meanings=meanings,
                 first_flag=port.numbers[0] if port.numbers else 0,
                 boolean=kind == "Boolean",

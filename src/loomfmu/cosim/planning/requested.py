@@ -110,8 +110,15 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
 
 
 def judged_by(scene: Scene) -> list[str]:
-    """The signals that the scene's claims need, and the rates of these."""
-    return with_rates(scene, [s for claim in claims_of(scene) for s in signals_of(scene, claim)])
+    """The signals that the scene's claims need, those that hold extremes of these, and the rates of all."""
+    wanted = []
+    for claim in claims_of(scene):
+        signals = list(signals_of(scene, claim))
+        held = (output_port(scene, each, "claim").beside for each in signals)
+        names = [each.lowest if claim.sense > 0 else each.highest for each in held]
+        owners = [each.partition(".")[0] for each in signals]
+        wanted += signals + [f"{o}.{name}" for o, name in zip(owners, names, strict=True) if name]
+    return with_rates(scene, wanted)
 
 
 def signals_of(scene: Scene, claim: Claim) -> Iterator[str]:
@@ -140,7 +147,10 @@ def recorded(scene: Scene) -> list[str]:
 
 
 def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
-    """Signals, each with what says when it is known, and followed by its rate, if that is an output."""
+    """Signals, each with what says when it is known and how far it may be off, and followed by its rate.
+
+    The rate is that which is an output.
+    """
     names: dict[str, None] = {}
     for signal in wanted:
         while signal and signal not in names:
@@ -148,7 +158,8 @@ def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
             port = output_port(scene, signal, "record")
             rate = port.rate if port.causality == "output" else None
             owner = signal.split(".")[0]
-            if port.valid_if:
-                names[f"{owner}.{port.valid_if}"] = None
+            for more in (port.beside.valid_if, port.beside.error):
+                if more:
+                    names[f"{owner}.{more}"] = None
             signal = f"{owner}.{rate}" if rate else ""
     return list(names)

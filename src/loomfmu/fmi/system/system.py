@@ -104,7 +104,7 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
             depends=(reach(name) or _of_time(each)) if causality == "output" else None, indicator=False,
             source=None,
             lowest_of=dotted(each.lowest_of), highest_of=dotted(each.highest_of), when=dotted(each.when),
-            unless=dotted(each.unless), valid_if=dotted(each.valid_if),
+            unless=dotted(each.unless), valid_if=dotted(each.valid_if), error=dotted(each.error),
         )  # fmt: skip
         found.append(own)
     return found

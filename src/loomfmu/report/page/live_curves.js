@@ -165,7 +165,27 @@ loomfmu.motion = (run, name, rates = 2) => {
     return found.sort((one, other) => one.value - other.value)[0];
   }
 
-  return { values: own, note, at, passages, beyond, lowest, nearest };
+  /* How far it may go on beyond the first sample from a time on, where it is known only at the samples. */
+  function gapAt(when) {
+    const place = time.findIndex(each => each >= when);
+    return gapOf(place < 0 ? count - 1 : place);
+  }
+
+  function gapOf(place) {
+    const k = Math.min(Math.max(place, 1), count - 2);
+    return finite && note && count > 2 ? 0.5 * Math.abs(own[k - 1] - 2 * own[k] + own[k + 1]) : 0;
+  }
+
+  /* How far below `sign` times an extreme it may be then, about any sample of some stretches of time. */
+  function gapBeyond(sign, extreme, when, within) {
+    let low = Infinity;
+    for (let k = 0; k < count; k++)
+      if (!within || within.some(({ start, end }) => start <= time[k] && time[k] <= end))
+        low = Math.min(low, sign * own[k] - gapOf(k));
+    return Math.max(sign * extreme - low, gapAt(when));
+  }
+
+  return { values: own, note, at, passages, beyond, lowest, nearest, gapAt, gapBeyond };
 };
 
 /* The same, kept until its samples change. */

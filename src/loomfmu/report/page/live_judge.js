@@ -2,7 +2,7 @@
  * bound, time and note. A verdict is given where the outputs hold it exactly or the curve between the samples decides it;
  * of everything else `holds` is null, and the note says why. tests/test_live_claims.py holds both to one another. */
 loomfmu.judge = run => {
-  const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, ALIKE = 1e-8, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME);
+  const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME);
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
   const NEVER = "the head never enters the shed in this run";
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
@@ -11,6 +11,7 @@ loomfmu.judge = run => {
   // ---- what claims have in common
 
   const motion = (name, rates) => loomfmu.motionOf(run, name, rates);
+  const { reached, latched, beyond, offBy } = loomfmu.latches(run, motion);
   const unknown = note => ({ holds: null, note });
   const never = (bound, ...notes) => ({ holds: false, worst: NaN, bound, notes }); // a claim without a value fails
   const shown = (value, factor, unit) => `${loomfmu.general(value * factor)} ${unit}`;
@@ -50,20 +51,6 @@ loomfmu.judge = run => {
   const angleAt = when => { const at = motion("shaft.angle").at(when); return at - TURN * Math.floor(at / TURN); };
   const turned = ({ start, end: stop }) => Math.abs(motion("shaft.angle").at(stop) - motion("shaft.angle").at(start));
 
-  /* When a latched extreme was reached: the vertex of the parabola through the lowest samples of what it follows. */
-  function reached(latch, followed) {
-    const scale = ALIKE * followed.reduce((most, each) => Math.max(most, Math.abs(each)), 0);
-    const step = latch.findIndex(each => Math.abs(each - last(latch)) <= scale);
-    if (step === 0) return time[0];
-    const k = followed[step] <= followed[step - 1] ? step : step - 1;
-    if (k <= 0 || k >= time.length - 1) return time[k];
-    const before = (followed[k] - followed[k - 1]) / (time[k] - time[k - 1]);
-    const after = (followed[k + 1] - followed[k]) / (time[k + 1] - time[k]);
-    if (after <= before) return time[k];
-    const turn = 0.5 * (time[k - 1] + time[k]) - 0.5 * before * (time[k + 1] - time[k - 1]) / (after - before);
-    return Math.min(Math.max(turn, time[step - 1]), time[step]);
-  }
-
   /* Whether a signal is not known somewhere, or in some stretches of time: a signal of its own says so. */
   function gaps(signal, stretches = [{ start: time[0], end }]) {
     const flag = run.validity(signal);
@@ -74,10 +61,10 @@ loomfmu.judge = run => {
 
   function extreme(signal, bound, sense, stretches) {
     if (gaps(signal, stretches)) return gap(signal);
-    const its = motion(signal), found = its.lowest(sense, stretches);
+    const found = latched(signal, sense, motion(signal).lowest(sense, stretches), stretches);
     const between = sense * found.value < sense * bound && sense * found.sample >= sense * bound;
     if (found.coarse || between) return unknown(`it is decided between the samples; ${NOT_HERE}`);
-    return { worst: found.value, bound, time: found.time, notes: [its.note] };
+    return { worst: found.value, bound, time: found.time, notes: [found.note] };
   }
 
   // ---- frames at the ends of their strokes
@@ -298,10 +285,20 @@ loomfmu.judge = run => {
     },
   };
 
-  /* Whether the numerical error may decide a verdict: the page knows it at the scene's own values only. */
-  function tooNear({ kind, native }, { worst, bound }) {
-    const distance = Math.abs(worst - bound), met = native.met || kind === "stop_contacts";
-    return !(met && distance === 0) && distance <= Math.max(FAR_ABOVE * native.error, NEAR * Math.abs(bound));
+  /* Whether the numerical error may decide a verdict: what runs on other steps show of it, the page knows at the scene's
+   * own values only. */
+  function tooNear(claim, verdict) {
+    const { kind, native } = claim, { worst, bound } = verdict, distance = Math.abs(worst - bound);
+    if (distance === 0 && (native.met || kind === "stop_contacts")) return false;
+    return distance <= Math.max(FAR_ABOVE * native.error, NEAR * Math.abs(bound), unresolved(claim, verdict));
+  }
+
+  /* What runs on other steps may not show. */
+  function unresolved({ kind, window, signal: its, drawn }, verdict) {
+    const signal = verdict.signal || its, stretches = window ? timesWithin(window) : undefined;
+    if (!drawn || signal !== its) return 0;
+    const gap = judges[kind] === bounded ? beyond(signal, verdict.sense, verdict, stretches) : motion(signal).gapAt(verdict.time);
+    return Math.max(gap, offBy(signal, verdict, stretches));
   }
 
   const turns = run.has("shaft.angle") ? run.signal("shaft.angle") : [];

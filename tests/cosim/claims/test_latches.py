@@ -1,0 +1,115 @@
+"""Claims on signals that are known only at the samples, whose extremes their component holds."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from loomfmu import Trace, judge
+from loomfmu.cosim.claims.claims import read
+from loomfmu.traces import Channel, TraceWriter
+from loomfmu.variables import Beside
+
+TIME = np.linspace(0.0, 1.0, 21)  # with an angle of 36 deg in 1 s, a sample at every 1.8 deg
+TURN = 2.0 * np.pi
+
+
+def wave(time: np.ndarray, peak: float, depth: float) -> np.ndarray:
+    """A dip about a time that is narrower than the samples are apart."""
+    return 1.0 - depth * np.exp(-(((time - peak) / 0.01) ** 2))
+
+
+def recorded(directory: Path, *dips: tuple[float, float], latch: bool = True, error: float = 0.0) -> Trace:
+    """A trace of `a.x`, which is 1 but for dips; what `a.low` holds is exact."""
+    fine = np.linspace(0.0, 1.0, 20001)
+    curve = np.min([np.ones(len(fine)), *(wave(fine, *dip) for dip in dips)], axis=0)
+    x, low = curve[::1000], np.minimum.accumulate(curve)[::1000]
+    beside = Beside(lowest="low" if latch else None, error="off" if error else None)
+    channels = [
+        Channel("a", "x", "m", "mm", "X", 0, beside=beside),
+        Channel("a", "low", "m", "mm", "Lowest", 1),
+        Channel("a", "off", "m", "mm", "Error", 2),
+        Channel("shaft", "angle", "rad", "deg", "Angle", 3, rate="velocity"),
+        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 4),
+    ]
+    off = np.where(TIME < 0.5, 0.1 * error, error)
+    reals = np.stack([x, low, off, 0.1 * TURN * TIME, np.full(len(TIME), 0.1 * TURN)], axis=1)
+    writer = TraceWriter(directory / "held.h5", {"title": "held", "software": "test"}, channels, {})
+    writer.append(TIME, 0.1 * TURN * TIME, reals, np.empty((len(TIME), 0), dtype="i4"))
+    writer.complete([])
+    return Trace(directory / "held.h5")
+
+
+def judged(trace: Trace, window: list[str] | None = None) -> tuple[float, float, str]:
+    """Worst value of `a.x`, what it may be off by beside what other steps show, and the note."""
+    table = {"kind": "above", "signal": "a.x", "bound": 0.2} | ({"window": window} if window else {})
+    claim = read(table, trace.unit)
+    verdict = claim.judge(trace)
+    return verdict.worst, claim.unresolved(trace, verdict), verdict.note
+
+
+def test_what_is_held_decides_between_the_samples(tmp_path: Path) -> None:
+    trace = recorded(tmp_path, (0.375, 0.9))
+    worst, off, note = judged(trace)
+    assert worst == pytest.approx(0.1, abs=1e-6)  # the finest samples miss the bottom by that
+    assert off == 0.0
+    assert note == "between the samples by a.low"
+    assert not judge(trace, kind="above", signal="a.x", bound=0.2)
+    assert 0.35 <= judge(trace, kind="above", signal="a.x", bound=0.2).time <= 0.4
+
+
+def test_without_it_only_the_samples_are_known(tmp_path: Path) -> None:
+    worst, _off, note = judged(recorded(tmp_path, (0.375, 0.9), latch=False))
+    assert worst > 0.99
+    assert note == "a.x is known only at the samples: its rate is not recorded"
+
+
+@pytest.mark.parametrize(
+    ("window", "worst", "off"),
+    [
+        (["0 deg", "12.6 deg"], 1.0, 0.0),  # before the first dip
+        (["14.4 deg", "20 deg"], 1.0, 0.0),  # between both
+        (["12.6 deg", "14.4 deg"], 0.5, 0.0),  # from the sample before it to the one after
+        (["9 deg", "36 deg"], 0.1, 0.0),  # both
+        (["9 deg", "29 deg"], 0.5, 0.4),  # an edge between the samples about the second one
+        (["30 deg", "36 deg"], 1.0, 0.9),
+    ],
+)
+def test_in_a_window_what_changes_within_counts(
+    tmp_path: Path, window: list[str], worst: float, off: float
+) -> None:
+    found, beyond, _note = judged(recorded(tmp_path, (0.375, 0.5), (0.825, 0.9)), window)
+    assert found == pytest.approx(worst, abs=2e-3)  # 0.9 exp(-2.5^2) of a dip reaches the samples about it
+    assert beyond == pytest.approx(off, abs=2e-3)
+
+
+def test_an_earlier_extreme_hides_a_later_one_but_bounds_it(tmp_path: Path) -> None:
+    """The samples about the later dip show a part of it, and that it is no deeper than the earlier one."""
+    trace = recorded(tmp_path, (0.375, 0.5), (0.807, 0.45))
+    worst, off, _note = judged(trace, ["25.2 deg", "36 deg"])
+    assert 0.5 <= worst - off <= 0.55 < worst
+
+
+def test_a_swing_between_samples_that_are_not_the_lowest_counts(tmp_path: Path) -> None:
+    """A signal whose extremes nobody holds: the estimate looked about the lowest sample alone."""
+    slow = (0.2, 0.3)
+    trace = recorded(tmp_path, slow, (0.72, 0.5), latch=False)
+    worst, off, _note = judged(trace)
+    assert worst == pytest.approx(0.7)
+    values = np.asarray(trace["a.x"])
+    assert off >= worst - np.min(values[1:-1] - 0.5 * np.abs(np.diff(values, 2))) > 0.0
+
+
+def test_what_a_signal_may_be_off_by_is_stated_beside_it(tmp_path: Path) -> None:
+    trace = recorded(tmp_path, (0.3, 0.5), error=0.01)
+    assert trace.error("a.x") == "a.off"
+    assert trace.error("a.low") is None
+    assert judged(trace, ["0 deg", "14 deg"])[1] == pytest.approx(0.001)
+    assert judged(trace, ["20 deg", "36 deg"])[1] == pytest.approx(0.01)
+    assert judged(trace)[1] == pytest.approx(0.001)
+
+
+def test_where_it_is_as_near_to_the_worst_value_the_larger_error_counts(tmp_path: Path) -> None:
+    trace = recorded(tmp_path, (0.3, 0.5), (0.8, 0.495), error=0.01)
+    assert judged(trace)[0] == pytest.approx(0.5)
+    assert judged(trace)[1] == pytest.approx(0.01)
