@@ -9,7 +9,7 @@ from ..physics.belt_ends import buckling, end_shape
 from ..physics.belt_shape import shape_at, shape_extremes
 from ..physics.numerics.extremes import highest_so_far
 from ..physics.numerics.motion import met
-from .belt_guide import SHORTEST_SHARE
+from .belt_guide import CALIBRATED, GUIDED, SHORTEST_SHARE
 from .belt_rest import BeltRest
 
 JUMP = 1e-6  # m, that a standing head may be off
@@ -28,6 +28,7 @@ STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
 MORE_LEFT = 1e-2  # later, when the belt swings on and comes back, or where an end may be clamped
+MOST_LEFT = 3e-2  # where both may be: under a load that lasts beyond Euler's
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
 
@@ -323,15 +324,20 @@ class BeltDynamics(BeltRest):
             )
             self.show_ends()
         self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
-        pushed_out = self.compression > 0.0 and self.velocity > 0.0
-        left = LEFT if pushed_out and not self.may_clamp() else MORE_LEFT
-        self.deflection_error = left * self.largest_deflection
+        self.deflection_error = self.left() * self.largest_deflection
         self.margin_error = self.deflection_error / self.allowed_deflection
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
         if self.held:
             return 2 if self.lost else 1
         return 0
+
+    def left(self) -> float:
+        """Share of the largest deflection by which deflections may be off with any steps."""
+        if self.guide_end != CALIBRATED and self.head_end == GUIDED:
+            return MOST_LEFT
+        pushed_out = self.compression > 0.0 and self.velocity > 0.0
+        return LEFT if pushed_out and not self.may_clamp() else MORE_LEFT
 
     def show_ends(self) -> None:
         """Shortening of the belt, and the moment by which its guide keeps it from turning."""

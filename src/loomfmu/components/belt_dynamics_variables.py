@@ -154,7 +154,7 @@ class BeltDynamicsVariables(Component):
     )  # fmt: skip
     deflection_error: float = output(
         "m", "How far deflections may be off with any steps, by modes and integration: 1e-2 of the largest so"
-        " far; 2.5e-4 while the head is pushed outwards and no end may be clamped",
+        " far, 2.5e-4 while the head is pushed outwards and no end may be clamped, 3e-2 where both may be",
         display="mm", nominal=1e-5,
     )  # fmt: skip
     margin: float = output(
