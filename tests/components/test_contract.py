@@ -21,6 +21,7 @@ from driving import (
 from loomfmu import units
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import standard_loom
+from loomfmu.errors import numbered
 from loomfmu.variables import EXTREMES, MOTION, NOTHING
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
@@ -200,7 +201,8 @@ def test_values_outside_their_limits_are_refused(component):
                 component(**{variable.name: value})
             message = str(refusal.value)
             assert message.startswith(f"{component.__name__}.{variable.name} = {value / factor:.7g}")
-            assert f"is outside [{low:.7g}, {high:.7g}]" in message
+            choices = numbered(variable.choices, range(1, len(variable.choices) + 1))
+            assert (f"must be {choices}" if choices else f"is outside [{low:.7g}, {high:.7g}]") in message
             assert "\n" not in message
             assert variable.display == "1" or message.endswith(f" {variable.display}")
 
