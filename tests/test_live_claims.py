@@ -61,6 +61,8 @@ ON_THE_LOOM = [
     {"kind": "heald_blows", "play": "play_1", "at_most": "0.1 m/s"},
     {"kind": "transfer_in_time", "window": ["170 deg", "190 deg"]},
     {"kind": "transfer_in_time", "window": ["100 deg", "120 deg"]},
+    {"kind": "transfer_in_time", "window": ["0 deg", "360 deg"]},
+    {"kind": "transfer_in_time", "window": ["100 deg", "460 deg"]},
     {"kind": "transfer_speed", "at_most": "30 m/s"},
 ]  # fmt: skip
 ON_A_MOTOR = [

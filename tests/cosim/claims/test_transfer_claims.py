@@ -10,6 +10,7 @@ from loomfmu import LoomfmuError, Verdict
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.components.weft_transfer import WeftTransfer
 from loomfmu.cosim.claims.claims import read
+from loomfmu.cosim.claims.shaft import times_at
 from loomfmu.traces import Channel, Recording
 
 TURN = 2.0 * math.pi
@@ -94,6 +95,40 @@ def test_a_pass_that_the_run_cuts_off_does_not_count() -> None:
     assert math.isnan(never.worst)
     assert never.note == "the run never passes through the whole window"
     assert math.isnan(never.distance)
+
+
+@pytest.mark.parametrize("start", [0.0, 10.0, 100.0, -90.0, 33.3])
+def test_a_whole_revolution_is_one_pass_wherever_it_begins(start: float) -> None:
+    """Its two edges are one angle, and the run's end is one time though rounding finds the edge before it."""
+    window = [f"{start} deg", f"{start + 360.0} deg"]
+    for turns in range(2, 8):
+        for steps in (36, 37, 48, 240):
+            found = judged(met(turns=turns, steps=steps), "transfer_in_time", window=window)
+            # quintics over 10 deg are off by (10 deg)^6 / 46080 of the stroke
+            assert found.worst == pytest.approx(DEEPEST, abs=2e-9), (turns, steps, found)
+
+
+@pytest.mark.parametrize("begin", [170.0, 190.0, 10.0])
+def test_the_ends_of_the_run_on_an_edge_of_the_window_are_counted_once(begin: float) -> None:
+    for turns in range(2, 8):
+        for off in (0.0, 1e-15, -1e-15, 4e-15, -4e-15):
+            trace = met(0.1, turns=turns, start=math.radians(begin) + off, steps=240)
+            for window in (WINDOW, ["0 deg", "360 deg"]):
+                found = judged(trace, "transfer_in_time", window=window)
+                assert found.worst == pytest.approx(DEEPEST, abs=1e-12), (turns, off, window, found)
+
+
+def test_a_shaft_that_comes_back_to_an_angle_is_there_twice() -> None:
+    channels = [
+        Channel("shaft", "angle", "rad", "deg", "Angle", 0, rate="velocity"),
+        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 1),
+    ]
+    trace = Recording("back", channels, lambda owner, name: None)
+    time = np.linspace(0.0, 1.0, 101)
+    rows = np.stack([np.sin(1.5 * math.pi * time), 1.5 * math.pi * np.cos(1.5 * math.pi * time)], axis=1)
+    trace.append(time, rows[:, 0], rows, np.zeros((101, 0), dtype="i4"))
+    # from 0 to 1 rad, back to 0 and on to -1; begins at 0
+    assert times_at(trace, 0.0) == pytest.approx([0.0, 2.0 / 3.0], abs=1e-9)
 
 
 @pytest.mark.parametrize("late", [0.0, 0.05])

@@ -13,6 +13,7 @@ from ... import units
 from ...errors import LoomfmuError, shown
 
 TURN = 2.0 * math.pi
+EMPTY = 1e-12  # rad: a window that is shorter has no width
 PARAMETER = re.compile(r"[A-Za-z]\w*\.[A-Za-z]\w*")  # the name of a parameter as a bound
 UnitOf = Callable[[], str]  # the unit of the signal that a claim is about
 
@@ -124,9 +125,10 @@ class Window(NamedTuple):
 
     @property
     def width(self) -> float:
-        """How far it reaches [rad]."""
+        """How far it reaches [rad], a whole revolution in spite of rounding."""
         width = self.end - self.start
-        return min(width if width > 0.0 else width % TURN, TURN)
+        width = width if width > 0.0 else width % TURN
+        return width if width < TURN - EMPTY else TURN
 
     def __str__(self) -> str:
         return f"[{angles_text(self)}]"
@@ -153,7 +155,7 @@ class Edges(Quantity):
         if window.end - window.start > TURN * (1.0 + 1e-12):
             raise LoomfmuError(f"{where} = {window} is longer than a revolution")
         width = window.width
-        if min(width, TURN - width if window.end < window.start else width) < 1e-12:
+        if min(width, TURN - width if window.end < window.start else width) < EMPTY:
             raise LoomfmuError(f"{where} = {window} is empty; a whole revolution is [0 deg, 360 deg]")
         return window
 

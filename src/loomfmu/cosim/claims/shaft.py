@@ -12,6 +12,7 @@ from .curves import SAME, Motion, Stretch, motion_of
 # Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
 # margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
 FARTHEST = TURN / 20.0
+STANDS = 1e-9  # of a revolution: angles that are closer are one where a run begins or ends
 
 
 def angle(trace: Signals) -> Motion | None:
@@ -41,14 +42,19 @@ def needed_angle(trace: Signals) -> Motion:
 
 
 def times_at(trace: Signals, wanted: float) -> list[float]:
-    """All times at which the shaft stands at an angle of its revolution."""
+    """All times at which the shaft stands at an angle of its revolution, each once.
+
+    Where the run begins or ends there, to rounding, the shaft may pass the angle as well: that is one time.
+    """
     turning = needed_angle(trace)
-    times = turning.passes(wanted, TURN)
-    for end in (0, -1):  # a run that begins or ends there, to rounding
-        turned = (float(turning.values[0][end]) - wanted) / TURN
-        if abs(turned - round(turned)) < 1e-9:
-            times.append(float(turning.time[end]))
-    return sorted(set(times))
+    times = np.array(turning.passes(wanted, TURN))
+    for end in (0, -1):
+        angle, time = float(turning.values[0][end]), float(turning.time[end])
+        turned = (angle - wanted) / TURN
+        if abs(turned - round(turned)) < STANDS:
+            away = [np.abs(turning.along(each) - angle) for each in (times, 0.5 * (times + time))]
+            times = np.append(times[np.maximum(*away) > 2.0 * STANDS * TURN], time)
+    return sorted(set(times.tolist()))
 
 
 def passes(trace: Signals, window: Window) -> list[Stretch]:
@@ -62,7 +68,9 @@ def times_within(trace: Signals, window: Window) -> list[Stretch]:
     """Stretches of time in which the shaft is in a window of its revolution, the edges included."""
     start, width = window.start, window.width
     turning = needed_angle(trace)
-    edges = [*times_at(trace, start), *times_at(trace, start + width)]
+    edges = times_at(trace, start)
+    if width < TURN:
+        edges = sorted({*edges, *times_at(trace, start + width)})
     marks = np.unique([turning.time[0], *edges, turning.time[-1]])
     away = (turning.along(0.5 * (marks[1:] + marks[:-1])) - start) % TURN
     inside = [

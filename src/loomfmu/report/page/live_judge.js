@@ -2,7 +2,7 @@
  * bound, time and note. A verdict is given where the outputs hold it exactly or the curve between the samples decides it;
  * of everything else `holds` is null, and the note says why. tests/test_live_claims.py holds both to one another. */
 loomfmu.judge = run => {
-  const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME);
+  const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME), EMPTY = 1e-12;
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
   const NEVER = "the head never enters the shed in this run";
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
@@ -38,8 +38,9 @@ loomfmu.judge = run => {
   }
 
   function timesWithin([start, stop]) {
-    const width = Math.min(stop > start ? stop - start : (stop - start + TURN) % TURN, TURN), turning = motion("shaft.angle");
-    const edges = [...timesAt(start), ...timesAt(start + width)];
+    const between = stop > start ? stop - start : (stop - start + TURN) % TURN, turning = motion("shaft.angle");
+    const width = between < TURN - EMPTY ? between : TURN; // in spite of rounding
+    const edges = [...timesAt(start), ...(width < TURN ? timesAt(start + width) : [])];
     const marks = [...new Set([time[0], ...edges, end])].sort((one, other) => one - other);
     const inside = marks.slice(1).map((mark, k) => ({ start: marks[k], end: mark })).filter(stretch => {
       const away = turning.at(0.5 * (stretch.start + stretch.end)) - start;
