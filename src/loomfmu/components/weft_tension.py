@@ -1,15 +1,14 @@
 """WeftTension: the weft yarn from its package over brake and guide eyes to the rapier head."""
 
 from dataclasses import dataclass
-from math import floor, pi
 
-from ..physics.shaft import carried, too_far
-from ..physics.weft import capstan_gain, drag_per_length, drawing_limit, eased, unstretched_length
-from .weft_variables import PROGRAM_POINTS
-from .weft_way import PEAK, PLACE, SLACK, TURN, YIELD, WeftWay
+from ..physics.shaft import carried
+from ..physics.weft import capstan_gain, drag_per_length, snatch_tension, unstretched_length
+from .weft_way import NEAREST, PEAK, PLACE, POINT, SLACK, TURN, YIELD, WeftWay
 
 SHORTEST = 1e-15  # s: two samples that are closer are one, since the squares of their distance underflow
 PARTS = 4  # of the way between two samples: in each the tension turns once at most
+MOST_POINTS = 24  # of the brake's program in a part: all of them, and more than steps should be long
 MOST_CHANGES = 3  # of the brake in a part, between holding the yarn and letting it through
 
 
@@ -17,8 +16,8 @@ MOST_CHANGES = 3  # of the brake in a part, between holding the yarn and letting
 class WeftTension(WeftWay):
     """Weft tension: yarn drawn by the rapier heads over brake and eyes, with its mass, drag and stretch.
 
-    Between two samples of its inputs the head moves on the quintic that joins them, and the limit at which
-    the brake lets yarn through runs on the cubic; for these the yarn's force is exact, whatever the step.
+    Between two samples of its inputs head and shaft move on the quintics that join them. On each part of that
+    way the limit at which the brake lets yarn through runs on a cubic, for which the yarn's force is exact.
     """
 
     def initialize(self, time: float) -> int:
@@ -38,8 +37,12 @@ class WeftTension(WeftWay):
             )
         self.slack_so_far = 0.0
         self.longest_slack = 0.0
+        self.highest_snatch = 0.0
         self.pending = 0.0
         self.acceleration_rate = 0.0
+        self.followed = True
+        self.turning = 0
+        self.watch_shaft()
         self.remember(time)
         self.show()
         self.highest_tension = self.tension
@@ -51,6 +54,7 @@ class WeftTension(WeftWay):
         if not self.take_sample(time, lead):
             return 1
         duration = step_size if self.inputs_at_step_end else self.pending
+        self.watch_shaft()
         self.follow(duration)
         if duration > SHORTEST:
             self.acceleration_rate = (self.acceleration - self.sampled_acceleration) / duration
@@ -68,24 +72,14 @@ class WeftTension(WeftWay):
         self.new_acceleration = self.acceleration
         return self.set_brake(time, lead)
 
-    def set_brake(self, time: float, lead: float) -> bool:
-        """Force of the brake at the shaft's angle, and the limit for the new sample; false if that is far."""
-        angle, speed, _acceleration = self.shaft(time, lead)
-        if too_far(angle):
-            return False
-        place = angle * PROGRAM_POINTS / (2.0 * pi)
-        point = floor(place)
-        share, slope = eased(
-            self.brake_program[point % PROGRAM_POINTS], self.brake_program[(point + 1) % PROGRAM_POINTS],
-            place - point,
-        )  # fmt: skip
-        self.brake = self.brake_force * share
-        self.new_limit, self.new_limit_rate = drawing_limit(
-            self.gain, self.supply_tension, self.unwinding_factor * self.linear_density, self.brake,
-            self.brake_force * slope * speed * PROGRAM_POINTS / (2.0 * pi),
-            self.new_velocity, self.new_acceleration,
-        )  # fmt: skip
-        return True
+    def watch_shaft(self) -> None:
+        """Notice a shaft that turns back while a head carries the weft: what follows is not a pick."""
+        way = 1 if self.new_speed > 0.0 else (-1 if self.new_speed < 0.0 else 0)
+        held = self.sampled_travel > self.pick_up_travel or self.new_travel > self.pick_up_travel
+        if held and way * self.turning < 0:
+            self.followed = False
+        if way != 0:
+            self.turning = way
 
     def remember(self, time: float) -> None:
         """Make the new sample the last one."""
@@ -93,25 +87,37 @@ class WeftTension(WeftWay):
         self.sampled_travel = self.new_travel
         self.sampled_velocity = self.new_velocity
         self.sampled_acceleration = self.new_acceleration
-        self.sampled_limit = self.new_limit
-        self.sampled_limit_rate = self.new_limit_rate
+        self.sampled_angle = self.new_angle
+        self.sampled_speed = self.new_speed
+        self.sampled_change = self.new_change
 
     def follow(self, duration: float) -> None:
-        """Bring the yarn from the last sample to the new one, in parts in which the head does not turn."""
+        """Bring the yarn from the last sample to the new one, in parts between points of the program."""
         if duration <= SHORTEST:
             return
         self.prepare(duration)
         low = 0.0
         for part in range(PARTS):
-            high = (part + 1) / PARTS
-            at_low = self.velocity_at(low)
-            at_high = self.velocity_at(high)
-            if (at_low < 0.0 and at_high > 0.0) or (at_low > 0.0 and at_high < 0.0):
-                turn = self.crossing(TURN, at_low > 0.0, False, 0.0, 0.0, low, high)
-                self.follow_one_way(low, turn)
-                low = turn
-            self.follow_one_way(low, high)
-            low = high
+            for count in range(MOST_POINTS + 1):
+                high = (part + 1) / PARTS
+                if count < MOST_POINTS and self.passes_point(low, high):
+                    before = self.place_at(low) > self.next_point
+                    high = self.crossing(POINT, before, False, 0.0, 0.0, low, high)
+                self.brake_part(low, high)
+                self.follow_part(low, high)
+                low = high
+                if low >= (part + 1) / PARTS:
+                    break
+
+    def follow_part(self, low: float, high: float) -> None:
+        """Bring the yarn over a part of the way, in which the head may turn once."""
+        at_low = self.velocity_at(low)
+        at_high = self.velocity_at(high)
+        if (at_low < 0.0 and at_high > 0.0) or (at_low > 0.0 and at_high < 0.0):
+            turn = self.crossing(TURN, at_low > 0.0, False, 0.0, 0.0, low, high)
+            self.follow_one_way(low, turn)
+            low = turn
+        self.follow_one_way(low, high)
 
     def follow_one_way(self, low: float, high: float) -> None:
         """Bring the yarn over a part of the way in one direction: waiting, taken up, carried or released."""
@@ -124,6 +130,7 @@ class WeftTension(WeftWay):
             passed = self.crossing(PLACE, held, False, 0.0, 0.0, low, high)
         if holds and not held:
             self.take_up(self.travel_at(passed))
+            self.snatch(self.velocity_at(passed) / self.way_time)
         if holds:
             self.draw(passed, high)
         elif held:
@@ -146,6 +153,12 @@ class WeftTension(WeftWay):
         self.unstretched = self.length_at(travel)
         self.slack_so_far = 0.0
 
+    def snatch(self, speed: float) -> None:
+        """Keep the tension of the wave that a head sends along yarn at rest."""
+        tension = snatch_tension(self.yarn_stiffness, self.linear_density, speed)
+        if tension > self.highest_snatch:
+            self.highest_snatch = tension
+
     def draw(self, low: float, high: float) -> None:
         """Bring the yarn over a part of the way on which a head draws it in one direction.
 
@@ -156,9 +169,8 @@ class WeftTension(WeftWay):
         passing = self.surplus_at(False, start, force, start) > 0.0
         for change in range(MOST_CHANGES + 1):
             end = high
-            changes = (self.surplus_at(passing, start, force, high) > 0.0) != passing
-            if changes and change < MOST_CHANGES:
-                end = self.crossing(YIELD, passing, passing, start, force, start, high)
+            if change < MOST_CHANGES:
+                end = self.change_over(passing, start, force, high)
             self.watch(passing, start, end)
             force = self.force_at(passing, start, force, end)
             if passing:
@@ -169,6 +181,18 @@ class WeftTension(WeftWay):
                 break
             start = end
             passing = not passing
+
+    def change_over(self, passing: bool, start: float, force: float, high: float) -> float:
+        """Where the brake first changes between holding and letting through on a part, or its end."""
+        if (self.surplus_at(passing, start, force, high) > 0.0) != passing:
+            return self.crossing(YIELD, passing, passing, start, force, start, high)
+        at_start = self.surplus_rate_at(passing, start, force, start)
+        at_high = self.surplus_rate_at(passing, start, force, high)
+        if (at_start < 0.0 and at_high > 0.0) if passing else (at_start > 0.0 and at_high < 0.0):
+            nearest = self.crossing(NEAREST, not passing, passing, start, force, start, high)
+            if (self.surplus_at(passing, start, force, nearest) > 0.0) != passing:
+                return self.crossing(YIELD, passing, passing, start, force, start, nearest)
+        return high
 
     def watch(self, passing: bool, low: float, high: float) -> None:
         """Keep the highest tension and the slack on a part of the way, divided where the tension turns."""
@@ -233,6 +257,7 @@ class WeftTension(WeftWay):
         offset = self.length_offset
         unstretched = self.unstretched
         highest = self.highest_tension
+        snatch = self.highest_snatch
         longest = self.longest_slack
         hanging = self.slack_so_far
         rise = self.acceleration_rate * lead
@@ -247,6 +272,7 @@ class WeftTension(WeftWay):
         self.length_offset = offset
         self.unstretched = unstretched
         self.highest_tension = highest
+        self.highest_snatch = snatch
         self.longest_slack = longest
         self.slack_so_far = hanging
         return 0

@@ -11,6 +11,11 @@ from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
 PROGRAM_POINTS = 24  # of the brake, evenly spaced over a revolution
+QUINTIC = (
+    "value at its start", "rate at its start", "second rate, constant part",
+    "second rate, linear part", "second rate, quadratic part", "second rate, cubic part",
+)  # fmt: skip
+FOLLOWED = "followed"  # what says when other outputs are known
 
 
 @dataclass(slots=True)
@@ -79,26 +84,43 @@ class WeftVariables(ShaftDriven):
     travel: float = head_travel()
     velocity: float = head_velocity()
     acceleration: float = head_acceleration()
-    tension: float = output("N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5)
+    tension: float = output(
+        "N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5, valid_if=FOLLOWED
+    )
     highest_tension: float = output(
-        "N", "Highest tension so far, on the continuous curve", display="cN", nominal=0.5,
-        highest_of="tension",
+        "N", "Highest tension so far, on the continuous curve, without the snatch", display="cN", nominal=0.5,
+        highest_of="tension", valid_if=FOLLOWED,
+    )  # fmt: skip
+    highest_snatch: float = output(
+        "N", "Tension of the hardest snatch so far, as the giver takes the yarn up", display="cN",
+        nominal=0.5, valid_if=FOLLOWED,
     )  # fmt: skip
     longest_slack: float = output(
-        "s", "Longest time so far that the weft was carried without tension", display="ms", nominal=1e-3
+        "s", "Longest time so far that the weft was carried without tension", display="ms", nominal=1e-3,
+        valid_if=FOLLOWED,
+    )  # fmt: skip
+    slack: bool = output(
+        "1", "The weft is carried without tension", start=False, variability="discrete", valid_if=FOLLOWED
     )
-    slack: bool = output("1", "The weft is carried without tension", start=False, variability="discrete")
     carried: bool = output("1", "A head carries the weft", start=False, variability="discrete")
-    length: float = output("m", "Length of yarn from the brake to the head that carries it")
+    followed: bool = output(
+        "1", "The shaft never turned back while a head carried the weft", start=True, variability="discrete"
+    )
+    length: float = output(
+        "m", "Length of yarn from the brake to the head that carries it", valid_if=FOLLOWED
+    )
     brake: float = output("N", "Force of the yarn brake at this shaft angle", display="cN", nominal=0.1)
     eye_tension: float = output(
-        "N", "Tension of the weft behind the last guide eye", display="cN", nominal=0.5
+        "N", "Tension of the weft behind the last guide eye", display="cN", nominal=0.5, valid_if=FOLLOWED
     )
     inertia_force: float = output(
-        "N", "Part of tension that accelerates the yarn between brake and head", display="cN", nominal=0.1
+        "N", "Part of tension that accelerates the yarn between brake and head", display="cN", nominal=0.1,
+        valid_if=FOLLOWED,
+    )  # fmt: skip
+    drag_force: float = output(
+        "N", "Part of tension that the air drag takes", display="cN", nominal=0.1, valid_if=FOLLOWED
     )
-    drag_force: float = output("N", "Part of tension that the air drag takes", display="cN", nominal=0.1)
-    strain: float = output("1", "Strain of the yarn between brake and head", nominal=1e-2)
+    strain: float = output("1", "Strain of the yarn between brake and head", nominal=1e-2, valid_if=FOLLOWED)
 
     gain: float = auxiliary("1", "Ratio of the tensions after and before all guide eyes")
     drag: float = auxiliary("kg/m2", "Air drag per length and square of the speed")
@@ -111,23 +133,34 @@ class WeftVariables(ShaftDriven):
     sampled_travel: float = state("m", "Travel at the last sample")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
-    sampled_limit: float = state("N", "Limit of eye_tension at the last sample")
-    sampled_limit_rate: float = state("N/s", "Rate of that limit at the last sample")
+    sampled_angle: float = state("rad", "Shaft angle at the last sample")
+    sampled_speed: float = state("rad/s", "Shaft velocity at the last sample")
+    sampled_change: float = state("rad/s2", "Shaft acceleration at the last sample")
+    turning: int = state(
+        "1",
+        "Direction of the shaft, 1 or -1; 0 before it first turns",
+        start=0,
+        minimum=-1,
+        maximum=1,
+    )
     acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
     new_travel: float = auxiliary("m", "Travel at the end of the way")
     new_velocity: float = auxiliary("m/s", "Velocity at the end of the way")
     new_acceleration: float = auxiliary("m/s2", "Acceleration at the end of the way")
     new_limit: float = auxiliary("N", "Limit of eye_tension at the end of the way")
-    new_limit_rate: float = auxiliary("N/s", "Rate of that limit at the end of the way")
+    new_angle: float = auxiliary("rad", "Shaft angle at the end of the way")
+    new_speed: float = auxiliary("rad/s", "Shaft velocity at the end of the way")
+    new_change: float = auxiliary("rad/s2", "Shaft acceleration at the end of the way")
     way_time: float = auxiliary("s", "Duration of the way between two samples", minimum=0.0)
     way: tuple[float, ...] = array(
-        auxiliary("m", f"Travel by the share of the way: {what}")
-        for what in (
-            "value at its start", "rate at its start", "second rate, constant part",
-            "second rate, linear part", "second rate, quadratic part", "second rate, cubic part",
-        )
-    )  # fmt: skip
-    way_limit: tuple[float, ...] = array(
-        auxiliary("N", f"Limit of eye_tension by the share of the way: {part} part")
+        auxiliary("m", f"Travel by the share of the way: {what}") for what in QUINTIC
+    )
+    turn: tuple[float, ...] = array(
+        auxiliary("rad", f"Shaft angle by the share of the way: {what}") for what in QUINTIC
+    )
+    part_start: float = auxiliary("1", "Share of the way at which the present part of it begins")
+    part_limit: tuple[float, ...] = array(
+        auxiliary("N", f"Limit of eye_tension by the share since part_start: {part} part")
         for part in ("constant", "linear", "quadratic", "cubic")
     )
+    next_point: float = auxiliary("1", "Point of the program that the shaft passes next, counted from 0 deg")

@@ -1,29 +1,30 @@
-"""The weft yarn between two samples of its inputs: its motion, the brake's limit, its tension."""
+"""The weft yarn between two samples of its inputs: its motion and its tension."""
 
 from dataclasses import dataclass
 from math import fabs
 
-from ..physics.hung_warp import cubic_between
 from ..physics.weft import along, moving_load, moving_load_rate, quintic, relaxed_force, stretch_force
-from .weft_variables import WeftVariables
+from .weft_brake import WeftBrake
 
 SHORTEST_YARN = 1e-3  # m: coarse steps of inputs that do not belong together may leave less
 HALVINGS = 52  # of a part of the way: then a share is known to rounding
 # what `crossing` looks for: where the head turns round, where it takes or releases the weft, where the brake
-# begins or ceases to let yarn through, where the tension is zero, where it is highest or lowest
+# begins or ceases to let yarn through, where it is nearest to that, where the tension is zero, where it is
+# highest or lowest, where the shaft passes a point of the brake's program
 TURN = 0
 PLACE = 1
 YIELD = 2
-SLACK = 3
-PEAK = 4
+NEAREST = 3
+SLACK = 4
+PEAK = 5
+POINT = 6
 
 
 @dataclass(slots=True)
-class WeftWay(WeftVariables):
-    """The way from the last sample of the inputs to the new one, by the share u of it.
+class WeftWay(WeftBrake):
+    """The yarn on the way from the last sample of the inputs to the new one, by the share u of it.
 
-    The travel runs on the quintic that joins the samples, the limit of the brake on the cubic. `passing` says
-    that the brake lets yarn through, with the elastic force `force` at the share `start`.
+    `passing` says that the brake lets yarn through, with the elastic force `force` at the share `start`.
     """
 
     def length_at(self, travel: float) -> float:
@@ -47,16 +48,13 @@ class WeftWay(WeftVariables):
         h = self.way_time if self.inward else -self.way_time
         return self.length_at(value), first / h, second / (h * fabs(h)), third / (h * h * h)
 
-    def limit_at(self, share: float) -> float:
-        """Limit of the tension behind the eyes at a share of the way."""
-        return self.way_limit[0] + share * (
-            self.way_limit[1] + share * (self.way_limit[2] + share * self.way_limit[3])
-        )
-
     def force_at(self, passing: bool, low: float, force: float, share: float) -> float:
         """Elastic force at a share of the way, from that at `low`."""
         if passing:
-            return relaxed_force(force, self.way_time / self.retardation_time, low, share, *self.way_limit)
+            return relaxed_force(
+                force, self.way_time / self.retardation_time, low - self.part_start,
+                share - self.part_start, *self.part_limit,
+            )  # fmt: skip
         return stretch_force(self.yarn_stiffness, self.length_at(self.travel_at(share)), self.unstretched)
 
     def surplus_at(self, passing: bool, low: float, force: float, share: float) -> float:
@@ -65,6 +63,16 @@ class WeftWay(WeftVariables):
         length, speed, _acceleration, _jerk = self.motion_at(share)
         viscous = self.retardation_time * (self.yarn_stiffness + here) * speed / length
         return here + viscous - self.limit_at(share)
+
+    def surplus_rate_at(self, passing: bool, low: float, force: float, share: float) -> float:
+        """Derivative of `surplus_at` by the share."""
+        here = self.force_at(passing, low, force, share)
+        length, speed, acceleration, _jerk = self.motion_at(share)
+        tau = self.retardation_time
+        stretched = (self.yarn_stiffness + here) * speed / length
+        change = (self.limit_at(share) - here) / tau if passing else stretched
+        viscous = (change * speed + (self.yarn_stiffness + here) * acceleration - stretched * speed) / length
+        return self.way_time * (change + tau * viscous) - self.limit_rate_at(share)
 
     def tension_at(self, passing: bool, share: float) -> float:
         """Tension at the head at a share of the way, negative where the yarn runs ahead of it."""
@@ -81,13 +89,12 @@ class WeftWay(WeftVariables):
         h = self.way_time
         load = h * moving_load_rate(length, speed, acceleration, jerk, self.linear_density, self.drag)
         if passing:
-            limit = 2.0 * self.way_limit[2] + 3.0 * share * self.way_limit[3]
-            return self.way_limit[1] + share * limit + load
+            return self.limit_rate_at(share) + load
         stretch = h * (speed + self.retardation_time * acceleration) / self.unstretched
         return self.yarn_stiffness * stretch + load
 
     def prepare(self, duration: float) -> None:
-        """Join the last sample and the new one: the travel by a quintic, the limit by a cubic."""
+        """Join the last sample and the new one."""
         square = duration * duration
         first, second = duration * self.sampled_velocity, square * self.sampled_acceleration
         end_first, end_second = duration * self.new_velocity, square * self.new_acceleration
@@ -96,10 +103,7 @@ class WeftWay(WeftVariables):
             self.sampled_travel, first, second, self.new_travel, end_first, end_second,
             self.sampled_time / duration,
         )  # fmt: skip
-        self.way_limit = cubic_between(
-            self.sampled_limit, duration * self.sampled_limit_rate,
-            self.new_limit, duration * self.new_limit_rate, 1.0,
-        )  # fmt: skip
+        self.prepare_brake(duration)
 
     def gauge_at(self, kind: int, passing: bool, start: float, force: float, share: float) -> float:
         """What passes zero where `crossing` looks."""
@@ -109,6 +113,10 @@ class WeftWay(WeftVariables):
             return self.travel_at(share) - self.pick_up_travel
         if kind == YIELD:
             return self.surplus_at(passing, start, force, share)
+        if kind == NEAREST:
+            return self.surplus_rate_at(passing, start, force, share)
+        if kind == POINT:
+            return self.place_at(share) - self.next_point
         if kind == SLACK:
             return self.tension_at(passing, share)
         return self.tension_rate_at(passing, share)

@@ -10,7 +10,7 @@ so F' is continuous, brake and yarn never chatter, and each of the two branches 
 constant while the brake holds, and F relaxes towards H while it lets yarn through.
 """
 
-from math import exp, fabs, pi
+from math import exp, fabs, pi, sqrt
 
 from .numerics.motion import above_noise, bent, bump_noise, bumps, moved_on, sample_noise
 from .warp import thread_force
@@ -125,6 +125,26 @@ def relaxed_force(
         z * (h2 + 3.0 * low * h3), z * h3, 0.0, 0.0, share - low,
     )  # fmt: skip
     return end
+
+
+def snatch_tension(stiffness: float, density: float, speed: float) -> float:
+    """Tension at the end of elastic yarn at rest that is drawn at a constant speed at once, `v sqrt(EA q)`.
+
+    A wave runs along the yarn at `c = sqrt(EA / q)` and leaves it with the strain `v / c`; the tension stays
+    until the wave is back.
+
+    Args:
+        stiffness: EA [N]
+        density: q of the yarn [kg/m]
+        speed: v of the end [m/s]
+
+    Returns:
+        tension [N]
+
+    >>> snatch_tension(75.0, 3e-5, 20.0)
+    0.9486832980505138
+    """
+    return speed * sqrt(stiffness * density)
 
 
 def moving_load(length: float, speed: float, acceleration: float, density: float, drag: float) -> float:

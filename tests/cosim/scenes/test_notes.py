@@ -51,6 +51,26 @@ def test_mechanisms_that_load_the_shaft_twice_or_not_at_all_are_named(wires, not
 
 
 @pytest.mark.parametrize(
+    ("values", "its_own"),
+    [
+        ("", ""),
+        ('[weft_2]\nmoving_mass = "0.2 kg"\n', ""),
+        ('[weft_2]\nlead = "-30 deg"\n', "lead"),
+        ('[weft]\nlead = "5 deg"\n[weft_2]\nlead = "5 deg"\n', ""),
+        ('[weft_2]\ngear_ratio = 9.5\nlead = "-30 deg"\n', "lead and gear_ratio"),
+    ],
+)
+def test_a_weft_whose_taker_does_not_mirror_the_giver_is_warned_of(values, its_own):
+    loom = '[loom]\nmachine = "WL680-3600"\nboth_rapiers = true\n'
+    note = (
+        f"yarn follows weft on both ways, but weft_2 moves differently: it has its own {its_own}; after the"
+        " hand-over the tension is that of a taker like weft"
+    )
+    assert scenes.parse(loom + values).notes == ()
+    assert scenes.parse(loom + "yarn = true\n" + values).notes == ((note,) if its_own else ())
+
+
+@pytest.mark.parametrize(
     ("text", "note"),
     [
         (

@@ -9,6 +9,9 @@ from .drives import Drive
 from .graph import Wire
 from .instances import Instance
 
+# of a rapier: what loads the shaft, but does not change how the head moves
+LOADS_OF_RAPIER = ("moving_mass", "wheel_inertia", "belt_mass", "belt_length")
+
 
 def of_scene(
     instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
@@ -27,6 +30,7 @@ def of_scene(
         if not inputs and each.fmu.component and standard_loom.turns_alone(each.fmu.component):
             yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
     yield from _loads(instances, wires)
+    yield from _mirrored(instances, wires)
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 
@@ -85,6 +89,37 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
             port = mechanism.fmu.ports.get(torque)
             if port and port.causality == "output" and not wired:
                 yield f"{other} does not load {name}: {other}.{torque} is not wired"
+
+
+def _mirrored(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
+    """Warnings where the weft takes the taker to move as the giver does, but it does not."""
+    feeds = {wire.sink: wire.source[0] for wire in wires}
+    yarns = [name for name, each in instances.items() if each.fmu.name == "WeftTension"]
+    for transfer in instances:
+        giver, taker = (feeds.get((transfer, f"{head}_travel"), "") for head in ("giver", "taker"))
+        if giver not in instances or taker not in instances:
+            continue
+        differing = _unlike(instances[taker], instances[giver])
+        for yarn in yarns if differing else ():
+            if feeds.get((yarn, "travel")) == giver:
+                yield (
+                    f"{yarn} follows {giver} on both ways, but {taker} moves differently: it has its own"
+                    f" {listed(differing)}; after the hand-over the tension is that of a taker like {giver}"
+                )
+
+
+def _unlike(one: Instance, other: Instance) -> list[str]:
+    """The parameters by which two rapiers move differently."""
+
+    def value(each: Instance, name: str) -> float | None:
+        return each.values.get(name, each.fmu.ports[name].start)
+
+    shared = [name for name, port in one.fmu.ports.items() if port.causality == "parameter"]
+    return [
+        name
+        for name in shared
+        if name in other.fmu.ports and name not in LOADS_OF_RAPIER and value(one, name) != value(other, name)
+    ]
 
 
 def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:
