@@ -171,7 +171,7 @@ def test_a_window_holds_what_the_whole_run_does_not(loom: Callable[..., Trace]) 
     assert not judge(trace, **whole)
     inside = judge(trace, **whole, window=["330 deg", "30 deg"])
     assert inside
-    assert inside.claim == "highest value in [330 deg, 30 deg]"
+    assert inside.claim == "highest value between 330 deg and 30 deg"
 
 
 @pytest.mark.parametrize("steps", [90, 360])
@@ -670,7 +670,7 @@ at_most = "1 N"
     assert not result.holds
     with Trace(tmp_path / "claims.h5") as trace:
         assert trace.verdicts == list(result.claims)
-        assert trace.verdicts[0].claim == "fast enough: lowest value in [20 deg, 160 deg]"
+        assert trace.verdicts[0].claim == "fast enough: lowest value between 20 deg and 160 deg"
         assert {"weft.velocity", "weft.acceleration", "heald_2.lift", "heald_2.acceleration"} <= set(trace)
         assert "damper_1.peak_load" in trace
         assert "weft.travel" not in trace and "heald_1.lift" not in trace

@@ -53,6 +53,16 @@ def test_what_is_known_decides_a_claim_that_it_breaks(trace: Trace) -> None:
     assert "a.sure is false" in verdict.note
 
 
+@pytest.mark.parametrize("known", [TIME < 0.35, TIME > 0.65])
+def test_the_end_of_a_run_in_which_it_is_not_known_is_no_more_known(
+    tmp_path: Path, known: np.ndarray
+) -> None:
+    trace = recorded(tmp_path, np.where(known, TIME, 5.0), known)
+    verdict = judge(trace, kind="below", signal="a.x", bound="2 m")
+    assert verdict.word == "undecided"
+    assert f"not known from {0.3 if known[0] else 0:g} s" in verdict.note
+
+
 @pytest.mark.parametrize(
     ("window", "word"),
     [(["0 deg", "10 deg"], "holds"), (["25.5 deg", "36 deg"], "holds"), (["0 deg", "12 deg"], "undecided"),

@@ -130,6 +130,11 @@ class Window(NamedTuple):
         width = width if width > 0.0 else width % TURN
         return width if width < TURN - EMPTY else TURN
 
+    @property
+    def words(self) -> str:
+        """Where it is, as a verdict says it."""
+        return "between {} and {}".format(*(units.show(angle, "deg") for angle in self))
+
     def __str__(self) -> str:
         return f"[{angles_text(self)}]"
 

@@ -144,7 +144,7 @@ class TransferInTime(_Transfer):
     unit = LENGTH
 
     def judge(self, trace: Signals) -> Verdict:
-        text, signal = f"overlap of the heads in {self.window}", f"{self.transfer}.overlap"
+        text, signal = f"overlap of the heads {self.window.words}", f"{self.transfer}.overlap"
         overlap, needed = self._overlap(trace)
         found = [lowest(overlap, -1.0, [each]) for each in shaft.passes(trace, self.window)]
         if not found:

@@ -42,7 +42,7 @@ class Bounded(Claim, kind=False):
         text, (within, unknown) = self.text, self._known(trace)
         nowhere = within == []
         if self.window is not None:
-            text += f" in {self.window}"
+            text += f" {self.window.words}"
             if nowhere and not unknown:
                 reason = "the run never enters that window"
                 return self.verdict(trace, text, self.signal, limit, math.nan, math.nan, reason, unit=unit)

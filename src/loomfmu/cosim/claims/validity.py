@@ -1,5 +1,6 @@
 """Where a signal is not known, and how far it may be off whatever the steps: as signals beside it say."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,16 +15,16 @@ from .shaft import angle, place
 def gaps(trace: Signals, signal: str, within: Sequence[Stretch] | None = None) -> list[Stretch]:
     """Stretches of time in which a signal is not known, from the last sample at which it is to the next one.
 
-    With `within` they are those that overlap these stretches.
+    They are endless where there is no such sample. With `within` they are those that overlap these stretches.
     """
     flag = trace.validity(signal) if signal in trace else None
     if flag is None:
         return []
     known = np.concatenate([[True], np.asarray(trace[flag], dtype=bool), [True]])
     changes = np.flatnonzero(known[1:] != known[:-1])  # a gap begins at a sample, and ends before one
-    time, last = trace.time, len(trace.time) - 1
+    time = np.concatenate([[-math.inf], trace.time, [math.inf]])
     found = [
-        Stretch(float(time[max(start - 1, 0)]), float(time[min(end, last)]))
+        Stretch(float(time[start]), float(time[end + 1]))
         for start, end in zip(changes[::2], changes[1::2], strict=True)
     ]
     if within is None:
@@ -67,8 +68,9 @@ def known_within(
 def unknown_note(trace: Signals, signal: str, first: Stretch) -> str:
     """A note that a signal is not known, from when on, and who says so."""
     flag, turning = trace.validity(signal), angle(trace)
-    at = f"{first.start:.6g} s"
+    since = max(first.start, float(trace.time[0]))
+    at = f"{since:.6g} s"
     if turning is not None:
-        degrees, revolution = place(turning, first.start)
+        degrees, revolution = place(turning, since)
         at += f", {units.show(degrees, 'deg')}, rev. {revolution}"
     return f'not known from {at} on, as {flag} is false ("{trace.description(str(flag))}")'
