@@ -201,8 +201,10 @@ def test_values_outside_their_limits_are_refused(component):
                 component(**{variable.name: value})
             message = str(refusal.value)
             assert message.startswith(f"{component.__name__}.{variable.name} = {value / factor:.7g}")
-            choices = numbered(variable.choices, range(1, len(variable.choices) + 1))
-            assert (f"must be {choices}" if choices else f"is outside [{low:.7g}, {high:.7g}]") in message
+            if variable.choices:
+                assert f"must be {numbered(variable.choices, range(1, len(variable.choices) + 1))}" in message
+            else:
+                assert f"is outside [{low:.7g}, {high:.7g}]" in message
             assert "\n" not in message
             assert variable.display == "1" or message.endswith(f" {variable.display}")
 
