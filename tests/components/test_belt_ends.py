@@ -229,6 +229,29 @@ def test_a_slow_load_beyond_euler_bends_a_clamped_belt_as_the_elastica(
     assert belt.deflection == pytest.approx(LENGTH * elastica(clamped, ratio), rel=within)
 
 
+def test_a_slow_load_throws_a_crooked_belt_from_one_side_of_its_guide_to_the_other(belt_in_c):
+    """Leaving one side, its end comes and goes for a while: it was given up there, with NaN in its stages."""
+    belt = belt_in_c(
+        guide_end=PLAY, head_end=GUIDED, guide_clearance=1e-4, damping=75.0, bow=2e-4, bow_length=0.23
+    )  # fmt: skip
+    belt.travel = belt.idle_travel + belt.head_length + 0.35
+    belt.initialize(0.0)
+    sides = []
+    for n in range(2000):
+        belt.yarn_tension = 72.5 * (n + 1) / 2000
+        belt.step(1e-3 * n, 1e-3)
+        sides.append(belt.guide_contact)
+    assert belt.followed
+    assert (sides[1600], sides[-1]) == (1, -1)
+    assert abs(belt.energy_residual) < 1e-8 * belt.energy_through
+
+
+def test_a_belt_that_is_given_up_leaves_no_value_that_is_not_finite(belt_in_c):
+    belt = belt_in_c(guide_end=PLAY, head_end=GUIDED, load_a=math.nan, load_b=math.inf, load_c=math.nan)
+    belt.lose()
+    assert [belt.load_a, belt.load_b, belt.load_c] == [0.0, 0.0, 0.0]
+
+
 def test_a_guide_shorter_than_its_clearance_is_refused():
     belt = BeltDynamics(guide_end=PLAY, guide_clearance=0.05, guide_length=0.05)
     assert "must be less than guide_length" in belt.problems[belt.initialize(0.0) - 1].text

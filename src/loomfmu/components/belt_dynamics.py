@@ -187,7 +187,7 @@ class BeltDynamics(BeltRest):
                 continue
             before = self.before_switch(share, taken)
             if before < 1.0 and taken > SHORTEST_SHARE * size:
-                reach = before * taken
+                reach = before * taken if before * taken > SHORTEST_SHARE * size else SHORTEST_SHARE * size
                 continue
             self.account(share, taken)
             energy = self.energy_at(share + taken)

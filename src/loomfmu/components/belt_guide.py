@@ -18,7 +18,9 @@ from .belt_dynamics_variables import BeltDynamicsVariables
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
 GUIDED = 2  # head: it cannot turn
 TOUCHING = 1e-6  # of the modes: a turn that close to the free one is at the stop
-SHORTEST_SHARE = 1e-4  # of an integration step: contact is not located more closely than that
+SHORTEST_SHARE = (
+    5e-3  # of an integration step: at least that far it goes, where contact comes and goes as well
+)
 
 
 @dataclass(slots=True)

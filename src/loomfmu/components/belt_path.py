@@ -131,7 +131,8 @@ class BeltPath(BeltGuide):
         turn, rate = self.free_slope(length, velocity)
         side = self.side(turn)
         gap, growth = self.gap(turn, rate, length, velocity, side)
-        if gap <= TOUCHING * self.mode_sum and growth < 0.0:
+        near = TOUCHING * self.mode_sum
+        if gap < -near or (gap <= near and growth < 0.0):
             contact = side if self.guide_contact == 0 else 0
             self.switch(length, velocity, contact)
             turn, rate = self.free_slope(length, velocity)
@@ -167,6 +168,7 @@ class BeltPath(BeltGuide):
         start, start_rate = self.gap(
             self.last_slope, self.last_slope_rate, self.length_at(share), self.velocity_at(share), side
         )
+        start = start if start > 0.0 else 0.0  # it stands at the stop, to rounding
         low = 0.0
         high = 1.0
         for _ in range(HALVINGS):

@@ -156,6 +156,9 @@ class BeltRest(BeltIntegration):
         self.trial_rate = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gauss_step = 0.0
         self.halvings = 0
+        self.load_a = 0.0
+        self.load_b = 0.0
+        self.load_c = 0.0
         self.gauss_a = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gauss_b = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gauss_c = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
