@@ -250,7 +250,7 @@ def test_the_energy_is_balanced_over_both_strokes(belt_in_c, bow_of, damping):
 
 def test_a_belt_that_is_held_adds_nothing_to_what_its_work_leaves_unexplained(belt_in_c):
     folds = Loom(belt_in_c, 600.0, steps=720, machine="WL450-5400")
-    lost = Loom(belt_in_c, 100.0, steps=720, machine="WL450-4600", damping=20.0)
+    lost = Loom(belt_in_c, 50.0, steps=720, machine="WL450-4600")
     for loom, problem in ((folds, 1), (lost, 2)):
         through = []
         for stroke in (1, 2):  # both strokes of the next revolution are balanced as those before
@@ -386,8 +386,7 @@ def test_a_belt_too_long_for_its_modes_says_so_and_does_not_count(belt_in_c, bey
 
 
 SLOW = {
-    "loom.machine": "WL450-4600", "shaft.speed": "100 rev/min", "belt_motion.damping": 20.0,
-    "revolutions": 1,
+    "loom.machine": "WL450-4600", "shaft.speed": "50 rev/min", "steps_per_revolution": 720, "revolutions": 1,
 }  # fmt: skip
 
 
@@ -399,8 +398,8 @@ def test_a_belt_that_cannot_be_followed_has_not_folded_and_its_claim_is_undecide
     trace = Trace(tmp_path / "run.h5")
     assert not trace["belt_motion.followed"][-1]
     assert not trace["belt_motion.folded"][-1]
-    # the largest deflection was followed long before; four times as many steps give it, too
-    assert trace["belt_motion.largest_deflection"][-1] == pytest.approx(0.72484e-3, rel=1e-4)
+    # the largest deflection was followed long before; twice as many steps, which are followed, give it, too
+    assert trace["belt_motion.largest_deflection"][-1] == pytest.approx(1.46392e-3, rel=1e-5)
 
 
 def test_the_lightest_belt_is_followed_and_a_lighter_one_refused(belt_in_c):

@@ -13,10 +13,8 @@ from .belt_guide import CALIBRATED, GUIDED, SHORTEST_SHARE
 from .belt_rest import BeltRest
 
 JUMP = 1e-6  # m, that a standing head may be off
-MOST_SWEEPS = 3500  # over the stages of the integration in one step; both strokes of a loom need fewer
-MOST_HALVINGS = 9
-MORE_SWEEPS = 10000  # as many where an end may be clamped
-MORE_HALVINGS = 13
+MOST_SWEEPS = 10000  # over the stages of the integration in one step; both strokes of a loom need fewer
+MOST_HALVINGS = 13
 BALANCED = 2.5e-10  # of the energy: what an integration step may leave unexplained, if it can be halved
 UNBALANCED = 1e-6  # of the energy: a step that leaves more, however short, cannot be followed
 EASY = 1e-3  # of that: then the next step may be twice as long
@@ -79,6 +77,7 @@ class BeltDynamics(BeltRest):
         self.lay_path(since)
         ends_outside = self.length_at(1.0) > self.shortest_length
         share = 0.0
+        given_up = False
         if jumped:
             self.go_in()
             share = 1.0
@@ -91,9 +90,11 @@ class BeltDynamics(BeltRest):
         elif self.outside:
             if self.length_at(0.0) > self.shortest_length:
                 self.move(0.0, self.crossing())
+            given_up = self.lost
             self.go_in()
         self.remember()
-        return self.show()
+        shown = self.show()
+        return 2 if given_up else shown
 
     def jumps(self, since: float) -> bool:
         """Whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
@@ -172,13 +173,11 @@ class BeltDynamics(BeltRest):
             return
         self.push_before = self.pushed_at(start)
         size = (end - start) / self.pieces((end - start) * self.path_step)
-        most_sweeps = MORE_SWEEPS if self.may_clamp() else MOST_SWEEPS
-        most_halvings = MORE_HALVINGS if self.may_clamp() else MOST_HALVINGS
         self.set_out(start)
         share = start
-        halvings = self.halvings if self.halvings < most_halvings else most_halvings
+        halvings = self.halvings if self.halvings < MOST_HALVINGS else MOST_HALVINGS
         reach = 1.0
-        while end - share > 1e-12 and halvings <= most_halvings and self.sweeps < most_sweeps:
+        while end - share > 1e-12 and halvings <= MOST_HALVINGS and self.sweeps < MOST_SWEEPS:
             taken = self.suited(share, end, size) / 2.0**halvings
             taken = taken if taken < reach else reach
             taken = taken if taken < end - share - 1e-12 else end - share
@@ -193,7 +192,7 @@ class BeltDynamics(BeltRest):
             energy = self.energy_at(share + taken)
             missing = energy - self.energy - self.step_push - self.step_guide + self.step_loss
             error = fabs(missing) / (fabs(energy) + fabs(self.energy) + self.step_through + LEAST_ENERGY)
-            if error > BALANCED and halvings < most_halvings:
+            if error > BALANCED and halvings < MOST_HALVINGS:
                 halvings = halvings + 1
                 continue
             if error > UNBALANCED:

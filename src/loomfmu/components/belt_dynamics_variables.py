@@ -25,9 +25,8 @@ class BeltDynamicsVariables(Component):
             warning=True,
         ),
         Problem(
-            "the belt's motion could not be followed at a free length of {free_length}: until it is back in"
-            " its guide, nothing counts for the largest deflections; take more steps, and with play or a"
-            " guided head push no farther than Euler's load",
+            "the belt's motion could not be followed to a free length of {free_length}: until it is back in"
+            " its guide, nothing counts for the largest deflections; take more steps",
             warning=True,
         ),
         Problem("guide_clearance = {guide_clearance} must be less than guide_length = {guide_length}"),

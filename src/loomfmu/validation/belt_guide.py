@@ -101,7 +101,7 @@ def section() -> Section:
         remarks=(
             "Both ends of the table come out. Without clearance the belt is clamped in the guide, which gives"
             f" {number(math.pi / CLAMPED, 3)} for 0.70; with enough of it the belt buckles before it leans on"
-            " both walls, as if it were pinned, which gives 1.",
+            " both walls, as if it were pinned, which gives 1. Neither tests the length of the guide.",
             "In between the factor depends on the length of the guide and, unlike the published one, on that"
             " of the belt: with free play there is no single factor for a clearance.",
         ),

@@ -114,8 +114,9 @@ def by_speed() -> Section:
         remarks=(
             "The static criterion compares the compression with Euler's load at each instant, as if it"
             " lasted. The head crosses the window of risk in a few milliseconds, in which a bow grows but"
-            " does not run away: above the static limit nothing collapses, and below it the bow grows as"
-            " well.",
+            " does not run away: up to a fifth above the static limit nothing collapses with this head,"
+            " and below it the bow grows as well. Heavier heads and higher speeds fold belts with a bow of"
+            " the span.",
             *(_growth(machine) for machine in MACHINES),
         ),
     )  # fmt: skip
@@ -152,9 +153,8 @@ def by_ends() -> Section:
         "Guide off: the belt lies that far from the head's line in its exit. Deflections count from the line"
         " between guide and head.",
         remarks=(
-            "The finding stands for each way in which the ends are held: with half as much speed again, past"
-            f" the static limit, the deflection changes by a factor of {_range()}; the belt does not run"
-            " away.",
+            "So it is for each of these ways to hold the ends: with half as much speed again, past the static"
+            f" limit, the deflection changes by a factor of {_range()}; the belt does not run away.",
             _beyond(),
             "With play the belt's own bow is deflected about as far as with the calibrated beam, on the long"
             " belt of the WL450-4600 up to twice as far; the longer the guide, the less. A bow of the span is"
@@ -224,8 +224,9 @@ def bands() -> Section:
             "Limits of this finding: pinned ends with EI / mu^2, so that the static limit is the published"
             " one (other ends above); no damping; no weft; deflections in one plane; a head that"
             " follows its drive but for the shortening. Independent finite elements give the largest"
-            " deflections within 0.01 %. A bow of the span has no limit as the belt emerges: starting at 20"
-            " or at 10 mm changes its deflection by 1 %.",
+            " deflections within 0.01 %: so well are the equations solved, not so well is a belt known. A"
+            " bow of the span has no limit as the belt emerges: starting at 20 or at 10 mm alone changes its"
+            " deflection by 1 %.",
             "After the window the head is braked and pulls: the belt swings on, about twice as far on the way"
             " in. On the way out the swing that is left is squeezed into a shrinking length and grows several"
             " times, in a guide without friction and without damping: an upper bound.",
