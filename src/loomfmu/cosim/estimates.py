@@ -175,4 +175,4 @@ def _thinned(scene: Scene, grid: Grid) -> Grid | None:
     if grid.steps < 2 or any(instance.fmu.fixed_step for instance in scene.instances.values()):
         return None
     points = np.arange(grid.steps + 1) * grid.step_size if grid.points is None else grid.points
-    return chosen(scene, np.append(points[:-1:2], points[-1]))
+    return chosen(scene, np.append(points[:-2:2], points[-1]))  # of an odd number the last step has three
