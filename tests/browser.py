@@ -42,7 +42,7 @@ def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
     yield open_
     for page in pages:
         page.close()
-    assert noticed == []
+    assert not noticed, noticed
 
 
 def until(page: Any, true: Callable[[], bool]) -> None:
