@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from loomfmu import Trace, judge
+from loomfmu import Trace, evaluate, judge
 from loomfmu.cosim.claims.claims import read
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.traces import Channel, TraceWriter
 from loomfmu.variables import Beside
 
@@ -113,3 +114,16 @@ def test_where_it_is_as_near_to_the_worst_value_the_larger_error_counts(tmp_path
     trace = recorded(tmp_path, (0.3, 0.5), (0.8, 0.495), error=0.01)
     assert judged(trace)[0] == pytest.approx(0.5)
     assert judged(trace)[1] == pytest.approx(0.01)
+
+
+def test_an_extreme_that_equal_samples_pass_is_the_one_that_is_held():
+    """All samples of the margin were 1, and it held with an error of 1e-9 while the belt was at 0.2256."""
+    text = (
+        "[loom]\nmachine = 'WL680-3600'\nhead = 'G6300 left'\n[shaft]\nspeed = '600 rpm'\n"
+        "start_angle = '241 deg'\n[[claims]]\nkind = 'above'\nsignal = 'belt.margin'\nbound = 0.5\n"
+        "[[claims]]\nkind = 'lowest_margin'\nbound = 0.5\n"
+    )
+    values = {"revolutions": 0.5, "steps_per_revolution": 26}
+    sampled, held = evaluate(parse(text, "part of a stroke", values)).claims
+    assert sampled.worst == held.worst == pytest.approx(0.2254, abs=1e-3)
+    assert not sampled.holds

@@ -36,7 +36,8 @@ def latched(
     if latch:
         lowest = [each for each in _held(trace, latch, sign, within) if each.inside < each.first]
         best = min(lowest, key=lambda each: each.inside, default=None)
-        if best and best.inside <= sign * found.value:
+        sampled, known = sign * found.value, not motion_of(trace, signal).note
+        if best and (best.inside < sampled or (best.inside == sampled and not known)):
             value, time = sign * best.inside, reached(trace, latch, sign * trace[signal], best.last)
             return Extreme(value, time, sure=value), f"between the samples by {latch}"
     return found, motion_of(trace, signal).note
@@ -61,8 +62,9 @@ def beyond_found(
 
 
 def _latch(trace: Signals, signal: str, sign: float) -> str | None:
-    """What holds the extreme of a signal that is known only at the samples."""
-    return trace.held(signal, sign) if motion_of(trace, signal).note else None
+    """What holds the extreme of a signal whose rate is not known: samples that only rise may pass one, too."""
+    motion = motion_of(trace, signal)
+    return trace.held(signal, sign) if len(motion.values) == 1 or motion.note else None
 
 
 def _held(trace: Signals, latch: str, sign: float, within: Sequence[Stretch] | None) -> Iterator[_Held]:

@@ -185,7 +185,7 @@ loomfmu.motion = (run, name, rates = 2) => {
     return Math.max(sign * extreme - low, gapAt(when));
   }
 
-  return { values: own, note, at, passages, beyond, lowest, nearest, gapAt, gapBeyond };
+  return { values: own, single: values.length === 1, note, at, passages, beyond, lowest, nearest, gapAt, gapBeyond };
 };
 
 /* The same, kept until its samples change. */

@@ -18,7 +18,8 @@ loomfmu.latches = (run, motion) => {
     return Math.min(Math.max(turn, time[step - 1]), time[step]);
   }
 
-  const latchOf = (signal, sense) => motion(signal).note ? run.beside(signal, sense > 0 ? "lowest" : "highest") : null;
+  const unsure = ({ note, single }) => note || single; // samples that only rise may pass an extreme, too
+  const latchOf = (signal, sense) => unsure(motion(signal)) ? run.beside(signal, sense > 0 ? "lowest" : "highest") : null;
   const counted = test => { const place = time.findIndex(test); return place < 0 ? final + 1 : place; };
 
   /* Extremes so far, times `sense`, about each stretch of time: before it, at its first and last samples, and after it. */
@@ -37,7 +38,8 @@ loomfmu.latches = (run, motion) => {
     const latch = latchOf(signal, sense);
     const lower = latch ? held(latch, sense, stretches).filter(each => each.inside < each.first) : [];
     const [best] = lower.sort((one, other) => one.inside - other.inside);
-    if (!best || best.inside > sense * found.value) return { ...found, note: motion(signal).note };
+    const sampled = sense * found.value, known = !motion(signal).note;
+    if (!best || best.inside > sampled || (best.inside === sampled && known)) return { ...found, note: motion(signal).note };
     const value = sense * best.inside, followed = Array.from(run.signal(signal), each => sense * each);
     return { value, sample: value, time: reached(run.signal(latch), followed, best.last), note: `between the samples by ${latch}` };
   }
