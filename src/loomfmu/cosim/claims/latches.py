@@ -62,7 +62,7 @@ def beyond_found(
 
 
 def _latch(trace: Signals, signal: str, sign: float) -> str | None:
-    """What holds the extreme of a signal whose rate is not known: samples that only rise may pass one, too."""
+    """What holds the extreme of a signal whose rate is unknown: samples that only rise may pass it, too."""
     motion = motion_of(trace, signal)
     return trace.held(signal, sign) if len(motion.values) == 1 or motion.note else None
 
