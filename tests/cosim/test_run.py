@@ -65,3 +65,14 @@ def test_an_fmu_none_of_whose_outputs_can_be_recorded_is_named(tmp_path: Path) -
     sink = description2().replace('causality="output"', 'causality="local"')
     packed(tmp_path / "Motor.fmu", sink, library("fmi2.c", tmp_path / "Motor.so"), "Motor")
     assert ran(tmp_path, MOTOR, tmp_path).warnings == ()
+
+
+def test_the_steps_of_a_result_are_those_of_its_trace(tmp_path: Path) -> None:
+    """Where only claims are recorded, one master steps the coarser runs, too: a quarter was said."""
+    (tmp_path / "scene.toml").write_text(
+        "revolutions = 1\nsteps_per_revolution = 60\nrecord = []\n"
+        '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\n[shaft]\nspeed = "600 rev/min"\n'
+        '[[claims]]\nkind = "lowest_margin"\nbound = 0.1\n'
+    )
+    result = run(tmp_path / "scene.toml", output=tmp_path / "trace.h5")
+    assert result.steps == 60 == len(result.trace.time) - 1

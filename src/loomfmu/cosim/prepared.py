@@ -135,7 +135,9 @@ class Pattern:
                 seconds = perf_counter() - begun
                 if master.interrupted.value:
                     raise Interrupted
-            ended, warnings = ended_text(master.ended), (*scene.notes, *master.warnings())
+            # before coarser runs, which may be stepped by the same master
+            steps, ended = master.steps, ended_text(master.ended)
+            warnings = (*scene.notes, *master.warnings())
             # while the instances are still there: one that crashes when it is freed takes nothing with it
             if coarser is not None:
                 verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
@@ -147,7 +149,7 @@ class Pattern:
                     raise Interrupted from None
             verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
         return Result(
-            scene, verdicts, warnings, explained(plan), master.steps, path, trace,
+            scene, verdicts, warnings, explained(plan), steps, path, trace,
             ended=ended, seconds=seconds, chosen=chosen,
         )  # fmt: skip
 
