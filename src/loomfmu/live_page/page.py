@@ -29,7 +29,7 @@ from ..report.section import Section, Subject
 from ..report.templates import check, template
 from ..traces import Trace
 from ..upstream import sources_of, upstream
-from ..variables import Variable, variables_of
+from ..variables import Beside, Variable, variables_of
 from .knobs import Knob, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
@@ -129,8 +129,7 @@ def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
     display = trace.display(name)
     return {
         "rate": trace.rate(name),
-        "validity": trace.validity(name),
-        **{role: trace.beside(name, role) for role in ("error", "lowest", "highest")},
+        **{role: trace.beside(name, role) for role in Beside._fields},
         "unit": "" if display == "1" else display,
         "factor": units.unit(display).factor,
         "about": trace.description(name),

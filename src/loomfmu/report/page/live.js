@@ -1,6 +1,6 @@
 /* The page whose FMUs run: its sliders, and what follows them. `loomfmu.live.follow(part, run => ...)` is called after
  * every run, and once more when FMUs that take long have followed. Of a run there are `time`, `positions`,
- * `signal(name)`, `rate(name)`, `validity(name)`, `beside(name, role)` and `parameter(name)`, all in SI; `waits(name)` while its FMU is still
+ * `signal(name)`, `rate(name)`, `beside(name, role)` and `parameter(name)`, all in SI; `waits(name)` while its FMU is still
  * being stepped, so that its samples are of other values; `count(name)`, another number for other samples. It is null
  * where the values cannot be run. */
 loomfmu.live = (() => {

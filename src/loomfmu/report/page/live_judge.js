@@ -54,11 +54,11 @@ loomfmu.judge = run => {
 
   /* Whether a signal is not known somewhere, or in some stretches of time: a signal of its own says so. */
   function gaps(signal, stretches = [{ start: time[0], end }]) {
-    const flag = run.validity(signal);
+    const flag = run.beside(signal, "valid_if");
     return Boolean(flag) && run.signal(flag).some((known, k) => !known
       && stretches.some(each => (time[k - 1] ?? time[0]) < each.end && each.start < (time[k + 1] ?? end)));
   }
-  const gap = signal => unknown(`${signal} is not known: ${run.validity(signal)} is false; ${NOT_HERE}`);
+  const gap = signal => unknown(`${signal} is not known: ${run.beside(signal, "valid_if")} is false; ${NOT_HERE}`);
 
   function extreme(signal, bound, sense, stretches) {
     if (gaps(signal, stretches)) return gap(signal);

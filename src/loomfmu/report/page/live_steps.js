@@ -89,7 +89,7 @@ loomfmu.steps = (plan, wasm) => {
       [name, new Float64Array(wasm.memory.buffer, samples + 8 * place * length, length)]));
     return {
       time, has: name => table.has(name), signal: name => table.get(name), rate: name => plan.signals[name].rate,
-      validity: name => plan.signals[name]?.validity, beside: (name, role) => plan.signals[name]?.[role],
+      beside: (name, role) => plan.signals[name]?.[role],
       positions: plan.turns ? table.get("shaft.angle") : time,
       parameter: name => {
         if (!parameters.has(name))
