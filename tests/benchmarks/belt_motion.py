@@ -11,7 +11,7 @@ from typing import Any
 
 from compiled import compiled
 from records import Notes, Table, say
-from texts import Figures, Find, parts, shown, table
+from texts import Figures, Find, parts, whole
 
 from loomfmu.components import BeltDynamics
 from loomfmu.components.weft_insertion import WeftInsertion
@@ -26,8 +26,15 @@ ENDS: dict[str, dict[str, int]] = {
     "guided head": {"head_end": 2},
     "both": {"guide_end": 2, "head_end": 2},
 }
-WORDS = ("bow", "ends")
-COLUMNS = ("speed [rev/min]", *WORDS, "step [us]", "step outside the guide [us]", "longest [us]", "repeats")
+COLUMNS = (
+    "speed [rev/min]",
+    "bow",
+    "ends",
+    "step [us]",
+    "step outside the guide [us]",
+    "longest [us]",
+    "repeats",
+)
 SIZES = {"full": 9, "quick": 3, "tiny": 1}  # repeats
 
 
@@ -78,16 +85,12 @@ def _turn(in_c: Any, rpm: float, **given: int) -> list[tuple[float, bool]]:
 
 def section(find: Find) -> str:
     """A row for each speed, bow and pair of ends."""
-    rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
-    lines = [[row[key] if key in WORDS else shown(row[key]) for key in COLUMNS] for row in rows]
     return parts(
         f"`BeltDynamics` behind `WeftInsertion`, WL680-3600, {STEPS} steps in a revolution: the translated"
         " component in C, processor time of each step with the call from Python (about 1 us), the median of"
         " the repeats. Mean over the revolution, mean while the belt is outside its guide, and the longest"
         " step, just before the belt is back in its guide.",
-        table(list(COLUMNS), lines),
+        whole(find(NAME)),
     )
 
 

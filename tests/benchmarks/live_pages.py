@@ -12,7 +12,7 @@ from typing import Any
 
 from own import DEMO
 from records import ROOT, Notes, Table, say
-from texts import Figures, Find, parts, shown, table
+from texts import Figures, Find, parts, whole
 
 from loomfmu import live_page
 
@@ -22,8 +22,15 @@ SLIDERS = {  # one that reaches all, one that reaches the dampers, one that reac
     DEMO: ("shaft.speed", "damper.damping_ratio"),
     WHOLE: ("shaft.speed", "damper.damping_ratio", "belt_motion.damping=0 1/s..20 1/s"),
 }
-WORDS = ("scene", "slider")
-COLUMNS = (*WORDS, "FMUs stepped", "stepped [ms]", "page follows [ms]", "all is there [ms]", "repeats")
+COLUMNS = (
+    "scene",
+    "slider",
+    "FMUs stepped",
+    "stepped [ms]",
+    "page follows [ms]",
+    "all is there [ms]",
+    "repeats",
+)
 REPEATS = {"full": 21, "quick": 7, "tiny": 1}
 BROWSER = "chromium"
 SECONDS = 60.0  # that the page may take
@@ -90,15 +97,11 @@ def _paced(page: Any) -> dict[str, float]:
 
 def section(find: Find) -> str:
     """A row for each slider."""
-    rows = find(NAME)
-    if not rows:
-        return "*Not run.*"
-    lines = [[row[key] if key in WORDS else shown(row[key]) for key in COLUMNS] for row in rows]
     return parts(
         "`loomfmu page` in headless Chromium: what a slider takes, by the page's own clock. Only the FMUs"
         " that it reaches are stepped. The belts in motion come last: first the others are stepped, then"
         " claims, diagram, drawings and plots in sight follow, then the belts are there, too.",
-        table(list(COLUMNS), lines),
+        whole(find(NAME)),
     )
 
 
