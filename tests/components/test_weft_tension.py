@@ -348,7 +348,7 @@ def test_too_far():
     assert weft.step(2.1e9, 1.0) == 1
 
 
-# What a loom does that is no pick
+# Motions of a loom that are not picks
 
 
 def rocking(t):

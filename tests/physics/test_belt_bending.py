@@ -33,7 +33,7 @@ def buckled(clamped):
 
 def bow(length):
     """Amplitudes of the end shapes of an unloaded belt, and their rates by its length."""
-    return end_amplitudes(1, BOW, BOW_LENGTH, length, True, *bow_forces(1, BOW, BOW_LENGTH, length))
+    return end_amplitudes(1, BOW, BOW_LENGTH, length, True)
 
 
 def free_turn(clamped, length):

@@ -185,8 +185,9 @@ class BeltDynamics(BeltRest):
                 halvings = halvings + 1
                 continue
             before = self.before_switch(share, taken)
-            if before < 1.0 and taken > SHORTEST_SHARE * size:
-                reach = before * taken if before * taken > SHORTEST_SHARE * size else SHORTEST_SHARE * size
+            shortest = SHORTEST_SHARE * size
+            if before < 1.0 and taken > shortest:
+                reach = before * taken if before * taken > shortest else shortest
                 continue
             self.account(share, taken)
             energy = self.energy_at(share + taken)

@@ -18,9 +18,7 @@ from .belt_dynamics_variables import BeltDynamicsVariables
 CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
 GUIDED = 2  # head: it cannot turn
 TOUCHING = 1e-6  # of the modes: a turn that close to the free one is at the stop
-SHORTEST_SHARE = (
-    5e-3  # of an integration step: at least that far it goes, where contact comes and goes as well
-)
+SHORTEST_SHARE = 5e-3  # of an integration step: it goes that far at least, however contact comes and goes
 
 
 @dataclass(slots=True)
@@ -58,14 +56,8 @@ class BeltGuide(BeltDynamicsVariables):
         )  # fmt: skip
 
     def end_bow(self, length: float) -> tuple[float, float, float, float, float, float]:
-        """Amplitudes of the end shapes at guide and head where both turn freely, their rates by L twice."""
-        b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(
-            self.bow_of, self.bow, self.bow_length, length
-        )
-        return end_amplitudes(
-            self.bow_of, self.bow, self.bow_length, length, self.may_clamp(), b1, b2, b3, b4, b5, b6, d1, d2,
-            d3, d4, d5, d6,
-        )  # fmt: skip
+        """Amplitudes of the end shapes at guide and head where both turn freely, and two rates by L."""
+        return end_amplitudes(self.bow_of, self.bow, self.bow_length, length, self.may_clamp())
 
     def ends(
         self, length: float, velocity: float

@@ -107,7 +107,7 @@ class BeltRest(BeltIntegration):
         if self.clamped() != 0:
             return 0.0
         turned = pi * length / self.bow_length
-        moment, slope, _second = bow_at(
+        moment, slope = bow_at(
             place + 1, self.bow_of, self.bow, self.bow_length, length, cos(turned), sin(turned)
         )
         if moment == 0.0:

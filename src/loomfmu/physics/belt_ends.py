@@ -13,7 +13,7 @@ whatever the load; the bending energy of what they exceed the bow by holds the m
 
 from math import cos, pi, sin
 
-from .belt_modes import bow_second_rates
+from .belt_modes import bow_mode
 
 # slope of psi at its own end; the opposite of that at the other one: 12 / pi^2 times sums over n up to 6
 OWN = 2.0 - 12.0 / (pi * pi) * (1.0 + 1.0 / 4.0 + 1.0 / 9.0 + 1.0 / 16.0 + 1.0 / 25.0 + 1.0 / 36.0)
@@ -24,13 +24,9 @@ CROSS = 1.9587894996076e-4
 
 
 def end_amplitudes(
-    bow_of: int, bow: float, bow_length: float, length: float, may_clamp: bool,
-    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-    d1: float, d2: float, d3: float, d4: float, d5: float, d6: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """Amplitudes of the end shapes at guide and head where both turn freely, their rates by the length.
-
-    Last come their second rates.
+    bow_of: int, bow: float, bow_length: float, length: float, may_clamp: bool
+) -> tuple[float, float, float, float, float, float]:
+    """Amplitudes of the end shapes at guide and head where both turn freely, and two rates by the length.
 
     By the belt's own bow (1): 0 for a bow of the span (2). At the guide `bow''(L) L^2 / 6`, by which it is
     bent there as the belt is without load. Where an end may be clamped, the amplitudes of least bending
@@ -39,10 +35,9 @@ def end_amplitudes(
         OWN e + OTHER h = -bow (sin t - t cos t) - 2 L^3 sum (-1)^n b_n / (n pi)^3
         OTHER e + OWN h = -bow (t - sin t) + 2 L^3 sum b_n / (n pi)^3
 
-    with b_n, and d_n for its rate, of `bow_forces`: what the modes leave of the slopes that the bow gives the
-    ends.
+    with b_n of `bow_mode`: what the modes leave of the slopes that the bow gives the ends.
 
-    >>> round(end_amplitudes(1, 1.0, 2.0, 1.0, False, *[0.0] * 12)[0], 12)
+    >>> round(end_amplitudes(1, 1.0, 2.0, 1.0, False)[0], 12)
     -0.411233516712
     """
     if bow_of != 1:
@@ -50,23 +45,20 @@ def end_amplitudes(
     cosine = cos(pi * length / bow_length)
     sine = sin(pi * length / bow_length)
     wave = pi / bow_length
+    turn = wave * length
     if not may_clamp:
         bend = -bow * wave * wave / 6.0
-        turn = wave * length
         return (
             bend * length * length * sine, 0.0, bend * length * (2.0 * sine + turn * cosine), 0.0,
             bend * ((2.0 - turn * turn) * sine + 4.0 * turn * cosine), 0.0,
         )  # fmt: skip
-    s1, s2, s3, s4, s5, s6 = bow_second_rates(bow, bow_length, length)
-    odd, even = by_cubes(b1, b2, b3, b4, b5, b6)
-    odd_rate, even_rate = by_cubes(d1, d2, d3, d4, d5, d6)
-    odd_second, even_second = by_cubes(s1, s2, s3, s4, s5, s6)
+    odd, odd_rate, odd_second = by_cubes(1, bow, bow_length, length, cosine, sine)
+    even, even_rate, even_second = by_cubes(2, bow, bow_length, length, cosine, sine)
     cube = length * length * length
     odd_second = cube * odd_second + 6.0 * length * (length * odd_rate + odd)
     even_second = cube * even_second + 6.0 * length * (length * even_rate + even)
     odd_rate = cube * odd_rate + 3.0 * length * length * odd
     even_rate = cube * even_rate + 3.0 * length * length * even
-    turn = wave * length
     guide = bow * (turn * cosine - sine) + cube * (odd - even)
     head = bow * (sine - turn) + cube * (odd + even)
     guide_rate = odd_rate - even_rate - bow * wave * turn * sine
@@ -79,14 +71,25 @@ def end_amplitudes(
     return e, h, e_rate, h_rate, e_second, h_second
 
 
-def by_cubes(b1: float, b2: float, b3: float, b4: float, b5: float, b6: float) -> tuple[float, float]:
-    """Sums of `2 b_n / (n pi)^3` over odd and over even n.
+def by_cubes(
+    first: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
+) -> tuple[float, float, float]:
+    """Sum of `2 b_n / (n pi)^3` over odd n (first 1) or even n (2), and its two rates by the length.
 
-    >>> by_cubes(pi**3, 0.0, 0.0, 0.0, 0.0, 0.0)
-    (2.0, 0.0)
+    >>> [round(each / pi, 12) for each in by_cubes(1, 1.0, 1.0, 1.0, -1.0, 0.0)][:1]
+    [1.0]
     """
+    moments = 0.0
+    rates = 0.0
+    seconds = 0.0
+    for number in range(first, 7, 2):
+        moment, rate, second = bow_mode(number, bow, bow_length, length, cosine, sine)
+        cube = number * number * number
+        moments = moments + moment / cube
+        rates = rates + rate / cube
+        seconds = seconds + second / cube
     share = 2.0 / (pi * pi * pi)
-    return share * (b1 + b3 / 27.0 + b5 / 125.0), share * (b2 / 8.0 + b4 / 64.0 + b6 / 216.0)
+    return share * moments, share * rates, share * seconds
 
 
 def end_shape(

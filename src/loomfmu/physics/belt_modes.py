@@ -190,19 +190,20 @@ def bow_mode(
 
 def bow_at(
     number: int, bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float, float]:
+) -> tuple[float, float]:
     """As `bow_mode`, of the belt's own bow (1), or of one that spans the free part, `bow sin(pi x / L)` (2).
 
     >>> bow_at(2, 2, 1.0, 1.0, 1.0, -1.0, 0.0)
-    (0.0, 0.0, 0.0)
+    (0.0, 0.0)
     """
     if bow_of == 1:
-        return bow_mode(number, bow, bow_length, length, cosine, sine)
+        moment, rate, _second = bow_mode(number, bow, bow_length, length, cosine, sine)
+        return moment, rate
     if number > 1:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0
     square = pi * pi / length
     moment = 0.5 * bow * square * square / length
-    return moment, -3.0 * moment / length, 12.0 * moment / (length * length)
+    return moment, -3.0 * moment / length
 
 
 def bow_forces(
@@ -215,29 +216,10 @@ def bow_forces(
     """
     cosine = cos(pi * length / bow_length)
     sine = sin(pi * length / bow_length)
-    b1, d1, _second = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
-    b2, d2, _second = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
-    b3, d3, _second = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
-    b4, d4, _second = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
-    b5, d5, _second = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
-    b6, d6, _second = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
+    b1, d1 = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
+    b2, d2 = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
+    b3, d3 = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
+    b4, d4 = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
+    b5, d5 = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
+    b6, d6 = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
     return b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
-
-
-def bow_second_rates(
-    bow: float, bow_length: float, length: float
-) -> tuple[float, float, float, float, float, float]:
-    """Second rates by the free length of the moments of the belt's own bow on all modes; see `bow_mode`.
-
-    >>> bow_second_rates(1.0, 1.0, 1.0)[0] == bow_mode(1, 1.0, 1.0, 1.0, cos(pi), sin(pi))[2]
-    True
-    """
-    cosine = cos(pi * length / bow_length)
-    sine = sin(pi * length / bow_length)
-    _moment, _rate, s1 = bow_mode(1, bow, bow_length, length, cosine, sine)
-    _moment, _rate, s2 = bow_mode(2, bow, bow_length, length, cosine, sine)
-    _moment, _rate, s3 = bow_mode(3, bow, bow_length, length, cosine, sine)
-    _moment, _rate, s4 = bow_mode(4, bow, bow_length, length, cosine, sine)
-    _moment, _rate, s5 = bow_mode(5, bow, bow_length, length, cosine, sine)
-    _moment, _rate, s6 = bow_mode(6, bow, bow_length, length, cosine, sine)
-    return s1, s2, s3, s4, s5, s6

@@ -148,7 +148,7 @@ def energy_and_powers(
     share = velocity / length
     moving = 0.5 * length * (0.5 * speeds - 2.0 * share * drift + share * share * spread)
     e, h, e_by_length, h_by_length, e_second, h_second = end_amplitudes(
-        bow_of, bow, bow_length, length, may_clamp, b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
+        bow_of, bow, bow_length, length, may_clamp
     )
     (
         d, k, at_guide, at_head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second,
