@@ -195,16 +195,26 @@ static Status fmu_check_step(Instance *instance, double time, double size)
     return OK;
 }
 
-/* One step of all parts. */
-static Status fmu_step_parts(Instance *instance, double time, double size)
+/* Whether a step takes a part; all of them without a choice. */
+typedef bool (*Chosen)(int part);
+
+/* One step of the parts that are chosen. */
+static Status fmu_step_chosen(Instance *instance, double time, double size, Chosen chosen)
 {
     Status status = OK;
     int i;
     for (i = 0; i < PARTS && status == OK; i++) {
-        int64_t problem = parts[i].step(&instance->state.component, time, size);
-        status = fmu_report_part(instance, &parts[i], problem, DISCARD);
+        if (chosen == NULL || chosen(i)) {
+            int64_t problem = parts[i].step(&instance->state.component, time, size);
+            status = fmu_report_part(instance, &parts[i], problem, DISCARD);
+        }
     }
     return status == OK ? fmu_check_finite(instance, false, time, DISCARD) : status;
+}
+
+static Status fmu_step_parts(Instance *instance, double time, double size)
+{
+    return fmu_step_chosen(instance, time, size, NULL);
 }
 
 #define MOST_INNER_STEPS 1e7 /* in one step of the host: half a minute at some microseconds each */

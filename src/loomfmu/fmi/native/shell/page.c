@@ -172,17 +172,9 @@ static void page_feed(size_t place)
     }
 }
 
-static Status page_step_chosen(double time, double size)
+static bool page_steps(int part)
 {
-    Status status = OK;
-    int i;
-    for (i = 0; i < PARTS && status == OK; i++) {
-        if (record.use[i] == STEPPED) {
-            int64_t problem = parts[i].step(&instance.state.component, time, size);
-            status = fmu_report_part(&instance, &parts[i], problem, DISCARD);
-        }
-    }
-    return status == OK ? fmu_check_finite(&instance, false, time, DISCARD) : status;
+    return record.use[part] == STEPPED;
 }
 
 /* Steps from one sample to another. Returns the sample that was reached: an earlier one if a
@@ -196,7 +188,7 @@ EXPORT(run) size_t page_run(size_t from, size_t to)
     }
     for (k = from; k < to; k++) {
         page_feed(k + 1);
-        if (page_step_chosen((double)k * size, size) != OK) {
+        if (fmu_step_chosen(&instance, (double)k * size, size, page_steps) != OK) {
             return k;
         }
         page_sample(k + 1);
