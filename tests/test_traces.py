@@ -521,14 +521,17 @@ def test_a_result_keeps_its_own_data_whatever_is_run_after_it(
     monkeypatch.chdir(tmp_path)
     Path("shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
     wanted = [300.0, 400.0, 500.0, 600.0]
-    results = [loomfmu.run("shaft.toml", set={"shaft.speed": f"{speed} rpm"}) for speed in wanted]
-    assert {found.path for found in results} == {Path("results/shaft.h5")}
+
+    def run_at(speed: float) -> loomfmu.Result:
+        return loomfmu.run("shaft.toml", set={"shaft.speed": f"{speed} rpm"}, output="results/shaft.h5")
+
+    results = [run_at(speed) for speed in wanted]
     assert speeds(results) == pytest.approx(wanted, rel=1e-15)
     assert [found.trace.parameter("shaft.speed") * 30 / np.pi for found in results] == pytest.approx(wanted)
     assert len(os.listdir("results")) == 4
     with results[1].trace as held:  # also one that is open, and one that was read from its file
         same = Trace("results/shaft.h5")
-        results.append(loomfmu.run("shaft.toml", set={"shaft.speed": "700 rpm"}))
+        results.append(run_at(700.0))
         assert held["shaft.angle"][-1] == pytest.approx(2 * np.pi)
     assert speeds(results) == pytest.approx([*wanted, 700.0], rel=1e-15)
     assert same["shaft.velocity"][0] * 30 / np.pi == pytest.approx(600.0, rel=1e-15)
@@ -540,7 +543,9 @@ def test_what_was_kept_is_gone_with_the_process(tmp_path: Path, fmu_cache: None)
     (tmp_path / "shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
     script = (
         "import loomfmu, os, sys; os.chdir(sys.argv[1])\n"
-        "kept = [loomfmu.run('shaft.toml', set={'shaft.speed': f'{n}00 rpm'}) for n in (4, 5)]\n"
+        "to = 'results/shaft.h5'\n"
+        "at = [{'shaft.speed': f'{n}00 rpm'} for n in (4, 5)]\n"
+        "kept = [loomfmu.run('shaft.toml', set=each, output=to) for each in at]\n"
         "if child := os.fork():\n"
         "    os.waitpid(child, 0)\n"
         "    print(len(os.listdir('results')), round(kept[0].trace['shaft.velocity'][0] * 1e6))\n"

@@ -17,7 +17,7 @@ import loomfmu
 from loomfmu import LoomfmuError, Trace
 
 SCENE = 'steps_per_revolution = 1440\nrecord = ["belt.*", "weft.travel"]\n[loom]\nmachine = "WL680-3600"\n'
-RUN = ("run", "scene.toml", "--set", "revolutions=20")
+RUN = ("run", "scene.toml", "--set", "revolutions=20", "--output", "results/scene.h5")
 SLOW = """
 import sys, time
 from loomfmu import cli

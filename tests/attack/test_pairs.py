@@ -12,19 +12,20 @@ from loomfmu import Trace
 
 SCENE = 'steps_per_revolution = 1440\nrecord = ["belt.margin"]\n[loom]\nmachine = "WL680-3600"\n'
 SPEEDS = (500.0, 650.0)
+OUTPUT = "results/scene.h5"
 
 
 def pair(directory: Path, revolutions: int) -> None:
     """Run two, and look at what both have left."""
     (directory / "scene.toml").write_text(f"revolutions = {revolutions}\n{SCENE}")
     running = [
-        started(directory, "run", "scene.toml", "--native", "--set", f"shaft.speed={speed} rpm")
+        started(directory, "run", "scene.toml", "--output", OUTPUT, "--set", f"shaft.speed={speed} rpm")
         for speed in SPEEDS
     ]
     for each in running:
         printed, errors = each.communicate(timeout=300)
         assert (each.returncode, errors) == (0, ""), errors
-        assert "trace: results/scene.h5" in printed
+        assert f"trace: {OUTPUT}" in printed
     assert os.listdir(directory / "results") == ["scene.h5"]
     with Trace(directory / "results" / "scene.h5") as trace:
         assert trace.status == "complete"

@@ -4,6 +4,7 @@ import os
 import shlex
 import subprocess
 import sys
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -60,8 +61,9 @@ def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str
         "heald.stroke=50mm",
     ]
     assert main(["run", scene(HEAD + LOOM), *arguments, "--set", "revolutions=0.5"]) == 0
-    assert "0.5 revolutions at 685 rev/min" in capsys.readouterr().out
-    with Trace("results/scene.h5") as trace:
+    printed = capsys.readouterr().out
+    assert "0.5 revolutions at 685 rev/min" in printed
+    with Trace(printed.split()[-1]) as trace:
         assert trace["belt.length_factor"][-1] == 0.9
         assert trace.parameter("heald_2.stroke") == 0.05
         assert trace.rows == 46
@@ -95,12 +97,27 @@ def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> 
     ]
 
 
-def test_a_finished_run_replaces_an_older_one() -> None:
+def test_a_finished_run_replaces_an_older_one_and_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     shaft = HEAD + SHAFT
     assert main(["run", scene(shaft.replace("revolutions = 1", "revolutions = 2"))]) == 0
+    assert "replaced" not in capsys.readouterr().out
+    written = datetime(2026, 3, 1, 14, 5, 9).timestamp()
+    os.utime("results/scene.h5", (written, written))
     assert main(["run", scene(shaft)]) == 0
+    line = "replaced: the trace of this name written at 2026-03-01 14:05:09"
+    assert line in capsys.readouterr().out.splitlines()
     with Trace("results/scene.h5") as trace:
         assert (trace.status, trace.rows) == ("complete", 91)
+
+
+def test_a_run_with_other_values_leaves_the_trace_of_the_scene(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", scene(HEAD + SHAFT)]) == 0
+    before = Path("results/scene.h5").read_bytes()
+    assert main(["run", "scene.toml", "--set", "shaft.speed=300 rpm", "--report"]) == 0
+    assert "replaced" not in capsys.readouterr().out
+    assert Path("results/scene.h5").read_bytes() == before
+    other = "scene_shaft.speed=300rpm"
+    assert sorted(os.listdir("results")) == ["scene.h5", f"{other}.h5", f"{other}.html"]
 
 
 def test_a_failed_run_leaves_an_older_one() -> None:

@@ -1,14 +1,18 @@
 """A run as a whole: its trace is safe from what FMUs do, and its result says what happened."""
 
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from foreign_motors import FMI3, description2, library, motor2, motor3, packed
 from motor_scenes import LENGTH, MOTOR, ran
 
 from loomfmu import Trace, evaluate, run
+from loomfmu.cosim.recorded import usual_path
 from loomfmu.cosim.scenes import scene as scenes
 
 CLAIM = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
@@ -76,3 +80,32 @@ def test_the_steps_of_a_result_are_those_of_its_trace(tmp_path: Path) -> None:
     )
     result = run(tmp_path / "scene.toml", output=tmp_path / "trace.h5")
     assert result.steps == 60 == len(result.trace.time) - 1
+
+
+SHAFT = "revolutions = 1\n[shaft]\n"
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ({}, "a.h5"),
+        ({"shaft.speed": "685 rpm", "revolutions": 2}, "a_revolutions=2,shaft.speed=685rpm.h5"),
+        ({"shaft.speed": 60.5}, "a_shaft.speed=60.5.h5"),
+        ({"shaft.speed": "600 rev/min"}, "a_shaft.speed=600rev-min-c3617018.h5"),
+    ],
+)
+def test_each_set_of_values_has_a_trace_of_its_own(given: dict[str, Any], name: str) -> None:
+    shuffled = dict(reversed(given.items()))
+    for values in (given, shuffled):
+        assert usual_path(scenes.parse(SHAFT, "a", values)) == Path("results") / name
+
+
+def test_values_too_long_for_the_name_of_a_file_are_told_apart() -> None:
+    knots = [
+        [[0.0, "60 rpm"], *([0.1 * n, 50.0] for n in range(1, 40)), [9.0, last]] for last in (50.0, 51.0)
+    ]
+    names = [
+        usual_path(replace(scenes.parse(SHAFT, "a"), overrides={"shaft.speed": each})).name for each in knots
+    ]
+    assert names[0] != names[1] and max(map(len, names)) < 110
+    assert all(re.fullmatch(r"[\w.,=+-]+", each) for each in names)

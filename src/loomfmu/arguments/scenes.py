@@ -12,7 +12,11 @@ def run(commands: Any) -> None:
     run = commands.add_parser("run", help="simulate a scene, record a trace and check the claims")
     add_scene(run)
     add_set(run)
-    run.add_argument("--output", metavar="FILE.h5", help="trace file; results/SCENE.h5 by default")
+    run.add_argument(
+        "--output",
+        metavar="FILE.h5",
+        help="trace file; results/SCENE.h5 by default, with the values of --set results/SCENE_VALUES.h5",
+    )
     flavour = run.add_mutually_exclusive_group()
     flavour.add_argument(
         "--live", action="store_true", help="use live FMUs (Python) instead of native ones (compiled)"
@@ -33,7 +37,11 @@ def page(commands: Any) -> None:
         " range 20 %% around the scene's value, or its choices; the shaft's speed by default",
     )  # fmt: skip
     add_set(page)
-    page.add_argument("--output", metavar="FILE.html", help="results/SCENE_page.html by default")
+    page.add_argument(
+        "--output",
+        metavar="FILE.html",
+        help="results/SCENE_page.html by default, with the values of --set in its name",
+    )
     add_force(page, "FILE.html even if it is not such a page")
 
 

@@ -57,6 +57,8 @@ def _run_here(options: argparse.Namespace) -> int:
     if scene.description and not scene.overrides:  # it is about the values that the scene has
         say(*scene.description.splitlines(), "")
     _print_pace(result)
+    if result.replaced:
+        say(f"replaced: the trace of this name written at {result.replaced}")
     _print_trace(str(result.path))
     if page:
         say(f"report: {page}")

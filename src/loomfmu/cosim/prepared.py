@@ -22,7 +22,7 @@ from .planning.plan import InMemory, Stepping, build_needed, ended_text, explain
 from .planning.requested import check_bounds, claims_of, judged_by, recorded, shaft_angle, with_rates
 from .planning.windows import window_grid
 from .reading import check_set, checked
-from .recorded import bar, finish, kept, target_of, writer_of
+from .recorded import bar, finish, kept, target_of, usual_path, writer_of, written_at
 from .results import Evaluation, Result
 from .scenes.instances import altered
 from .scenes.keys import WINDOWS
@@ -120,6 +120,7 @@ class Pattern:
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)
         target = target_of(plan, path, overwrite, progress)
+        replaced = written_at(target)
         everything = range(len(self.claims))
         coarser = known
         if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
@@ -150,7 +151,7 @@ class Pattern:
             verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
         return Result(
             scene, verdicts, warnings, explained(plan), steps, path, trace,
-            ended=ended, seconds=seconds, chosen=chosen,
+            ended=ended, seconds=seconds, chosen=chosen, replaced=replaced,
         )  # fmt: skip
 
 
@@ -207,7 +208,7 @@ class Prepared:
         """Run with these values, record and judge; as `loomfmu.run`."""
         with self._turn:
             pattern, scene = self._ready(set)
-            path = path_of(output, "output") if output is not None else Path("results") / f"{scene.name}.h5"
+            path = usual_path(scene) if output is None else path_of(output, "output")
             return pattern.run(scene, path, self._flavour, overwrite, progress)
 
     def close(self) -> None:

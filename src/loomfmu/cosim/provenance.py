@@ -24,7 +24,7 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         **({"files": json.dumps(scene.texts)} if scene.texts else {}),
         **({"package_sha256": scene.package_sha256} if scene.package else {}),
         "wires": json.dumps(plan.wires),
-        "set": json.dumps(_texts(scene.overrides)),
+        "set": json.dumps(texts(scene.overrides)),
         **({} if scene.package else {"flavour": _flavour(scene, flavour)}),
         **_command(scene, _flavour(scene, flavour)),
         **(
@@ -71,12 +71,12 @@ def _command(scene: Scene, flavour: str) -> dict[str, str]:
     if source is None:
         return {}
     words = ["loomfmu", "run", str(source)]
-    for key, text in _texts(scene.overrides).items():
+    for key, text in texts(scene.overrides).items():
         words += ["--set", f"{key}={text}"]
     return {"command": shlex.join([*words, *(["--live"] if flavour == "live" else [])])}
 
 
-def _texts(overrides: dict[str, Any]) -> dict[str, str]:
+def texts(overrides: dict[str, Any]) -> dict[str, str]:
     """Values that were set, as texts that the command takes, too."""
     return {
         key: value if isinstance(value, str) else json.dumps(value, default=_plain)

@@ -1,7 +1,10 @@
 """The trace of a run: where it may be written, its blocks, its verdicts and its final name."""
 
+import hashlib
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 
 from .. import printed
@@ -13,11 +16,35 @@ from ..traces.disk import check_room, largest, size_text
 from .master.master import Interrupted
 from .planning.plan import Plan
 from .planning.requested import output_port
-from .provenance import attributes, groups
+from .provenance import attributes, groups, texts
+from .scenes.scene import Scene
 from .scenes.scene_files import files_of
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
 LARGE_TRACE = 300_000_000  # bytes from which its size is reported before the run
+UNSAFE = re.compile(r"[^A-Za-z0-9_.,=+-]")  # in the name of a file, on any system and in a shell
+LONGEST = 80  # characters of the values in the name of a file
+
+
+def usual_path(scene: Scene, ending: str = ".h5") -> Path:
+    """Where a scene's results go by default: each set of values that differ from the scene has its own name.
+
+    Such as `results/wl680_3600_shaft.speed=700rpm.h5`. Values that do not fit into a name end with a digest.
+    """
+    given = ",".join(f"{key}={value}" for key, value in sorted(texts(scene.overrides).items()))
+    plain = re.sub(r"\s", "", given)
+    shown = UNSAFE.sub("-", plain)[:LONGEST]
+    if shown != plain:
+        shown += f"-{hashlib.sha256(given.encode()).hexdigest()[:8]}"
+    return Path("results") / f"{scene.name}{shown and '_'}{shown}{ending}"
+
+
+def written_at(path: Path) -> str:
+    """When the file of this name was written, such as 2026-03-01 14:05:09; empty if there is none."""
+    try:
+        return str(datetime.fromtimestamp(int(path.stat().st_mtime)))
+    except OSError:
+        return ""
 
 
 @contextmanager

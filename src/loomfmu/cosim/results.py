@@ -58,7 +58,8 @@ class Result(Judged):
     """A finished run with its trace on disk: `trace["belt.margin"]` are the signal's values in SI.
 
     `path` is where the trace was written. `trace` stays that of this run even if another is written there.
-    `seconds` is the time that the steps took, the writing of their samples included.
+    `seconds` is the time that the steps took, the writing of their samples included. `replaced` says when the
+    trace that had its name was written; it is empty if there was none.
     """
 
     path: Path
@@ -74,6 +75,7 @@ class Result(Judged):
         return write([self.trace], output, overwrite)
 
     seconds: float = field(default=0.0, kw_only=True, compare=False)
+    replaced: str = field(default="", kw_only=True, compare=False)
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,6 +15,7 @@ from .. import units
 from ..cosim.claims.lifted import lift_of
 from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
+from ..cosim.recorded import usual_path
 from ..cosim.run import run
 from ..cosim.scenes.keys import UNIFORM
 from ..cosim.scenes.scene import Scene
@@ -56,7 +57,8 @@ def write(
         scene: path of a scene file, or a scene that was read before
         vary: what can be varied, such as "shaft.speed=400rpm..800rpm" or "dobby.law"; a range is 20 % around
             the scene's value if none is given, and without anything it is the shaft's speed
-        output: the file; `results/<scene>_page.html` below the current directory by default
+        output: the file; `results/<scene>_page.html` below the current directory by default, with the values
+            that differ from the scene's in its name
         set: values that differ from the scene's
         overwrite: also replace a file that is not such a page
         warn: called with each warning of the scene and of the ranges
@@ -66,7 +68,7 @@ def write(
     """
     check()
     loaded = replace(checked(scene, set, "native"), grid=UNIFORM)
-    path = path_of(output, "output") if output else Path("results") / f"{loaded.name}_page.html"
+    path = path_of(output, "output") if output else usual_path(loaded, "_page.html")
     inputs = files_of(loaded)
     check_target(path, PAGE, inputs, overwrite)
     whole = system(loaded, "a page that runs the scene", "use loomfmu run --report")
