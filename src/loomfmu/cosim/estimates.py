@@ -98,7 +98,7 @@ class Estimates:
             return Coarser(wanted)
         for name, instance in scene.instances.items():
             # one that crashes when it is freed must not take the run with it
-            if not (instance.fmu.ours or scene.isolates(name)):
+            if not (instance.fmu.trusted or scene.isolates(name)):
                 return Coarser(wanted, why=f"{name} runs in this process; set isolated = true")
         values = []
         for part in ("half", "a quarter"):

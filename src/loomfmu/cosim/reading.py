@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, listed, path_of, shown, suggestion
-from .importing.fmus import FLAVOURS
+from ..errors import LoomfmuError, listed, path_of, shown
+from .importing.built import check_flavour
 from .planning.requested import checked_claims
 from .scenes import scene as scenes
 from .scenes.scene import Scene
@@ -14,8 +14,7 @@ from .scenes.scene import Scene
 
 def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
     """A scene that is ready to be run. Raises LoomfmuError naming the file and what is wrong."""
-    if flavour not in FLAVOURS:
-        raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
+    check_flavour(flavour)
     check_set(overrides)
     scene = scene if isinstance(scene, Scene) else path_of(scene, "scene")
     place = "" if isinstance(scene, Scene) else f"{scene}: "

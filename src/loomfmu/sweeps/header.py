@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ..cosim.importing.fmus import FLAVOURS, Flavour
+from ..cosim.importing.built import Flavour, check_flavour
 from ..cosim.planning.requested import checked_claims
 from ..cosim.scenes import scene as scenes
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.tables import text as text_in
 from ..cosim.ssp import read as ssp_read
-from ..errors import LoomfmuError, shown, suggestion
+from ..errors import LoomfmuError, suggestion
 from .axes import Axis, flattened
 from .varied import Varied, varied
 
@@ -50,8 +50,7 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
     if not isinstance(tables.get("scene"), str):
         raise LoomfmuError(f'a {what} must name its scene: scene = "loom.toml", relative to the {what} file')
     flavour = tables.get("flavour", "native")
-    if flavour not in FLAVOURS:
-        raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
+    check_flavour(flavour)
     scene_path = _beside(path, tables["scene"])
     fixed = flattened(tables.get("set", {}), "set")
     scene = checked_claims(read_scene(scene_path, fixed))

@@ -12,8 +12,10 @@ import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.importing.built import file_of, run_files
 from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.fmi.builder import zipped
 from loomfmu.fmi.cache import cache_directory
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.native import platforms
@@ -40,9 +42,30 @@ def test_a_built_fmu_is_what_its_file_says(name: str, flavour: str) -> None:
     read = fmus.load(fmu.path)
     assert fmu.file == read.file
     assert (fmu.name, fmu.ports, fmu.fmi) == (read.name, read.ports, read.fmi)
-    assert (fmu.ours, fmu.single, fmu.fixed_step, fmu.needs_tool) == (
-        read.ours, read.single, read.fixed_step, read.needs_tool,
+    assert read.component is fmu.component
+    assert (fmu.trusted, fmu.single, fmu.fixed_step, fmu.needs_tool) == (
+        read.trusted, read.single, read.fixed_step, read.needs_tool,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("flavour", "fmi"), [("live", 2), ("native", 2), ("native", 3)])
+def test_one_byte_beside_our_own_makes_an_fmu_a_foreign_one(flavour: str, fmi: int, tmp_path: Path) -> None:
+    """Whatever it says of its maker, its name and its GUID."""
+    files = run_files(file_of(COMPONENTS["MainShaft"], flavour, (platforms.host(),), fmi))
+    last = max(files)
+
+    def read(**changed: bytes) -> fmus.Fmu:
+        (tmp_path / "MainShaft.fmu").write_bytes(zipped(files | {"documentation/x": b"x"} | changed))
+        return fmus.load(tmp_path / "MainShaft.fmu")
+
+    same = read()
+    assert same.ours and same.trusted and same.component is COMPONENTS["MainShaft"]
+    for changed in ({last: files[last] + b"\n"}, {"resources/more.py": b""}):
+        other = read(**changed)
+        assert other.ours and not other.trusted and other.component is None
+        assert other.guid == same.guid
+    text = f"revolutions = 1\n[shaft]\n[other]\nfmu = '{tmp_path / 'MainShaft.fmu'}'\nspeed = '600 rpm'\n"
+    assert scenes.parse(text).isolates("other")
 
 
 def test_runs_are_native_by_default(tmp_path: Path) -> None:

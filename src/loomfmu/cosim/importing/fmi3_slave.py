@@ -57,8 +57,8 @@ class Fmi3Slave(Slave):
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
-        self.pooled = fmu.ours
-        if not fmu.ours:  # it may have threads that log: they need Python's lock
+        self.pooled = fmu.trusted
+        if not fmu.trusted:  # it may have threads that log: they need Python's lock
             self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._flags = _Flags()
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
@@ -69,7 +69,7 @@ class Fmi3Slave(Slave):
             guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
         )  # fmt: skip
-        slave.instantiate(loggingOn=self.fmu.ours, logMessage=self._log_3)
+        slave.instantiate(loggingOn=self.fmu.trusted, logMessage=self._log_3)
         return slave
 
     def _log_3(self, _environment: Any, status: int, _category: bytes, message: bytes) -> None:

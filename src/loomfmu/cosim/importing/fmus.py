@@ -2,28 +2,36 @@
 
 import hashlib
 import os
+import re
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal, get_args
+from typing import Any
 
 import fmpy
 
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, listed, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 from ...files import check_archive, source
 from ...fmi import identities
-from ...fmi.cache_entries import FMUS, UNPACKED, folder, has_file, made_file
+from ...fmi.cache_entries import UNPACKED, folder
 from ...fmi.native import platforms
 from ...variables import MOTION, Component
 from ...version import __version__
+from .built import (
+    FLAVOURS,
+    Flavour,
+    check_flavour,
+    counts_in_run,
+    file_here,
+    file_of,
+    is_here,
+    is_our_build,
+)
 from .descriptions import declared_ports, is_ours, ports_of, unsupported_outputs
 from .ports import Port, Value
-
-Flavour = Literal["live", "native"]
-FLAVOURS: tuple[str, ...] = get_args(Flavour)
 
 __all__ = ["FLAVOURS", "Flavour", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
 
@@ -44,8 +52,9 @@ class Unpacked:
 class Fmu:
     """An FMU that can be instantiated.
 
-    `ours` are those that this package makes: they can be reset, and log whole texts. `component` is what one
-    was made of, which declares what others must know; None if that is not known. `single` is one that a
+    `ours` are those that say that this package made them: scenes set their values in its terms. `trusted` are
+    those that it makes to the last bit: they run in this process and can be reset. `component` is what one of
+    these is made of, which declares what others must know; None if that is not known. `single` is one that a
     process may have one instance of. `flavour` is that of one which is built when its file is first needed,
     and empty for one that was given as a file. `fixed_step` is one that takes equal steps only, `needs_tool`
     one that says it needs the tool that made it; `unsupported` are outputs without a port.
@@ -55,6 +64,7 @@ class Fmu:
     ports: dict[str, Port]
     fmi: int = 2
     ours: bool = True
+    trusted: bool = True
     single: bool = False
     fixed_step: bool = False
     needs_tool: bool = False
@@ -79,7 +89,7 @@ class Fmu:
         if self.given is not None:
             return self.given
         assert self.component is not None, "what is built is built of a component"
-        path = _file_here(self.component, self.flavour)
+        path = file_here(self.component, self.flavour)
         sha256, directory = _unpacked(path)
         guid = identities.identity(self.component)["guid"]
         return Unpacked(path, sha256, directory, guid, self.name, __version__)
@@ -176,7 +186,7 @@ def of_component(name: str, flavour: str = "live") -> Fmu:
 
 def of_class(component: type[Component], flavour: str = "live") -> Fmu:
     """The FMU of a component, live or native. It is built only when its file is needed."""
-    _check(flavour)
+    check_flavour(flavour)
     if (component, flavour) not in _known:
         same = _known.get((component, "live" if flavour == "native" else "native"))
         ports = same.ports if same else declared_ports(component)
@@ -184,54 +194,14 @@ def of_class(component: type[Component], flavour: str = "live") -> Fmu:
     return _known[component, flavour]
 
 
-def _check(flavour: str) -> None:
-    if flavour not in FLAVOURS:
-        raise LoomfmuError(f"there is no flavour {flavour!r}{suggestion(flavour, FLAVOURS)}")
-
-
-def file_of(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> Path:
-    """The file of a component, built unless the same one was; a live one is for all platforms."""
-    _check(flavour)
-    return made_file(
-        FMUS, _key(component, flavour, chosen), f"{component.__name__}.fmu",
-        partial(_archive, component, flavour, chosen),
-    )  # fmt: skip
-
-
-def _key(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> str:
-    key = identities.identity(component)[flavour]
-    return key if flavour == "live" else "-".join((key, *chosen))
-
-
-def _archive(component: type[Component], flavour: str, chosen: tuple[str, ...]) -> bytes:
-    from ...fmi import builder
-    from ...fmi.native import builder as native_builder
-
-    if flavour == "live":
-        return builder.archive(component)
-    return native_builder.archive(component, chosen)
-
-
-def _file_here(component: type[Component], flavour: str) -> Path:
-    """The file of a component to run on this machine: the package brings it, or it is built."""
-    shipped = identities.shipped(component) if flavour == "native" else None
-    return shipped or file_of(component, flavour, (platforms.host(),))
-
-
 def unbuilt(chosen: Iterable[Fmu]) -> list[Fmu]:
     """Those of some FMUs that have yet to be built, each once."""
     found: dict[tuple[type[Component], str], Fmu] = {}
     for fmu in chosen:
         used = "file" in vars(fmu)  # it is known by now
-        if fmu.component and fmu.built and not used and not _is_there(fmu.component, fmu.flavour):
+        if fmu.component and fmu.built and not used and not is_here(fmu.component, fmu.flavour):
             found.setdefault((fmu.component, fmu.flavour), fmu)
     return list(found.values())
-
-
-def _is_there(component: type[Component], flavour: str) -> bool:
-    if flavour == "native" and identities.shipped(component):
-        return True
-    return has_file(FMUS, _key(component, flavour, (platforms.host(),)), f"{component.__name__}.fmu")
 
 
 def build(chosen: Iterable[Fmu]) -> None:
@@ -239,7 +209,7 @@ def build(chosen: Iterable[Fmu]) -> None:
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda fmu: fmu.component and _file_here(fmu.component, fmu.flavour), chosen))
+        list(pool.map(lambda fmu: fmu.component and file_here(fmu.component, fmu.flavour), chosen))
 
 
 def load(path: Path) -> Fmu:
@@ -256,7 +226,7 @@ def _unpacked(path: Path) -> tuple[str, Path]:
             with zipfile.ZipFile(file) as archive:
                 # compared with the FMU at each start: what runs is what the hash names
                 check_archive(archive)
-                names = list(filter(_is_run, dict.fromkeys(archive.namelist())))
+                names = list(filter(counts_in_run, dict.fromkeys(archive.namelist())))
                 directory = folder(UNPACKED, sha256, names, archive.read)
         found = (directory / "modelDescription.xml").exists()
     except FileNotFoundError:
@@ -273,7 +243,9 @@ def _unpacked(path: Path) -> tuple[str, Path]:
 def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     try:
         description = fmpy.read_model_description(str(directory), validate=False)
-        component = COMPONENTS.get(description.modelName) if is_ours(description) else None
+        ours, fmi = is_ours(description), int(description.fmiVersion[0])
+        trusted = ours and is_our_build(path, description.modelName, fmi)
+        component = COMPONENTS[description.modelName] if trusted else None
         ports = ports_of(description, component)
     except Exception as error:  # fmpy raises its own kinds for a description that is none
         raise LoomfmuError(
@@ -282,22 +254,14 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     _check_runnable(path, description)
     kind = description.coSimulation
     return Fmu(
-        name=description.modelName, ports=ports, fmi=int(description.fmiVersion[0]),
-        ours=is_ours(description), single=kind.canBeInstantiatedOnlyOncePerProcess,
+        name=description.modelName, ports=ports, fmi=fmi, ours=ours, trusted=trusted,
+        single=kind.canBeInstantiatedOnlyOncePerProcess,
         fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
         component=component, unsupported=unsupported_outputs(description),
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
     )  # fmt: skip
-
-
-def _is_run(member: str) -> bool:
-    """Whether a file of an FMU counts in a run: not documents, sources and other platforms' libraries."""
-    top, _, rest = member.partition("/")
-    if top == "binaries":
-        return rest.partition("/")[0] in ("", fmpy.platform, fmpy.platform_tuple)
-    return top not in ("documentation", "sources")
 
 
 def _first_line(error: Exception) -> str:
@@ -313,4 +277,9 @@ def _check_runnable(path: Path, description: Any) -> None:
     if kind is None:
         raise LoomfmuError(
             f"{path}: not a co-simulation FMU; only FMI 2.0 and 3.0 co-simulation is supported"
+        )
+    if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", kind.modelIdentifier or ""):
+        raise LoomfmuError(
+            f"{path}: modelIdentifier = {shown(kind.modelIdentifier)} is not a C identifier;"
+            " it must name a library of the FMU by letters, digits and _, and no digit first"
         )

@@ -124,7 +124,7 @@ class IsolatedSlave(Slave):
         fmu = self.fmu
         facts = {
             name: getattr(fmu, name)
-            for name in ("ports", "fmi", "ours", "needs_tool", "path", "directory", "guid", "identifier")
+            for name in ("ports", "fmi", "trusted", "needs_tool", "path", "directory", "guid", "identifier")
         }
         self.forget_messages()
         self._forget_calls()
@@ -209,7 +209,7 @@ class IsolatedSlave(Slave):
         What a third-party FMU has done to its process, nobody knows: its next run gets a new one.
         """
         try:
-            return bool(self._ask("terminate")) and self.fmu.ours
+            return bool(self._ask("terminate")) and self.fmu.trusted
         except LoomfmuError:
             return False
 

@@ -40,7 +40,7 @@ def opened(fmu: "Fmu", name: str) -> Slave:
         from .fmi3_slave import Fmi3Slave
 
         return Fmi3Slave(fmu, name)
-    if not fmu.ours:
+    if not fmu.trusted:
         from .foreign_slave import ForeignSlave
 
         return ForeignSlave(fmu, name)

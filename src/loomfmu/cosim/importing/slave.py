@@ -260,7 +260,7 @@ class Slave(Logged):
 
     def _note(self, status: int) -> None:
         """After a fatal status nothing more may be called. Our own live FMUs know no other and outlive it."""
-        self.fatal = self.fatal or (status == FATAL and not self.fmu.ours)
+        self.fatal = self.fatal or (status == FATAL and not self.fmu.trusted)
 
     def rest(self) -> bool:
         """Terminate and reset for another run; whether it can be used again."""

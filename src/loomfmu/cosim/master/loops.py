@@ -150,7 +150,7 @@ def iteration(
     wires = ", ".join(str(wire) for wire in lagged)
     loop = Loop(flat, len(before), len(before) + len(looped), wires, slots)
     # an FMU of ours never ends a run by itself, which would have to be seen through all exchanges of a step
-    simple = all(action.slave.fmu.ours for action in flat)
+    simple = all(action.slave.fmu.trusted for action in flat)
     library = compiled_library(flat, compiled) if simple or compiled else None
     if library:
         return CompiledIteration(library, loop, memory, time, size)

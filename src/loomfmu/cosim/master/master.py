@@ -79,7 +79,7 @@ class Master:
         self._signals = Signals(scene, self.order, fetched, dict(shafts or {}))
         self.slots = self._signals.slots
         self.slaves: dict[str, Slave] = {}
-        self._ours = all(instance.fmu.ours for instance in scene.instances.values())
+        self._ours = all(instance.fmu.trusted for instance in scene.instances.values())
         self.interrupted = ctypes.c_int32(0)
         self._compiled = compiled
         self.steps = 0
@@ -110,7 +110,7 @@ class Master:
             self._guards.enter_context(exit_named(inside))
             for name in self.order:
                 limits, fmu = None if name in inside else self._limits, scene.instances[name].fmu
-                with NOTHING if fmu.ours else directory_kept():
+                with NOTHING if fmu.trusted else directory_kept():
                     self.slaves[name] = borrow(fmu, name, limits)
         except BaseException as error:
             self.__exit__(type(error))

@@ -52,7 +52,7 @@ class Start:
 
         FMUs whose outputs may change as they leave go first: third-party ones.
         """
-        third_party_first = sorted(names, key=lambda name: self.slaves[name].fmu.ours)
+        third_party_first = sorted(names, key=lambda name: self.slaves[name].fmu.trusted)
         within = [wire for wire in self.wires if wire.sink[0] in names and wire.source[0] in names]
         leaving, _ = step_order(third_party_first, within)
         handed: dict[Wire, float] = {}

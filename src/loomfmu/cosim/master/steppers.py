@@ -189,7 +189,7 @@ class CompiledStepper:
         size: ctypes.c_double, loop: int | None = None,
     ):  # fmt: skip
         # Python's lock is kept, unless a third-party FMU may have threads that log
-        ours = all(action.slave.fmu.ours for action in actions)
+        ours = all(action.slave.fmu.trusted for action in actions)
         self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
         self._advance.restype = ctypes.c_int64
         self._actions = actions

@@ -50,7 +50,7 @@ def prune(scene: Scene, signals: Iterable[str], keep_shafts: bool = False) -> Pr
     shafts = {name: _constant(each) for name, each in turning if _is_constant(scene, name)}
     wires = [wire for wire in scene.wires if wire.source[0] not in shafts]
     requested = {signal.split(".")[0] for signal in signals} - set(shafts)
-    third_party = {name for name, each in scene.instances.items() if not each.fmu.ours}
+    third_party = {name for name, each in scene.instances.items() if not each.fmu.trusted}
     needed = upstream(requested | third_party, sources_of((w.source[0], w.sink[0]) for w in wires))
     wires = [wire for wire in wires if wire.sink[0] in needed]
     like = {wire.sink[0]: wire.source[0] for wire in scene.wires if wire.source[0] in shafts}
@@ -140,7 +140,7 @@ def _follows(scene: Scene, name: str, shaft: str) -> bool:
     wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}
     from_shaft = {sink: source for sink, source in taken.items() if source[0] == shaft}
     fmu = follower.fmu
-    return fmu.ours and follows(fmu.component, follower.values) and from_shaft == wanted
+    return fmu.trusted and follows(fmu.component, follower.values) and from_shaft == wanted
 
 
 def _constant(shaft: Instance) -> ConstantShaft:

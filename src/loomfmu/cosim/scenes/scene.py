@@ -74,7 +74,7 @@ class Scene:
         """Whether an instance runs in a process of its own."""
         instance = self.instances[name]
         stated = self.isolated if instance.isolated is None else instance.isolated
-        return AVAILABLE and not instance.fmu.ours if stated is None else stated
+        return AVAILABLE and not instance.fmu.trusted if stated is None else stated
 
     @property
     def unprotected(self) -> list[str]:

@@ -37,7 +37,7 @@ def coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list
     """How loops are closed: with an accuracy they are iterated, since a delay costs far more steps."""
     if ACCURACY in tables and "coupling" not in tables:
         _order, lagged = step_order(instances, wires)
-        if lagged and all(each.fmu.ours for each in instances.values()):
+        if lagged and all(each.fmu.trusted for each in instances.values()):
             return ITERATED
     return choice(tables, "coupling", COUPLINGS)
 
