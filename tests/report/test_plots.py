@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import matplotlib
 import numpy as np
 import pytest
 from browser import NARROW, until
@@ -208,6 +209,17 @@ def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
         ElementTree.fromstring(first)
     assert main(arguments) == 0  # ours is replaced
     assert output.read_bytes()[:4] == first[:4]
+
+
+@pytest.mark.parametrize(("command", "signals"), [("plot", ["belt.margin"]), ("diagram", [])])
+def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: list[str]) -> None:
+    pictures = []
+    for name, settings in (("plain", {}), ("styled", {"text.usetex": True, "axes.facecolor": "red"})):
+        target = copied.with_name(f"{name}.png")
+        with matplotlib.rc_context(settings):
+            assert main([command, str(copied), *signals, "--output", str(target)]) == 0
+        pictures.append(target.read_bytes())
+    assert pictures[0] == pictures[1]
 
 
 def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:

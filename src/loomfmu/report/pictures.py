@@ -43,11 +43,9 @@ def save(figure: Any, path: Path, title: str, inputs: Iterable[Path] = (), overw
 
 def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
-    from matplotlib import rc_context
-
     drawn = BytesIO()
     dateless = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}[suffix]
-    with rc_context({"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
+    with plotting.fixed_style(**{"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
         figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **dateless})
     return drawn.getvalue()
 
@@ -93,6 +91,7 @@ def _named(trace: Trace, name: str) -> list[str]:
     return [each for each in trace if fnmatchcase(each, name)] or [name]
 
 
+@plotting.fixed_style()
 def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bool, title: str) -> Any:
     panels: dict[str, list[str]] = {}
     for name in signals:

@@ -102,6 +102,18 @@ def triangle(x: float, top: float, bottom: float, upright: bool) -> Sequence[Poi
     return [(x, tip), (x + 6.0, base), (x - 6.0, base)]
 
 
+@plotting.fixed_style()
+def _figure(drawing: Drawing, size: tuple[float, float]) -> Any:
+    """A drawing as a figure of matplotlib. Raises LoomfmuError if that is not installed."""
+    figure = plotting.figure((size[0] / 100.0, size[1] / 100.0), layout=None)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0.0, size[0]), ylim=(size[1], 0.0))
+    axes.axis("off")
+    for order, each in enumerate(drawing):
+        _plot(axes, each, order)
+    return figure
+
+
 def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -> bytes:
     """A drawing as the content of a file of its own: `.svg`, `.png` or `.pdf`.
 
@@ -109,13 +121,7 @@ def file(drawing: Drawing, size: tuple[float, float], suffix: str, title: str) -
     """
     if suffix == ".svg":
         return _svg_file(drawing, size, title).encode()
-    figure = plotting.figure((size[0] / 100.0, size[1] / 100.0), layout=None)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set(xlim=(0.0, size[0]), ylim=(size[1], 0.0))
-    axes.axis("off")
-    for order, each in enumerate(drawing):
-        _plot(axes, each, order)
-    return content(figure, suffix, title)
+    return content(_figure(drawing, size), suffix, title)
 
 
 def _plot(axes: Any, each: Shape | Text, order: int) -> None:

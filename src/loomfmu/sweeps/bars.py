@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..traces.plotting import COLOURS, figure
+from ..traces.plotting import COLOURS, figure, fixed_style
 from .sensitivity import INDICES, WORDS, Influences
 
 WIDTH, LINE, REST = 8.0, 0.27, 0.9  # [in]
@@ -13,6 +13,7 @@ LONGEST = 48  # letters of a line of a title
 ACROSS = 2  # panels
 
 
+@fixed_style()
 def draw(found: Influences) -> Any:
     """A figure of matplotlib with a panel for each output that has indices."""
     shown = [each for each in found.outputs if each.indices]

@@ -5,7 +5,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..files import PICTURE, write_file
+from ..traces.plotting import fixed_style
 from .axes import Axis
 from .plan import SweepPlan
 from .ranking import distance
@@ -79,7 +79,7 @@ def draw(plan: SweepPlan, table: Any, path: Path) -> Path | None:
     x = _scale(plan, table, request.x, chosen)
     y = _scale(plan, table, request.y, chosen) if request.y is not None else None
     drawn = [axis for axis in plan.axes if axis.key in (request.x, request.y)]
-    with matplotlib.rc_context(STYLE):
+    with fixed_style(**STYLE):
         if any(axis.sampled for axis in drawn):
             picture.scatter(x, y)
         elif y is not None:

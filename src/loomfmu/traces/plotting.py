@@ -1,6 +1,7 @@
 """Signals drawn by matplotlib over shaft angle or time, in the units that people read."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -33,11 +34,28 @@ def plot(trace: Signals, signals: Sequence[str], over: str | None, fold: bool, a
 
 
 def check() -> None:
-    """Raises LoomfmuError if matplotlib is not installed."""
+    """Raises LoomfmuError if matplotlib is not installed, or fails over a matplotlibrc."""
     try:
         import matplotlib.figure  # noqa: F401
     except ImportError:
         raise LoomfmuError('a picture needs the extra "plot": pip install "loomfmu[plot]"') from None
+    except UnicodeDecodeError:
+        raise LoomfmuError("a matplotlibrc that matplotlib reads is not text in UTF-8; delete it") from None
+
+
+@contextmanager
+def fixed_style(**settings: Any) -> Iterator[None]:
+    """Draw with matplotlib's own defaults and these settings, whatever a matplotlibrc says.
+
+    Raises LoomfmuError if matplotlib is not installed.
+    """
+    check()
+    from matplotlib import rc_context, rcdefaults, rcParams
+
+    with rc_context():
+        rcdefaults()
+        rcParams.update(settings)
+        yield
 
 
 def figure(size: tuple[float, float], shown: bool = False, layout: Any = "constrained") -> Any:

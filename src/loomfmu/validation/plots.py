@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..files import PICTURE, check_target, write_file
+from ..traces.plotting import fixed_style
 from . import plots_dobby, plots_others, plots_weft
 from .plot_style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, STYLE, Draw
 
@@ -25,14 +26,13 @@ def figures() -> dict[str, tuple[float, Draw]]:
 
 def write(directory: Path, overwrite: bool = False) -> list[Path]:
     """Draw all figures into a directory; `overwrite` replaces files that are not pictures."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     for name in figures():
         check_target(directory / name, PICTURE, overwrite=overwrite)
     paths = []
     for name, (height, draw) in figures().items():
-        with matplotlib.rc_context(STYLE):
+        with fixed_style(**STYLE):
             figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
             draw(figure)
             paths.append(directory / name)

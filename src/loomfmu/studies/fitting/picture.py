@@ -4,13 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from ...traces.plotting import COLOURS, degrees, figure
+from ...traces.plotting import COLOURS, degrees, figure, fixed_style
 from .curves import Compared
 from .fit import Fit
 
 WIDTH, PANEL, REST = 8.0, 3.4, 0.6  # [in]
 
 
+@fixed_style()
 def draw(found: Fit) -> Any:
     """A figure of matplotlib. Raises LoomfmuError if that is not installed."""
     drawn = figure((WIDTH, PANEL * len(found.curves) + REST))

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...traces.plotting import COLOURS, DASHES, figure
+from ...traces.plotting import COLOURS, DASHES, figure, fixed_style
 from ..span import Span
 from .results import Boundary, ClaimLimits, Limits
 
@@ -13,6 +13,7 @@ FARTHEST = 1.5  # times the bound: distances beyond that are cut off, so that al
 HOLDS = "#dcefe3"
 
 
+@fixed_style()
 def draw(found: Limits | Boundary) -> Any:
     """A figure of matplotlib. Raises LoomfmuError if that is not installed."""
     drawn = figure(SIZE)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
-from ...traces.plotting import COLOURS, figure
+from ...traces.plotting import COLOURS, figure, fixed_style
 from .optimum import Optimum
 from .runs import Design, Floats
 from .study import Goal
@@ -15,6 +15,7 @@ PANEL, HEIGHT, MOST = 3.0, 3.4, 4  # [in], panels in a row
 GREY = "#c4c4c4"
 
 
+@fixed_style()
 def draw(found: Optimum, designs: Sequence[Design]) -> Any:
     """A figure of matplotlib: the goal over each range, or two goals over one another."""
     study = found.study

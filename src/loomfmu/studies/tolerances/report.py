@@ -4,7 +4,7 @@ from typing import Any
 
 from ... import printed
 from ...printed import say
-from ...traces.plotting import COLOURS, figure
+from ...traces.plotting import COLOURS, figure, fixed_style
 from .tolerances import HEADINGS, Tolerances, rows
 
 WIDTH, LINE, REST = 8.0, 0.42, 1.4  # [in]
@@ -23,6 +23,7 @@ def show(found: Tolerances) -> None:
     say(f"{found.runs} runs; this is a search, not a proof, so worse cases may exist")
 
 
+@fixed_style()
 def draw(found: Tolerances) -> Any:
     """A picture: of each claim the distance in the scene and in the worst case, as a share of the bound.
 
