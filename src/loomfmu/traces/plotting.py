@@ -50,12 +50,13 @@ def fixed_style(**settings: Any) -> Iterator[None]:
     Raises LoomfmuError if matplotlib is not installed.
     """
     check()
-    from matplotlib import rc_context, rcdefaults, rcParams
+    from matplotlib import rc_context, rcdefaults
 
+    chosen: Any = settings
     with rc_context():
         rcdefaults()
-        rcParams.update(settings)
-        yield
+        with rc_context(chosen):
+            yield
 
 
 def figure(size: tuple[float, float], shown: bool = False, layout: Any = "constrained") -> Any:

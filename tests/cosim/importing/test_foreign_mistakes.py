@@ -24,8 +24,8 @@ FILES = {
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
 }
 NO_IDENTIFIER = (
-    "modelIdentifier = {!r} is not a C identifier; it must name a library of the FMU by letters, digits and _,"
-    " and no digit first"
+    "modelIdentifier = {!r} is not a C identifier; it must name a library of the FMU by letters, digits and"
+    " _, and no digit first"
 )
 FILES |= {
     NO_IDENTIFIER.format(name): description2().replace('modelIdentifier="Motor"', f'modelIdentifier="{name}"')
