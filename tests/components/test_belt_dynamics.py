@@ -1,7 +1,9 @@
 """BeltDynamics: against closed forms, the elastica, and finite elements in space."""
 
 import math
+import tomllib
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,8 @@ from loomfmu.components.belt_dynamics import BeltDynamics
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.physics.belt import LARGEST_BEND, critical_force, elastica_deflection
 from loomfmu.physics.belt_end_forces import end_forces
+from loomfmu.units import parse as parse_quantity
+from loomfmu.validation import belt_motion
 
 LENGTH = 0.1737  # of the default travel
 BELT, SPAN = 1, 2
@@ -161,6 +165,20 @@ def test_against_finite_elements_in_space(belt_in_c, bow_of, elements, everywher
     assert np.abs(found - expected).max() <= everywhere * np.abs(expected).max()
     assert np.abs(found).max(axis=0) == pytest.approx(np.abs(expected).max(axis=0), rel=farthest)
     assert np.abs(expected).max() > 5.0 * np.abs(found[:, 0]).max()
+
+
+def test_the_belt_has_the_published_section(belt_in_c):
+    width, thickness = 30e-3, 1.35e-3  # Zhu and Zhou, the belt on its wheel, section 2
+    sweep = tomllib.loads((Path(__file__).parents[2] / "sims" / "sweeps" / "belt_motion.toml").read_text())
+    swept = [parse_quantity(mass, "kg/m") for mass in sweep["grid"]["belt_motion.belt_mass"]]
+    for mass in (BeltDynamics().belt_mass, *swept, *belt_motion.MASSES):
+        # at 1500 to 1600 kg/m3, with about a third of it punched out at most
+        assert 0.65 * 1500.0 <= mass / (width * thickness) <= 1.005 * 1600.0
+    belt = belt_in_c(bow_of=SPAN)
+    belt.initialize(0.0)
+    curvature = 0.3e-3 * (pi / LENGTH) ** 2
+    # the free length of the default travel is rounded to 0.2 %
+    assert belt.bending_strain == pytest.approx(0.5 * thickness * curvature, rel=5e-3)
 
 
 def test_a_belt_at_rest_without_load_has_its_bow_over_the_chord(belt_in_c):

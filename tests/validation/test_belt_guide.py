@@ -9,8 +9,10 @@ from loomfmu.validation.belt_guide import (
     CLAMPED,
     PLACES,
     deflection,
+    guide_for,
     length_factor,
     length_factor_in_motion,
+    measured,
 )
 
 
@@ -50,3 +52,31 @@ def test_it_grows_with_the_clearance():
 def test_a_belt_in_motion_has_the_factor_of_statics_under_a_slow_load(case):
     # 2 mm of 414 mm: slopes of 1 % change loads by 1e-4, and the factor by half of it
     assert length_factor_in_motion(*case) == pytest.approx(length_factor(*case), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("clearance", "length", "range_"),
+    [  # (8) with the load of Table 2 half a newton up and down
+        ("0.30", "414", (0.800, 0.818)),
+        ("0.30", "665", (0.766, 0.810)),
+        ("0.50", "414", (0.882, 0.907)),
+        ("0.50", "665", (0.863, 0.926)),
+    ],
+)
+def test_what_was_measured(clearance, length, range_):
+    assert measured(clearance, length) == pytest.approx(range_, abs=5e-4)  # digits of the table
+
+
+def test_no_guide_fits():
+    def guides(clearance, length):
+        low, high = measured(clearance, length)
+        return tuple(guide_for(mu, 1e-3 * float(clearance), 1e-3 * float(length)) for mu in (high, low))
+
+    for clearance in ("0.30", "0.50"):  # the shortest and the longest belt require different guides
+        assert guides(clearance, "414")[1] < guides(clearance, "665")[0]
+    found = [guides(clearance, "414") for clearance in ("0.30", "0.50", "0.75")]  # and so do these clearances
+    assert found[0][1] < found[1][0] and found[1][1] < found[2][0]
+    shortest, longest = found[1]
+    for guide in (shortest, longest):
+        low, high = measured("0.50", "414")
+        assert low - 1e-9 < length_factor(0.5e-3, guide, 0.414) < high + 1e-9

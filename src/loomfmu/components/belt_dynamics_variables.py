@@ -74,7 +74,8 @@ class BeltDynamicsVariables(Component):
         source="belt_#.taker",
     )  # fmt: skip
     belt_mass: float = parameter(
-        "kg/m", 0.05, "Mass of the belt per length (assumed: none published; 0.02 to 0.1)",
+        "kg/m", 0.05, "Mass of the belt per length (assumed: the published section is 0.061 to 0.065 if solid,"
+        " less a fifth for its holes; 0.04 to 0.065)",
         minimum=1e-5, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     damping: float = parameter(
@@ -94,7 +95,7 @@ class BeltDynamicsVariables(Component):
         nominal=0.1,
     )  # fmt: skip
     thickness: float = parameter(
-        "m", 2.5e-3, "Thickness of the belt, for its strain (assumed: none published)", display="mm",
+        "m", 1.35e-3, "Thickness of the belt, for its strain (published: 30 mm x 1.35 mm)", display="mm",
         minimum=1e-6, maximum=0.1, nominal=1e-3,
     )  # fmt: skip
     allowed_deflection: float = parameter(
@@ -170,7 +171,10 @@ class BeltDynamicsVariables(Component):
         nominal=100.0, valid_if=KNOWN,
     )  # fmt: skip
     bending_strain: float = output(
-        "1", "Largest strain by bending, on the surface of the belt", nominal=1e-3, valid_if=KNOWN
+        "1",
+        "Largest strain on the surface of the belt by its curvature, that of the bow included",
+        nominal=1e-3,
+        valid_if=KNOWN,
     )
     guide_contact: int = output(
         "1", "Side of its guide on which the belt leans, 1 or -1; 0 while it turns freely", start=0,

@@ -91,11 +91,11 @@ class WeftInsertion(ShaftDriven):
         minimum=0.0, maximum=100.0, nominal=0.1,
     )  # fmt: skip
     wheel_inertia: float = parameter(
-        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published; typically 0.03 kg.m2)",
+        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published; 0 leaves it out)",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
     belt_mass: float = parameter(
-        "kg/m", 0.0, "Mass of the belt per length (none published; typically 0.06 kg/m)",
+        "kg/m", 0.0, "Mass of the belt per length (0 leaves it out; BeltDynamics assumes 0.05 kg/m)",
         minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     belt_length: float = parameter(
