@@ -9,14 +9,16 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
+from write_fmu_pages import with_list
 
 from loomfmu import arguments as cli_arguments
 from loomfmu import cli
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.claims import KINDS
 from loomfmu.cosim.scenes import scene
+from loomfmu.fmi.builder import folder
 from loomfmu.sweeps import plan
-from loomfmu.variables import variables_of
+from loomfmu.variables import MIXED, OWN, PUBLISHED, variables_of
 
 HOUSE = Path(__file__).parents[1]
 README = HOUSE / "README.md"
@@ -178,9 +180,24 @@ def test_the_docs_can_be_followed(
             exec(text, shown)
 
 
-def test_the_table_of_fmus_names_all_components() -> None:
-    table = (Path(__file__).parents[1] / "fmus" / "README.md").read_text()
-    assert re.findall(r"^\| `(\w+)` \|", table, re.M) == list(COMPONENTS)
+def test_the_list_of_fmus_is_up_to_date() -> None:
+    page = (HOUSE / "fmus" / "README.md").read_text()
+    assert re.findall(r"^\| `(\w+)` \|", page, re.M) == list(COMPONENTS)
+    assert with_list(page) == page, "run `make docs`"
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_a_page_claims_the_equations_that_its_component_declares(name: str) -> None:
+    """Each line of equations with a number ends with its number in the source, or with "own"."""
+    component = COMPONENTS[name]
+    page = (folder(component) / "README.md").read_text()
+    body = page.split("## Equations")[1].split("\n## ")[0]
+    numbered = re.findall(r"^\(\w+\) .*$", "".join(re.findall(r"^```\n(.*?)^```$", body, re.S | re.M)), re.M)
+    own = [line for line in numbered if re.search(r"\bown$", line)]
+    if re.search(r"\bAll (?:equations )?are our own\b", " ".join(body.split())) or own == numbered:
+        assert component.origin == OWN
+    else:
+        assert component.origin == (MIXED if own else PUBLISHED)
 
 
 SOURCES = HOUSE / "docs" / "sources.md"

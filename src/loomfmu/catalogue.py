@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from .components import COMPONENTS
 from .errors import LoomfmuError, listed, suggestion
-from .fmi.description.documentation import limits_text, start_text
+from .fmi.description.documentation import accuracy_text, limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .own import load
 from .variables import Component, Variable, variables_of
@@ -121,6 +121,8 @@ def _summary(component: type[Component]) -> str:
 
 def _variables(name: str, component: type[Component], width: int) -> Iterator[str]:
     yield f"{name}: {_summary(component)}"
+    yield f"equations: {component.origin}"
+    yield from textwrap.wrap(f"accuracy for given inputs: {accuracy_text(component)}", width)
     variables = variables_of(component)
     for causality, heading in HEADINGS.items():
         chosen = [variable for variable in variables if variable.causality == causality]

@@ -156,6 +156,9 @@ TIME = "time"  # in the place of an input that an output depends on
 SHARED = (TIME, "shaft_angle")  # what all recorded signals lie along: none of them has such a name
 NOTHING, EXTREMES, MOTION = "nothing", "extremes", "motion"
 
+# Whose equations a component has: those of a published source, some of them, or none
+PUBLISHED, MIXED, OWN = "published", "published, with own parts", "own"
+
 
 @dataclass(frozen=True)
 class Terminal:
@@ -197,8 +200,12 @@ class Component:
 
     problems: ClassVar[tuple[Problem, ...]] = ()
     terminals: ClassVar[tuple[Terminal, ...]] = ()
+    # whose equations it has
+    origin: ClassVar[str] = OWN
     # what it carries from step to step; by default everything, so that every step counts
     keeps: ClassVar[str] = MOTION
+    # how accurate its outputs are for given inputs, if it keeps a motion; they are exact to rounding if not
+    accuracy: ClassVar[str] = ""
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()
     # the longest turn of the shaft [rad] whose ends show how its outputs change: inf for what is as smooth as

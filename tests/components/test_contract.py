@@ -22,7 +22,7 @@ from loomfmu import units
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import standard_loom
 from loomfmu.errors import numbered
-from loomfmu.variables import EXTREMES, MOTION, NOTHING
+from loomfmu.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 every_flag = pytest.mark.parametrize(
@@ -54,6 +54,8 @@ def test_what_is_said_of_variables_names_variables(component):
     assert set(held) | set(held.values()) | set(component.windows) <= outputs
     assert component.keeps in (NOTHING, EXTREMES, MOTION)
     assert held or component.keeps != EXTREMES  # an integrator may hold extremes as well
+    assert component.origin in (PUBLISHED, MIXED, OWN)
+    assert bool(component.accuracy) == (component.keeps == MOTION)  # the others are exact: a test below
     assert not held or component.keeps != NOTHING
     assert component.keeps == MOTION or not any(v.carried for v in declared(component))
     assert set(component.unsteady) <= {v.name for v in declared(component) if v.causality == "parameter"}

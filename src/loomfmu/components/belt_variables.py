@@ -5,7 +5,7 @@ from math import inf
 from typing import ClassVar
 
 from ..declarations import auxiliary, input_, output, parameter
-from ..variables import EXTREMES, Problem, Terminal
+from ..variables import EXTREMES, MIXED, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
@@ -23,6 +23,7 @@ class BeltVariables(ShaftDriven):
         TOO_FAR,
     )
     keeps: ClassVar[str] = EXTREMES
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     windows: ClassVar[tuple[str, ...]] = ("free_length", "axial_force")
     terminals: ClassVar[tuple[Terminal, ...]] = (

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..declarations import input_, output, parameter
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
-from ..variables import NOTHING, Component
+from ..variables import NOTHING, PUBLISHED, Component
 
 
 @dataclass(slots=True)
@@ -14,6 +14,7 @@ class BeltWrap(Component):
     """Belt wrapped on the rapier wheel: load of the blocks that press it there."""
 
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = PUBLISHED
     longest_turn: ClassVar[float] = inf
 
     bending_stiffness: float = parameter(

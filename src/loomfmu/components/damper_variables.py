@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..declarations import at_step_end, input_, output, parameter, state
-from ..variables import Problem, Terminal
+from ..variables import MIXED, Problem, Terminal
 from .terminals import CARRIER, FRAME
 from .threads import Threads
 
@@ -28,6 +28,8 @@ class DamperVariables(Threads):
         FRAME.of("lift", "velocity", "acceleration"),
         CARRIER.of("carrier_lift", "carrier_velocity", "carrier_acceleration"),
     )
+    origin: ClassVar[str] = MIXED
+    accuracy: ClassVar[str] = "sixth order in the step; second where threads turn slack, or with warp_force"
 
     thread_count: int = parameter(
         "1", 0, "Number of threads that the carrier lifts; 0 for no warp", minimum=0, maximum=1000000,

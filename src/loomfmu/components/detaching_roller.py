@@ -15,7 +15,7 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem
+from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")
@@ -31,6 +31,7 @@ class DetachingRoller(ShaftDriven):
     """
 
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(

@@ -8,7 +8,7 @@ from ..arrays import array
 from ..declarations import at_step_end, indicator, input_, output, parameter
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import NOTHING, Component, Problem, Terminal
+from ..variables import MIXED, NOTHING, Component, Problem, Terminal
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
 
@@ -32,6 +32,7 @@ class HealdFrame(Component):
         Problem("sprung_mass = {sprung_mass} is part of frame_mass = {frame_mass} and cannot be more"),
     )
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(

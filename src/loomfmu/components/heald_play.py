@@ -29,6 +29,7 @@ class HealdPlay(Component):
         ),
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
+    accuracy: ClassVar[str] = "second order in the step, by the pull of the thread between samples"
 
     play: float = parameter(
         "m", 0.002, "Play of the heald's loops on the bars, from end to end (assumed: none published)",

@@ -16,7 +16,7 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem
+from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -29,6 +29,7 @@ class PatternLock(ShaftDriven):
     """
 
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (TOO_FAR,)
 

@@ -16,7 +16,7 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem
+from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 
@@ -25,6 +25,7 @@ class ReedBeatUp(ShaftDriven):
     """Reed beat-up: a crank-rocker, a rod and a reed on a line; one beat-up in a revolution."""
 
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     problems: ClassVar[tuple[Problem, ...]] = (
         Problem(

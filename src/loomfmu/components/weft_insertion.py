@@ -7,7 +7,7 @@ from typing import ClassVar
 from ..declarations import auxiliary, output, parameter
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
-from ..variables import NOTHING, Problem, Terminal
+from ..variables import MIXED, NOTHING, Problem, Terminal
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
@@ -37,6 +37,7 @@ class WeftInsertion(ShaftDriven):
         ),
     )
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *ShaftDriven.terminals,

@@ -27,6 +27,9 @@ class WeftVariables(ShaftDriven):
         *ShaftDriven.terminals,
         HEAD.of("travel", "velocity", "acceleration"),
     )
+    accuracy: ClassVar[str] = (
+        "exact at samples while the brake yields, fourth order in the step while it holds"
+    )
 
     linear_density: float = parameter(
         "kg/m", 30e-6, "Linear density of the yarn", display="tex", minimum=0.0, maximum=1.0, nominal=1e-5

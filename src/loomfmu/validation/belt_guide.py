@@ -80,7 +80,7 @@ def length_factor_in_motion(clearance: float, guide: float, length: float) -> fl
 
 
 def measured(clearance: str, length: str) -> tuple[float, float]:
-    """Lowest and highest length factor of a load of Table 2, which is rounded to 1 N; both as printed, in mm."""
+    """Lowest and highest length factor of a load of Table 2, printed in whole newtons; arguments in mm."""
     row = next(row for row in table("belt_buckling_experiment") if row["free_length_mm"] == length)
     load, stiffness = float(row[f"c_{clearance}"]), BeltDynamics().bending_stiffness
     low, high = (
@@ -136,17 +136,17 @@ def section() -> Section:
         tuple(rows),
         intro="The belt lies across the clearance of a stiff guide: up to a slope of clearance over length of"
         " the guide it turns freely, then not at all. It counts as buckled where it is deflected by"
-        f" {number(1e3 * ALLOWED, 0)} mm, which section 4.2 of the source allows. Head pinned. Published: Table"
-        " 3. Measured: by (8) from the loads of Table 2, which are rounded to 1 N. The length of the guide is"
-        " not published; nothing is chosen to fit.",
+        f" {number(1e3 * ALLOWED, 0)} mm, which section 4.2 of the source allows. Head pinned. Published:"
+        " Table 3. Measured: by (8) from the loads of Table 2, which are rounded to 1 N. The length of the"
+        " guide is not published; nothing is chosen to fit.",
         remarks=(
             "Without clearance the belt is clamped in the guide, which gives"
             f" {number(math.pi / CLAMPED, 3)} for 0.70; with enough of it the belt buckles before it leans on"
             " both walls, as if it were pinned, which gives 1. Neither tests the length of the guide.",
             "In between no length of the guide fits. At 0.30 and 0.50 mm the shortest and the longest belt"
-            " require guides of different lengths, and so does the shortest belt at 0.30, 0.50 and 0.75 mm: the"
-            " computed factor grows with the length of the belt, the measured one does not. So a stiff guide with"
-            " free play does not explain the published factors.",
+            " require guides of different lengths, and so does the shortest belt at 0.30, 0.50 and 0.75 mm:"
+            " the computed factor grows with the length of the belt, the measured one does not. So a stiff"
+            " guide with free play does not explain the published factors.",
         ),
     )  # fmt: skip
 

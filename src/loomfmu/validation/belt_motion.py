@@ -213,8 +213,8 @@ def bands() -> Section:
         ),
         tuple(rows),
         intro="Deflection in mm as above, at the corners of the assumed ranges: a bow of 0.05 to 0.5 mm, and"
-        f" {MASSES[0]} to {MASSES[1]} kg/m. The published section of 30 x 1.35 mm, 1500 to 1600 kg/m3, has 0.061"
-        " to 0.065 kg/m if it is solid; its holes are not published, and the lower end leaves them a third."
+        f" {MASSES[0]} to {MASSES[1]} kg/m. The published section of 30 x 1.35 mm, 1500 to 1600 kg/m3, has"
+        " 0.061 to 0.065 kg/m if it is solid; its holes are not published, the lower end leaves them a third."
         f" {number(ALLOWED, 0)} mm are allowed, as in the source. A fifth below its limit the"
         " criterion misses the corners that exceed that; a fifth above it, it is cautious where they do not.",
         remarks=(

@@ -139,7 +139,7 @@ def weft() -> Section:
         remarks=(
             "The sources publish neither the belt's mass per length nor the wheel's inertia. These are"
             " assumptions: the belt of `BeltDynamics`, and a wheel with most of 0.8 kg at its rim.",
-            "With these, the energy that goes to and fro between shaft and weft drive in every pick is nearly as"
-            " large as that of a shaft of 2 kg m2 (the default of `DrivenShaft`) at 600 rev/min, 3948 J.",
+            "With these, the energy that goes to and fro between shaft and weft drive in every pick is nearly"
+            " as large as that of a shaft of 2 kg m2 (the default of `DrivenShaft`) at 600 rev/min, 3948 J.",
         ),
     )

@@ -19,7 +19,7 @@ from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
 from ...physics.shaft import too_far
-from ...variables import NOTHING, Terminal
+from ...variables import MIXED, NOTHING, Terminal
 from ..terminals import ROTOR
 from .laws import RotorLaws
 
@@ -33,6 +33,7 @@ class DobbyDrive(RotorLaws):
     """
 
     keeps: ClassVar[str] = NOTHING
+    origin: ClassVar[str] = MIXED
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *RotorLaws.terminals,
