@@ -88,6 +88,17 @@ def fit(commands: Any) -> None:
         "--signal", action="append", default=[], metavar="SIGNAL",
         help="what is fitted of the data (repeatable); all columns of a table by default",
     )  # fmt: skip
+    fit.add_argument(
+        "--offset",
+        metavar="LOW..HIGH",
+        help="also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
+    )
+    fit.add_argument(
+        "--loss",
+        metavar="LOSS",
+        default="linear",
+        help="soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
+    )
     add_set(fit)
     fit.add_argument("--output", metavar="FILE.toml", help="also write the scene with the fitted values")
     fit.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw measured and computed curves")

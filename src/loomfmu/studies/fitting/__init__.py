@@ -1,4 +1,5 @@
-"""Fits: `measured` reads curves, `curves` holds a run against them, `fit` finds the parameters.
+"""Fits: `measured` reads curves, `curves` holds a run against them, `offset` shifts them, `search` finds the
+parameters under one of the `losses`, `intervals` says how sure they are, by `independence` of what remains.
 
-`report`, `picture` and `command` show what was found.
+`fit` is the public face; `report`, `picture` and `command` show what was found.
 """

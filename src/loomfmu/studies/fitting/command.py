@@ -26,7 +26,14 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
         rewritten.check(scene)
     if picture is not None:
         pictures.check(picture, inputs, options.force)
-    found = fit(scene, options.data, vary=options.vary, signals=options.signal)
+    found = fit(
+        scene,
+        options.data,
+        vary=options.vary,
+        signals=options.signal,
+        offset=options.offset,
+        loss=options.loss,
+    )
     if output is not None:
         found.write(output, options.force)
     if picture is not None:

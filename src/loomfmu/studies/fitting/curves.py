@@ -20,7 +20,10 @@ REFINED = 15.0  # a cubic's error at every second sample, less that at all of th
 
 @dataclass(frozen=True)
 class Compared:
-    """A signal (SI) at the places where it was measured, shape (n,): measured and computed."""
+    """A signal (SI) at the places where it was measured, shape (n,): measured and computed.
+
+    `drift` is what the computed one changes by along the places, per rad or per s.
+    """
 
     signal: str
     unit: str
@@ -28,6 +31,7 @@ class Compared:
     along: Floats
     measured: Floats
     computed: Floats
+    drift: Floats
     interpolation: float
 
     @property
@@ -50,54 +54,49 @@ class Compared:
         return f"{self.signal}: interpolation is off by {off} where {rest} remain; take more steps"
 
 
-def compared(data: Measured, run: Signals) -> list[Compared]:
+def compared(data: Measured, run: Signals, offset: float = 0.0) -> list[Compared]:
     """The measured curves beside those of a run, by cubic splines through its samples.
 
-    Raises LoomfmuError where the run does not reach what was measured.
+    The `offset` is added to the places, [rad] or [s]. Raises LoomfmuError where the run does not reach what
+    was measured.
     """
+    from scipy.interpolate import CubicSpline
+
     axis = run.shaft_angle if data.over == "shaft_angle" else run.time
     if data.over == "shaft_angle" and not run.turns:
         raise LoomfmuError(
             f"{data.path}: it is measured over the shaft angle, but no shaft turns in this scene"
         )
-    places = _places(data, axis)
+    places = _places(data, axis, offset)
     found = []
     for signal, values in data.columns.items():
         here = np.isfinite(values)
-        fine = _spline(axis, run[signal], places[here])
-        coarse = _spline(axis[::2], run[signal][::2], places[here]) if len(axis) > 8 else fine
+        curve = CubicSpline(axis, run[signal])
+        fine, drift = curve(places[here]), curve(places[here], 1)
+        coarse = CubicSpline(axis[::2], run[signal][::2])(places[here]) if len(axis) > 8 else fine
         off = float(np.sqrt(np.mean((fine - coarse) ** 2))) / REFINED if here.any() else 0.0
         factor, unit = run.displayed(signal)
-        found.append(Compared(signal, unit, factor, data.along[here], values[here], fine, off))
+        found.append(Compared(signal, unit, factor, data.along[here], values[here], fine, drift, off))
     return found
 
 
-def _spline(axis: Floats, values: Floats, places: Floats) -> Floats:
-    from scipy.interpolate import CubicSpline
-
-    return np.asarray(CubicSpline(axis, values)(places))
-
-
-def _places(data: Measured, axis: Floats) -> Floats:
+def _places(data: Measured, axis: Floats, offset: float) -> Floats:
     """Where the measured places lie on the run's own axis."""
-    low, high = float(np.min(data.along)), float(np.max(data.along))
-    if data.over == "time":
-        return _reached(data, data.along, axis, 1.0, "s")
-    turns = math.floor((axis[-1] - axis[0]) / TURN + ROUNDING)
-    if low >= 0.0 and high <= TURN * (1.0 + ROUNDING) and turns >= 1:
+    places, one, unit = data.along, 1.0, "s"
+    if data.over == "shaft_angle":
+        one, unit = math.radians(1.0), "deg"
+        low, high = float(np.min(places)), float(np.max(places))
         # angles within a revolution: the last one, in which what was at rest at the start has settled
-        before = TURN * math.floor((axis[-1] + ROUNDING * TURN) / TURN - 1.0)
-        return np.asarray(np.clip(before + data.along, axis[0], axis[-1]))
-    return _reached(data, data.along, axis, math.radians(1.0), "deg")
-
-
-def _reached(data: Measured, places: Floats, axis: Floats, factor: float, unit: str) -> Floats:
-    """The places, if the run reaches them."""
+        turns = math.floor((axis[-1] - max(data.shifts[1], 0.0)) / TURN + ROUNDING) - 1
+        if low >= 0.0 and high <= TURN * (1.0 + ROUNDING) and TURN * (turns + ROUNDING) >= axis[0]:
+            places = TURN * turns + places
+    shifted = places + offset
     slack = ROUNDING * max(abs(axis[0]), abs(axis[-1]))
-    if places.min() < axis[0] - slack or places.max() > axis[-1] + slack:
-        measured = f"{places.min() / factor:.6g} to {places.max() / factor:.6g} {unit}"
+    if shifted.min() < axis[0] - slack or shifted.max() > axis[-1] + slack:
+        measured = f"{places.min() / one:.6g} to {places.max() / one:.6g} {unit}"
+        moved = f", with an offset of {offset / one:.6g} {unit}" if offset else ""
         raise LoomfmuError(
-            f"{data.path}: measured from {measured}, but the run goes from {axis[0] / factor:.6g} to"
-            f" {axis[-1] / factor:.6g} {unit}"
+            f"{data.path}: measured from {measured}{moved}, but the run goes from {axis[0] / one:.6g} to"
+            f" {axis[-1] / one:.6g} {unit}"
         )
-    return np.asarray(np.clip(places, axis[0], axis[-1]))
+    return np.asarray(np.clip(shifted, axis[0], axis[-1]))

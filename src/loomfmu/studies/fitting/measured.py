@@ -4,7 +4,8 @@ import csv
 import math
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -30,18 +31,26 @@ Row = tuple[str, list[str]]  # of a file: where it is, and its cells
 class Measured:
     """Measured values (SI) of signals, NaN where one was not measured, over `shaft_angle` or `time`.
 
-    `along` are the places, [rad] or [s], shape (n,); each of the `columns` has the same shape.
+    `along` are the places in their order, [rad] or [s], shape (n,); each of the `columns` has the same shape.
+    `shifts` are the least and the most that an offset may add to the places.
     """
 
     path: Path
     over: str
     along: Floats
     columns: dict[str, Floats]
+    shifts: tuple[float, float] = (0.0, 0.0)
 
     @property
     def count(self) -> int:
         """Number of measured values."""
         return sum(int(np.isfinite(values).sum()) for values in self.columns.values())
+
+    @property
+    def rows(self) -> dict[str, slice]:
+        """The places of each signal where the measured values of all are joined."""
+        ends = np.cumsum([0, *(np.isfinite(values).sum() for values in self.columns.values())]).tolist()
+        return {name: slice(*each) for name, each in zip(self.columns, pairwise(ends), strict=True)}
 
 
 def read(path: str | Path, scene: Scene, signals: Sequence[str] = ()) -> Measured:
@@ -57,7 +66,9 @@ def read(path: str | Path, scene: Scene, signals: Sequence[str] = ()) -> Measure
             raise LoomfmuError(f"{path}: {signal} is not a real number; only curves can be fitted")
     if not found.count:
         raise LoomfmuError(f"{path}: there are no measured values")
-    return found
+    order = np.argsort(found.along, kind="stable")
+    columns = {name: values[order] for name, values in found.columns.items()}
+    return replace(found, along=found.along[order], columns=columns)
 
 
 def _trace(path: Path, signals: Sequence[str]) -> Measured:

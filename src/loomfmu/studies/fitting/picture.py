@@ -31,10 +31,9 @@ def draw(found: Fit) -> Any:
 
 def _curve(above: Any, below: Any, each: Compared, angle: bool) -> None:
     along = np.degrees(each.along) if angle else each.along
-    order = np.argsort(along)
     unit = "" if each.unit == "1" else f" [{each.unit}]"
     above.plot(along, each.measured / each.factor, ".", color=COLOURS[1], markersize=4, label="measured")
-    above.plot(along[order], each.computed[order] / each.factor, color=COLOURS[0], label="computed")
+    above.plot(along, each.computed / each.factor, color=COLOURS[0], label="computed")
     below.plot(along, (each.measured - each.computed) / each.factor, ".", color=COLOURS[1], markersize=4)
     below.axhline(0.0, color=COLOURS[0], linewidth=1.0)
     above.set_ylabel(each.signal + unit)

@@ -1,0 +1,152 @@
+"""The search for the parameters with which a scene comes closest to a measurement."""
+
+import contextlib
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...cosim.prepared import Prepared
+from ...errors import LoomfmuError
+from ..span import Span
+from .curves import Compared, Floats, compared
+from .losses import LEAST_SQUARES, LOSSES
+from .measured import Measured
+
+TRIED = 12  # scattered starts for each parameter: the best of them and the scene's own values are refined
+PROBE = 1e-3  # of the range, to see whether a parameter changes anything
+PRECISE = 1e-13  # relative changes at which the search ends
+ROUNDS = 20  # of weighing columns by what is left of them
+SETTLED = 1e-3  # relative change of weights that ends it
+ROUNDING = 1e-12  # of a signal's spread: data without noise
+MEDIAN = 1.4826  # times the median size of normal errors is their standard deviation
+
+
+class Found(NamedTuple):
+    """Where a search ended: shares of the ranges, shape (p,), which are at a bound, and the curves there.
+
+    `residuals`, computed less measured, are weighed, shape (n,), and so are their `slopes` by the shares,
+    shape (n, p), and by an offset of the places, the `drift`.
+    """
+
+    shares: Floats
+    at_bound: Any
+    residuals: Floats
+    slopes: Floats
+    drift: Floats
+    curves: tuple[Compared, ...]
+
+
+def settings(spans: Sequence[Span], values: Sequence[float]) -> dict[str, Any]:
+    """What sets values in a scene; an offset of the data is none of them."""
+    pairs = zip(spans, values, strict=True)
+    return {
+        key: each for span, value in pairs if span.varied.targets for key, each in span.setting(value).items()
+    }
+
+
+class Search:
+    """A prepared scene against a measurement; parameters are shares of their ranges, 0 to 1."""
+
+    def __init__(self, loom: Prepared, data: Measured, spans: Sequence[Span], loss: str):
+        self._loom, self._data, self._spans = loom, data, spans
+        self._loss, self._name = LOSSES[loss], loss
+        self.runs = 0
+        self._weights = np.array([1.0 / (_spread(values) or 1.0) for values in data.columns.values()])
+
+    def found(self) -> Found:
+        """Search, weighing several signals, and with a robust loss each, by what remains of it."""
+        ended = self._refined(self._starts())
+        weighed = len(self._data.columns) > 1 or self._name != LEAST_SQUARES
+        for _round in range(ROUNDS if weighed else 0):
+            weights = 1.0 / self._noise(ended)
+            settled = np.allclose(weights, self._weights, rtol=SETTLED, atol=0.0)
+            self._weights = weights
+            ended = self._refined([ended.x])
+            if settled:
+                break
+        # slopes that no loss has weighed
+        here = self._least_squares(ended.x, LEAST_SQUARES, max_nfev=1)
+        curves = tuple(self._at(ended.x))
+        drift = np.concatenate(
+            [each.drift * weight for each, weight in zip(curves, self._weights, strict=True)]
+        )
+        return Found(ended.x, ended.active_mask != 0, here.fun, here.jac, drift, curves)
+
+    def _at(self, shares: Floats) -> list[Compared]:
+        """What is measured and what is computed with these parameters."""
+        self.runs += 1
+        values = [span.at(share) for span, share in zip(self._spans, shares.tolist(), strict=True)]
+        offset = sum(
+            value for span, value in zip(self._spans, values, strict=True) if not span.varied.targets
+        )
+        run = self._loom.evaluate(settings(self._spans, values), errors="none")
+        return compared(self._data, run.trace, offset)
+
+    def _residuals(self, shares: Floats) -> Floats:
+        pairs = zip(self._at(shares), self._weights, strict=True)
+        return np.concatenate([(each.computed - each.measured) * weight for each, weight in pairs])
+
+    def _noise(self, ended: Any) -> Floats:
+        """The standard error of each signal, from what remains of it; by the median with a robust loss.
+
+        A fit takes up as much of a signal's noise as its values weigh in the fit, their leverages; the rest
+        are its degrees of freedom.
+        """
+        free = np.flatnonzero(ended.active_mask == 0)
+        leverages = np.sum(np.linalg.qr(ended.jac[:, free])[0] ** 2, axis=1)
+        noise = []
+        for (name, rows), weight in zip(self._data.rows.items(), self._weights, strict=True):
+            rest, exact = ended.fun[rows] / weight, ROUNDING * (_spread(self._data.columns[name]) or 1.0)
+            robust = MEDIAN * float(np.median(np.abs(rest)))
+            size = float(np.sqrt(np.mean(rest**2))) if self._name == LEAST_SQUARES else robust
+            noise.append(max(size / math.sqrt(1.0 - float(np.mean(leverages[rows]))), exact))
+        return np.array(noise)
+
+    def _starts(self) -> list[Floats]:
+        """The scene's own values, and the best of scattered ones; refuses what changes nothing."""
+        from scipy.stats import qmc
+
+        own = np.array([min(max((s.value - s.low) / (s.high - s.low), 0.0), 1.0) for s in self._spans])
+        there = self._residuals(own)
+        scattered = qmc.Halton(len(own), seed=1).random(TRIED * len(own))
+        ranked = []
+        changed = np.zeros(len(own), bool)
+        for number, span in enumerate(self._spans):
+            for share in (own[number] + (PROBE if own[number] < 0.5 else -PROBE), 0.0, 0.5, 1.0):
+                moved = own.copy()
+                moved[number] = share
+                changed[number] |= bool(np.any(self._residuals(moved) != there))
+            if not changed[number]:
+                raise LoomfmuError(f"{span.key} changes none of the measured signals between {span.text}")
+        for shares in scattered:
+            with contextlib.suppress(LoomfmuError):  # not every combination can be run
+                ranked.append((float(np.sum(self._residuals(shares) ** 2)), tuple(shares)))
+        return [own, *(np.array(shares) for _cost, shares in sorted(ranked)[:1])]
+
+    def _refined(self, starts: Sequence[Floats]) -> Any:
+        """The best of the searches from these starts."""
+        ends = [self._least_squares(start, self._name) for start in starts]
+        return min(ends, key=lambda each: float(each.cost))
+
+    def _least_squares(self, start: Floats, loss: str, **options: Any) -> Any:
+        from scipy.optimize import least_squares
+
+        return least_squares(
+            self._residuals,
+            np.clip(start, 1e-9, 1.0 - 1e-9),
+            jac="3-point",
+            bounds=(0.0, 1.0),
+            xtol=PRECISE,
+            ftol=PRECISE,
+            gtol=PRECISE,
+            loss=loss,
+            f_scale=LOSSES[loss].scale,
+            **options,
+        )
+
+
+def _spread(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.std(known) or np.max(np.abs(known))) if len(known) else 0.0
