@@ -10,8 +10,9 @@ PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generat
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
+VERDICTS := $(CURDIR)/src/loomfmu/validation/errors.csv
 
-.PHONY: demo test check stress attack bench docs site validation wheel pins clean
+.PHONY: demo test check stress attack verdicts bench docs site validation wheel pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
@@ -34,6 +35,11 @@ attack: .venv/installed-for-tests
 	rm -f $(FIGURES)
 	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s -m "slow or not slow"
 	$(BIN)/loomfmu validate
+
+# verdicts on random scenes beside the truth by far finer steps; their figures go into the report. Half an hour
+verdicts: .venv/installed-for-tests
+	PYTHONPATH=tests $(BIN)/python -m verdicts --list-wrong --output $(VERDICTS); \
+	status=$$?; $(BIN)/loomfmu validate && exit $$status
 
 # run time against error, side by side with other masters: about a quarter of an hour
 bench: .venv/installed-for-tests

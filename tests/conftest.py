@@ -21,7 +21,9 @@ settings.load_profile("loomfmu")
 
 
 # beside the tests that mirror the source: these cover what they run through, and tracing costs most of it
-UNTRACED = [Path(__file__).parent / folder for folder in ("attack", "benchmarks", "foreign", "stress")]
+UNTRACED = [
+    Path(__file__).parent / folder for folder in ("attack", "benchmarks", "foreign", "stress", "verdicts")
+]
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

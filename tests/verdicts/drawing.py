@@ -1,0 +1,128 @@
+"""Random scenes with claims, the same for the same seed: what `families.toml` says, drawn."""
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from fnmatch import fnmatch
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple
+
+from loomfmu.cosim.scenes.scene import parse
+
+TABLES = tomllib.loads((Path(__file__).with_name("families.toml")).read_text(encoding="utf-8"))
+FAMILIES = tuple(TABLES["families"])
+PLACE = re.compile(r"<(\w+)>")
+NAMED, SIGNALS = 4, 5  # claims of a scene: of kinds that its family lists, and on outputs that are drawn
+COARSEST, FINEST, MANY = 45, 4000, 1440  # steps in a revolution
+OWN = ("bound", "between", "also", "whole")  # what a listed claim says to this test, not to its scene
+
+
+class Claim(NamedTuple):
+    """A claim without its bound: its table, the argument that bounds it, and where bounds may be."""
+
+    table: dict[str, Any]
+    bound: str = ""
+    between: tuple[float, float] = (-math.inf, math.inf)
+    also: tuple[float, ...] = ()
+    whole: bool = False
+
+    @property
+    def label(self) -> str:
+        """Its kind, and the signal that `above` and `below` are about."""
+        return f"{self.table['kind']} {self.table.get('signal', '')}".strip()
+
+
+class Drawn(NamedTuple):
+    """A random scene without its claims, the claims, the steps to judge them with, those of the truth."""
+
+    family: str
+    number: int
+    text: str
+    claims: list[Claim]
+    settings: list[dict[str, Any]]
+    fine: list[int]
+
+
+def drawn(seed: int, family: str, number: int) -> Drawn:
+    """The scene of a family with that number."""
+    random, tables = Random(f"{seed} {family} {number}"), _family(family)
+    text = _filled(tables["text"], tables["draw"], random)
+    listed = random.sample(tables["claims"], min(NAMED, len(tables["claims"])))
+    claims = [_listed(each, tables["draw"], random) for each in listed] + _on_outputs(text, tables, random)
+    return Drawn(family, number, text, claims, _settings(random), tables["fine"])
+
+
+def _family(name: str) -> dict[str, Any]:
+    common, own = TABLES["common"], TABLES["families"][name]
+    like = TABLES["families"].get(own.get("like"), {"draw": {}})
+    return common | like | own | {"draw": common["draw"] | like["draw"] | own["draw"]}
+
+
+def _filled(text: str, draw: Mapping[str, Any], random: Random) -> str:
+    """The text with all that it names drawn, and what that names in turn."""
+    while place := PLACE.search(text):
+        found = _value(draw[place[1]], random)
+        text = text[: place.start()] + found + text[place.end() :]
+    return text
+
+
+def _value(how: Any, random: Random) -> str:
+    if isinstance(how, list):
+        return f"{random.uniform(*how):.6g}"
+    if "log" in how:
+        return f"{math.exp(random.uniform(*map(math.log, how['log']))):.6g}"
+    if "table" in how:
+        times = sorted({0.0, *(round(random.uniform(0.0, 3.0), 6) for _ in range(random.randint(1, 8)))})
+        rows = [f'[{time}, "{random.uniform(*how["table"]):.6g} {how["unit"]}"]' for time in times]
+        return f"[{', '.join(rows)}]"
+    return str(random.choice(how["of"]))
+
+
+def _listed(table: Mapping[str, Any], draw: Mapping[str, Any], random: Random) -> Claim:
+    """A claim that a family lists."""
+    stated = {}
+    for key, given in table.items():
+        if key in OWN:
+            continue
+        if isinstance(given, list):
+            stated[key] = [_filled(each, draw, random) for each in given]
+        else:
+            filled = _filled(given, draw, random)
+            stated[key] = float(filled) if key == "tolerance" else filled
+    positive = table["kind"] not in ("above", "below", "lowest_margin")
+    low, high = table.get("between", [0.0 if positive else -math.inf, math.inf])
+    return Claim(stated, table.get("bound", ""), (low, high), tuple(table.get("also", ())), "whole" in table)
+
+
+def _on_outputs(text: str, tables: Mapping[str, Any], random: Random) -> list[Claim]:
+    """Claims `above` and `below` on random outputs, some within a random window of the shaft's angle."""
+    outputs = [
+        f"{name}.{port.name}"
+        for name, instance in parse(text).instances.items()
+        for port in instance.fmu.ports.values()
+        if port.causality == "output" and port.kind == "Real"
+    ]
+    fitting = [each for each in outputs if any(fnmatch(each, some) for some in tables["outputs"])]
+    found = []
+    for signal in random.sample(fitting, min(SIGNALS, len(fitting))):
+        table: dict[str, Any] = {"kind": random.choice(["above", "below"]), "signal": signal}
+        if random.random() < 0.4:
+            start, width = random.uniform(0.0, 360.0), math.exp(random.uniform(0.0, math.log(300.0)))
+            table["window"] = [f"{start:.6g} deg", f"{(start + width) % 360.0:.6g} deg"]
+        found.append(Claim(table, "bound"))
+    return found
+
+
+def _settings(random: Random) -> list[dict[str, Any]]:
+    """Steps on both grids, some many and some few, and an accuracy."""
+    key = "steps_per_revolution"
+    low, middle, high = map(math.log, (COARSEST, MANY, FINEST))
+    few = [round(math.exp(random.uniform(low, middle))) for _ in range(3)]
+    many = [random.choice([MANY, round(math.exp(random.uniform(middle, high)))]) for _ in range(2)]
+    return [
+        {key: few[0]}, {key: few[1] // 2 * 2}, {key: many[0]},
+        {key: few[2], "grid": "windows"}, {key: many[1], "grid": "windows"},
+        {"accuracy": 10.0 ** random.uniform(-7.0, -3.0)},
+    ]  # fmt: skip
