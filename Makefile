@@ -65,16 +65,20 @@ wheel: .venv/installed
 	rm -r src/loomfmu/cosim/*/native/*/ src/loomfmu/fmi/native/shipped
 
 .venv/created:
+	@echo "making an environment in .venv"
 	$(PYTHON) -c "import sys; sys.exit('loomfmu needs Python 3.11 or newer, this is ' + sys.version.split()[0] if sys.version_info < (3, 11) else 0)"
 	$(PYTHON) -m venv .venv
 	touch $@
 
+# with all that the README's commands need
 .venv/installed: .venv/created pyproject.toml pins/run.txt
+	@echo "installing the packages of pins/run.txt, which takes about a minute"
 	$(INSTALL_PINNED) pins/run.txt
 	$(INSTALL_THIS)
 	touch $@
 
 .venv/installed-for-tests: .venv/created pyproject.toml pins/test.txt
+	@echo "installing the packages of pins/test.txt, which takes a minute or two"
 	$(INSTALL_PINNED) pins/test.txt
 	$(INSTALL_THIS)
 	touch .venv/installed $@
@@ -83,7 +87,7 @@ wheel: .venv/installed
 pins: .venv/created
 	$(PIP) install uv
 	$(PIN) pyproject.toml --group build --extra test --output-file pins/test.txt
-	$(PIN) pyproject.toml --group build --extra native --constraint pins/test.txt --output-file pins/run.txt
+	$(PIN) pyproject.toml --group build --extra all --constraint pins/test.txt --output-file pins/run.txt
 
 clean:
 	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

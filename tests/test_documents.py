@@ -1,14 +1,19 @@
 """What README and docs/ show is true: links lead somewhere, commands are understood, snippets run."""
 
 import ast
+import os
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
 
 import pytest
+from environments import made, needed
+from test_packages import pins
 from write_fmu_pages import with_list
 
 from loomfmu import arguments as cli_arguments
@@ -136,6 +141,53 @@ def test_the_long_commands_of_the_readme_can_be_followed(
     assert {"table.parquet", "map.png", "traces"} <= {
         path.name for path in Path("results/safe_speed").iterdir()
     }
+
+
+LACKING = {  # what the base install answers to the commands of the README that need an extra
+    "build": "native", "export --fmu": "native", "sweep": "sweep,plot", "optimize": "study", "plot": "plot",
+    "report": "report", "pytest": "No module named pytest",
+}  # fmt: skip
+MINUTES = 20.0  # that one command may take on a busy machine, without a compiler
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="environments are made of symbolic links")
+@pytest.mark.parametrize("everything", [False, True], ids=["base", "demo"])
+def test_the_readme_can_be_followed_in_an_environment_of_its_own(tmp_path: Path, everything: bool) -> None:
+    names = set(pins("run.txt")) | {"loomfmu"} if everything else needed("loomfmu")
+    python = made(tmp_path / "environment", names)
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "my_loom.toml").write_text(blocks(README, "toml")[0])
+    environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
+
+    def outcome(*arguments: str) -> tuple[int, str]:
+        done = subprocess.run(
+            [python, *arguments], cwd=folder, env=environment, capture_output=True, text=True,
+            timeout=60.0 * MINUTES,
+        )  # fmt: skip
+        assert "Traceback" not in done.stderr and "a bug in loomfmu" not in done.stderr, done.stderr
+        return done.returncode, (done.stderr.splitlines() or [""])[-1]
+
+    for line in re.findall(r"^(?:loomfmu|pytest) .*$", "".join(blocks(README, "sh")), re.MULTILINE):
+        arguments = shlex.split(line, comments=True)
+        words = " ".join(arguments[1:] if arguments[0] == "loomfmu" else arguments)
+        lacking = next((extras for start, extras in LACKING.items() if within(start, words)), "")
+        status, said = outcome("-m", *arguments)
+        if everything or not lacking:
+            fails = ("--set shaft.speed=700rpm", "--set belt.guide_clearance", "sweep ", "compare ")
+            assert status == any(each in words for each in fails), (line, said)
+        else:
+            assert status == (1 if lacking.startswith("No module") else 2), line
+            assert said.endswith((f'pip install "loomfmu[{lacking}]"', lacking)), line
+    for text in blocks(README, "python") if everything else ():
+        assert outcome("-c", text)[0] == 0
+
+
+def within(start: str, command: str) -> bool:
+    """Whether a command has these words in this order."""
+    words = iter(command.split())
+    return all(word in words for word in start.split())
 
 
 WORDS = {3: "three", 4: "four", 5: "five", 6: "six"}

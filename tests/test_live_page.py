@@ -510,7 +510,7 @@ def test_the_same_is_not_varied_twice() -> None:
 
 def test_without_a_compiler_there_is_no_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compiler, "compiler", lambda: None)
-    with pytest.raises(LoomfmuError, match="pip install 'loomfmu\\[native\\]'"):
+    with pytest.raises(LoomfmuError, match='pip install "loomfmu\\[native\\]"'):
         live_page.write(DEMO, [], tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
 

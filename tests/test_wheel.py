@@ -113,7 +113,7 @@ def test_what_needs_a_compiler_says_so_in_one_line(
     done = subprocess.run(call, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
-        "loomfmu: this needs a compiler, which is not installed: pip install 'loomfmu[native]'\n"
+        'loomfmu: this needs a compiler, which is not installed: pip install "loomfmu[native]"\n'
     )
     assert not list(tmp_path.glob("**/loom.fmu*")) and not list(tmp_path.glob("**/*.html*"))
 
@@ -137,5 +137,5 @@ def test_a_mechanism_of_ones_own_runs_live_and_the_command_says_so(python: Path,
     assert done.returncode == 0, done.stderr
     assert done.stderr == (
         "warning: running live FMUs of PickingCam, not native ones: the compiler that builds it is not"
-        " installed: pip install 'loomfmu[native]'\n"
+        ' installed: pip install "loomfmu[native]"\n'
     )

@@ -41,7 +41,7 @@ def test_a_missing_compiler_is_named(tools, tmp_path, capsys, monkeypatch):
     call = ["build", "--native", "--platform", "linux64", "--output", str(tmp_path), "MainShaft"]
     assert cli.main(call) == 2
     assert capsys.readouterr().err == (
-        "loomfmu: this needs a compiler, which is not installed: pip install 'loomfmu[native]'\n"
+        'loomfmu: this needs a compiler, which is not installed: pip install "loomfmu[native]"\n'
     )
     assert list(tmp_path.iterdir()) == []
 

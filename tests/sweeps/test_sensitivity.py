@@ -141,10 +141,3 @@ def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:
 def test_rows_of_another_kind_and_empty_ranges_are_refused(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
         sweep(written(tmp_path, text))
-
-
-def test_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "SALib.sample.sobol", None)
-    path = written(tmp_path, f"[sensitivity]\nsamples = 8\n{RANGES}")
-    with pytest.raises(LoomfmuError, match=r'needs the extra "study": pip install "loomfmu\[study\]"'):
-        sweep(path)

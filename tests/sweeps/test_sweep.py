@@ -510,19 +510,6 @@ def test_a_terminal_sees_how_far_it_is_and_how_long_it_takes(tmp_path: Path) -> 
     assert "Swept" in text and "/60" in text and ":" in text
 
 
-def test_missing_packages_are_named_with_what_installs_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = written(tmp_path, GRID + '[map]\nx = "belt.guide_clearance"\nvalue = "claim_1.worst"\n')
-    for package, extra in (("pyarrow", "sweep"), ("matplotlib", "plot"), ("distributed", "sweep")):
-        monkeypatch.setattr(
-            "loomfmu.sweeps.place.find_spec", lambda name, missing=package: None if name == missing else name
-        )
-        with pytest.raises(LoomfmuError, match=rf'needs {package}: pip install "loomfmu\[{extra}\]'):
-            loomfmu.sweep(path, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
-    assert not (tmp_path / "out").exists()
-
-
 def test_importing_loomfmu_and_its_command_stays_light() -> None:
     script = (
         "import sys, loomfmu, loomfmu.cli\n"
@@ -532,18 +519,6 @@ def test_importing_loomfmu_and_its_command_stays_light() -> None:
     light, name, after = in_a_process(script).split(maxsplit=2)
     assert (light, name) == ("[]", "sweep")
     assert "pyarrow" not in after and "distributed" not in after and "matplotlib" not in after
-
-
-def test_all_packages_that_a_sweep_lacks_are_named_at_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    drawn = '[map]\nx = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
-    path = written(tmp_path, GRID + NO_TRACES + drawn)
-    monkeypatch.setattr("loomfmu.sweeps.place.find_spec", lambda _name: None)
-    with pytest.raises(
-        LoomfmuError, match=r'needs pyarrow and matplotlib: pip install "loomfmu\[sweep,plot\]"$'
-    ):
-        loomfmu.sweep(path)
 
 
 def test_a_sweep_may_begin_with_a_mark_of_its_encoding(tmp_path: Path) -> None:

@@ -51,10 +51,12 @@ def list_(options: argparse.Namespace) -> int:
 def init(options: argparse.Namespace) -> int:
     """Write the examples."""
     from .. import catalogue
+    from ..extras import install, installed
 
     written = catalogue.start(options.directory, everything=options.all)
     say(*written, "")
-    say('sweeps and their maps need two extras: pip install "loomfmu[sweep,plot]"')
+    if not (installed("sweep") and installed("plot")):
+        say(f"sweeps and their maps need two extras: {install('sweep', 'plot')}")
     first = options.directory / catalogue.STARTERS[0]
     say(f"next: {shlex.join(['loomfmu', 'run', str(first)])}")
     return 0
@@ -72,12 +74,13 @@ def new(options: argparse.Namespace) -> int:
 
 def validate(options: argparse.Namespace) -> int:
     """Write the validation report."""
-    from ..validation import plots, report
+    from ..extras import install, installed
+    from ..validation import report
 
     for path in report.write(options.output, options.force):
         say(path)
-    if not plots.available():
-        complain('no plots: matplotlib is not installed; pip install "loomfmu[plot]"')
+    if not installed("plot"):
+        complain(f"no plots: {install('plot')}")
     return 0
 
 

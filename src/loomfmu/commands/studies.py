@@ -8,13 +8,14 @@ from .options import pairs
 
 def sweep(options: argparse.Namespace) -> int:
     """Run a scene with many combinations of values."""
-    from ..sweeps.report import show
     from ..sweeps.run import sweep as run_sweep
 
     found = run_sweep(
         options.sweep, processes=options.processes, output=options.output, scheduler=options.scheduler,
         restart=options.restart, progress=True,
     )  # fmt: skip
+    from ..sweeps.report import show  # after the extra `sweep` is known to be installed
+
     warn(found.warnings)
     show(found)
     return 0 if found.holds and not found.untraced else 1

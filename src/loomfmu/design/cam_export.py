@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import LoomfmuError
+from ..extras import need
 from ..files import starts_with, write_file
 from .cam import Cam, Floats
 from .quantities import Quantity, read, whole
@@ -61,10 +61,9 @@ def write_dxf(cam: Cam | RockerCam, path: Path, overwrite: bool = False) -> None
     Raises:
         LoomfmuError: ezdxf is not installed, or the file cannot be written
     """
-    try:
-        from ezdxf.filemanagement import new
-    except ImportError:
-        raise LoomfmuError('a DXF file needs the package ezdxf: pip install "loomfmu[cam]"') from None
+    need("a DXF file", "cam")
+    from ezdxf.filemanagement import new
+
     drawing = new("R2010", units=4)  # mm
     space = drawing.modelspace()
     for layer, curve in (("PROFILE", cam.profile), ("CUTTER", cam.path)):

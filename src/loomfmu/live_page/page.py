@@ -22,12 +22,13 @@ from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.scene_files import files_of
 from ..cosim.whole import system
 from ..errors import path_of
+from ..extras import need
 from ..files import check_target, starts_with, write_file
 from ..fmi.system.builder import module
 from ..fmi.system.system import System, component_of
 from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
-from ..report.templates import check, template
+from ..report.templates import template
 from ..traces import Trace
 from ..upstream import sources_of, upstream
 from ..variables import Beside, Variable, variables_of
@@ -66,7 +67,7 @@ def write(
     Raises:
         LoomfmuError: bad input, what cannot be compiled or varied, or the file cannot be written
     """
-    check()
+    need("a page that runs its scene", "report", "native")
     loaded = replace(checked(scene, set, "native"), grid=UNIFORM)
     path = path_of(output, "output") if output else usual_path(loaded, "_page.html")
     inputs = files_of(loaded)

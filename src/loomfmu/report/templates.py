@@ -4,7 +4,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from ..errors import LoomfmuError
+from ..extras import need
 
 PAGE = files(__package__) / "page"
 
@@ -21,13 +21,12 @@ def template(name: str) -> Any:
 
 def check() -> None:
     """Raise LoomfmuError if the extra `report` is not installed."""
-    _environment()
+    need("a report", "report")
 
 
 @cache
 def _environment() -> Any:
-    try:
-        from jinja2 import Environment, StrictUndefined
-    except ImportError:
-        raise LoomfmuError('a report needs the extra "report": pip install "loomfmu[report]"') from None
+    check()
+    from jinja2 import Environment, StrictUndefined
+
     return Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)

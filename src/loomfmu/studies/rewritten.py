@@ -11,6 +11,7 @@ from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
+from ..extras import need
 from ..files import Kind, check_target, write_file
 from ..machines import TAKERS
 
@@ -127,8 +128,7 @@ def _number(given: Any) -> Any:
 
 
 def _tomlkit() -> Any:
-    try:
-        import tomlkit
-    except ImportError:
-        raise LoomfmuError('writing a scene needs the extra "study": pip install "loomfmu[study]"') from None
+    need("writing a scene", "study")
+    import tomlkit
+
     return tomlkit

@@ -10,8 +10,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Protocol
 
-from filelock import FileLock, Timeout
-
 from ..errors import LoomfmuError
 from ..files import ANY, cannot_write, check_target, replace_file
 
@@ -102,6 +100,8 @@ def files(folder: Path, pattern: str) -> list[Path]:
 @contextlib.contextmanager
 def _locked(directory: Path, kind: str) -> Iterator[None]:
     """Keep others out of a directory. The system frees the lock with the process that has it."""
+    from filelock import FileLock, Timeout  # of an extra
+
     path = directory / LOCK
     descriptors: list[int] = []
     lock = FileLock(path, blocking=False, on_acquired=descriptors.append)

@@ -1,21 +1,14 @@
-"""Where the rows of a sweep and the runs of a search are done, and which packages that takes."""
+"""Where the rows of a sweep and the runs of a search are done."""
 
 import os
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, listed, shown
+from ..errors import LoomfmuError, shown
 from .pools import Here, Pool, Processes
 from .worker import Planned
-
-# package -> extra
-NEEDED = {
-    "pyarrow": "sweep", "matplotlib": "plot", "distributed": "sweep", "filelock": "study", "SALib": "study",
-    "tomlkit": "study",
-}  # fmt: skip
 
 
 def check_place(processes: Any, scheduler: Any) -> None:
@@ -37,14 +30,6 @@ def resumable(directory: Path, what: str) -> Iterator[None]:
         raise KeyboardInterrupt(
             f"interrupted; finished {what} are kept in {directory}; run the same command to continue"
         ) from None
-
-
-def check_packages(path: Path, used: dict[str, bool]) -> None:
-    """Refuse a file that uses packages which are not installed, and name all of them."""
-    missing = [package for package, needed in used.items() if needed and find_spec(package) is None]
-    if missing:
-        extras = ",".join(dict.fromkeys(NEEDED[package] for package in missing))
-        raise LoomfmuError(f'{path} needs {listed(missing)}: pip install "loomfmu[{extras}]"')
 
 
 @contextmanager

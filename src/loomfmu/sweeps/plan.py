@@ -14,6 +14,7 @@ from ..cosim.planning.requested import output_port
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.tables import toml
 from ..errors import LoomfmuError, suggestion
+from ..extras import need
 from ..files import text_of
 from .axes import MOST, Axis, flattened, grid_axis, range_of, sample_axes, whole
 from .header import HEAD, Header, check_by_scene, header, variables
@@ -21,6 +22,7 @@ from .request import Map, requested
 from .sensitivity import OPTIONS, Sensitivity, sensitivity_of
 
 KEYS = (*HEAD, "values", "grid", "sample", "sensitivity", "traces", "map")
+EXTRAS = {"map": "plot", "sensitivity": "study"}  # that tables need beside the extra `sweep`
 NO_TRACES = {"failures": 0, "sample": 0}  # by default of rows that only indices need
 
 
@@ -106,6 +108,7 @@ def load(path: str | Path) -> SweepPlan:
 def _parse(text: str, path: Path) -> SweepPlan:
     tables = toml(text)
     head = header(tables, path, KEYS, "sweep")
+    need("a sweep", "sweep", *(extra for table, extra in EXTRAS.items() if table in tables))
     columns = _results(head.scene, tables.get("values", []))
     wanted = _sensitivity(head, tables, columns) if "sensitivity" in tables else None
     grid, sample = ([], wanted.axes()) if wanted else _axes(head, tables)

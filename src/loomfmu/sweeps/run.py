@@ -3,19 +3,19 @@
 import hashlib
 from contextlib import ExitStack
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..cosim.scenes.scene_files import files_of
 from ..errors import LoomfmuError, described, path_of
+from ..extras import installed
 from ..files import ANY, write_file
 from ..printed import as_csv
 from ..progress import Advance
 from ..progress import progress as progress_bar
 from ..traces import TRACE
 from . import plan as plans
-from .place import check_packages, check_place, cluster, local, resumable
+from .place import check_place, cluster, local, resumable
 from .plan import SweepPlan
 from .pools import Died, Pool, Task
 from .schedule import run_batches
@@ -114,9 +114,6 @@ def sweep(
     check_place(processes, scheduler)
     path = path_of(path, "sweep")
     plan = plans.load(path)
-    check_packages(
-        path, {"pyarrow": True, "matplotlib": plan.map is not None, "distributed": bool(scheduler)}
-    )
     from .store import opened
 
     job = job_of(plan)
@@ -174,7 +171,7 @@ def _indices(store: "Store", table: Any) -> Influences | None:
         return None
     found = influences(plan.sensitivity, table, plan.sample, plan.title)
     write_file(store.indices_path, as_csv(csv_rows(found)).encode(), ANY)
-    if find_spec("matplotlib") is not None:
+    if installed("plot"):
         from ..report import pictures
         from .bars import draw
 

@@ -7,6 +7,7 @@ indices from the table.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from .. import notebook, units
 from ..errors import LoomfmuError, shown, suggestion
+from ..extras import need
 from .axes import Axis, Range, whole
 
 Floats = NDArray[np.float64]
@@ -70,12 +72,8 @@ class Sensitivity:
 
 
 def _salib(part: str, method: str) -> Any:
-    from importlib import import_module
-
-    try:
-        return import_module(f"SALib.{part}.{method}")
-    except ImportError:
-        raise LoomfmuError('[sensitivity] needs the extra "study": pip install "loomfmu[study]"') from None
+    need("[sensitivity]", "study")
+    return import_module(f"SALib.{part}.{method}")
 
 
 def sensitivity_of(options: dict[str, Any], ranges: Sequence[Range], columns: Sequence[str]) -> Sensitivity:

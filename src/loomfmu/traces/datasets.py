@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .. import units
 from ..errors import LoomfmuError
+from ..extras import need
 
 Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
@@ -31,10 +32,9 @@ class Signals(Protocol):
 
 def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
     """The named signals as a dataset. Raises LoomfmuError as `Signals.to_xarray`."""
-    try:
-        import xarray
-    except ImportError:
-        raise LoomfmuError('to_xarray needs the extra "xarray": pip install "loomfmu[xarray]"') from None
+    need("to_xarray", "xarray")
+    import xarray
+
     values = {name: signals.read(name) for name in names}
     about = {name: _attributes(signals, name) for name in names}
     angle = {"units": "rad", "long_name": "shaft angle"}

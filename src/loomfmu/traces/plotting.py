@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
+from ..extras import need
 from .signals import Floats, Signals
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#a8578a", "#e69f00", "#1a1a1a")  # of Okabe and Ito, and black
@@ -34,11 +35,10 @@ def plot(trace: Signals, signals: Sequence[str], over: str | None, fold: bool, a
 
 
 def check() -> None:
-    """Raises LoomfmuError if matplotlib is not installed, or fails over a matplotlibrc."""
+    """Raise LoomfmuError if the extra `plot` is not installed, or matplotlib fails over a matplotlibrc."""
+    need("a picture", "plot")
     try:
         import matplotlib.figure  # noqa: F401
-    except ImportError:
-        raise LoomfmuError('a picture needs the extra "plot": pip install "loomfmu[plot]"') from None
     except UnicodeDecodeError:
         raise LoomfmuError("a matplotlibrc that matplotlib reads is not text in UTF-8; delete it") from None
 

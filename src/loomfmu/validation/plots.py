@@ -1,6 +1,5 @@
 """Figures of the report: one file each, 800 pixels wide. The only place that needs matplotlib."""
 
-from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,11 +11,6 @@ from .plot_style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, STYL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-def available() -> bool:
-    """Whether matplotlib is installed."""
-    return find_spec("matplotlib") is not None
 
 
 def figures() -> dict[str, tuple[float, Draw]]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from ..extras import installed
 from ..files import check_target, starts_with, write_file
 from . import (
     accuracy,
@@ -108,13 +109,13 @@ def text() -> str:
 
 
 def write(directory: Path, overwrite: bool = False) -> list[Path]:
-    """Write the report into a directory, and its figures beside it if matplotlib is there.
+    """Write the report into a directory, and its figures beside it if the extra `plot` is installed.
 
     `overwrite` also replaces files that are neither such a report nor a picture. Raises LoomfmuError.
     """
     path = directory / NAME
     check_target(path, REPORT, overwrite=overwrite)
-    figures = plots.write(directory / "validation", overwrite) if plots.available() else []
+    figures = plots.write(directory / "validation", overwrite) if installed("plot") else []
     return [write_file(path, text().encode(), REPORT, overwrite=overwrite), *figures]
 
 

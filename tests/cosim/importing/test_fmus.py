@@ -80,7 +80,7 @@ def test_runs_are_native_by_default(tmp_path: Path) -> None:
     assert load(tmp_path / "sweep.toml").flavour == "native"
 
 
-NO_COMPILER = "the compiler that builds it is not installed: pip install 'loomfmu[native]'"
+NO_COMPILER = 'the compiler that builds it is not installed: pip install "loomfmu[native]"'
 MISSING = {
     "no compiler": ("compiler", None, NO_COMPILER),
     "another machine": ("host", "", f"none are built for {platforms.MACHINE}"),

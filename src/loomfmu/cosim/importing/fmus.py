@@ -14,6 +14,7 @@ import fmpy
 
 from ...components import COMPONENTS
 from ...errors import LoomfmuError, listed, shown, suggestion
+from ...extras import install
 from ...files import check_archive, source
 from ...fmi import identities
 from ...fmi.cache_entries import UNPACKED, folder
@@ -112,7 +113,7 @@ class Fmu:
             return f"none are built for {platforms.MACHINE}"
         if identities.shipped(self.component) or platforms.compiler():
             return ""
-        return "the compiler that builds it is not installed: pip install 'loomfmu[native]'"
+        return f"the compiler that builds it is not installed: {install('native')}"
 
     @property
     def path(self) -> Path:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
+from ...extras import install
 from ...fmi.native.libraries import library_of
 from ..importing.calls import OK, REFUSED, WARNING, Call, Compiled
 from ..importing.slave import Ended, Slave
@@ -253,7 +254,7 @@ def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path |
     able = all(action.call.compiled for action in actions)
     library = library_of(SOURCE) if able and compiled is not False else None
     if compiled and library is None:
-        raise LoomfmuError("the compiled stepper is not available: pip install 'loomfmu[native]'")
+        raise LoomfmuError(f"the compiled stepper is not available: {install('native')}")
     return library
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from threading import BoundedSemaphore
 
 from ...errors import LoomfmuError
+from ...extras import install
 from ...files import ANY, write_file
 from ..cache import compiler_environment
 from .fat_binary import fat_binary
@@ -158,5 +159,5 @@ def _required() -> Path:
     """Where the compiler is installed. Raises LoomfmuError if it is not."""
     found = compiler()
     if found is None:
-        raise LoomfmuError("this needs a compiler, which is not installed: pip install 'loomfmu[native]'")
+        raise LoomfmuError(f"this needs a compiler, which is not installed: {install('native')}")
     return found

@@ -8,7 +8,6 @@ best.png          the picture
 """
 
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.run import evaluate
 from ...errors import listed
+from ...extras import install, installed
 from ...files import ANY, write_file
 from ...printed import as_csv
 from ...sweeps.directory import files
@@ -76,8 +76,8 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
     ]
     designs = list(runs.designs.values())
     _write(files.designs, _table(study, designs, names, own))
-    picture = find_spec("matplotlib") is not None
-    warnings = study.notes if picture else (*study.notes, 'no picture: pip install "loomfmu[plot]"')
+    picture = installed("plot")
+    warnings = study.notes if picture else (*study.notes, f"no picture: {install('plot')}")
     found = Optimum(
         study, tuple(front), len(designs), runs.ran, sum(each.allowed for each in designs),
         sum(bool(each.error) for each in designs), _nowhere(designs, names, own), _constant(study, designs),

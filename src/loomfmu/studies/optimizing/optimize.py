@@ -10,8 +10,9 @@ from pathlib import Path
 from ...cosim.run import evaluate
 from ...cosim.scenes.scene_files import files_of
 from ...errors import LoomfmuError, path_of
+from ...extras import need
 from ...progress import progress as progress_bar
-from ...sweeps.place import check_packages, check_place, cluster, local, resumable
+from ...sweeps.place import check_place, cluster, local, resumable
 from ...sweeps.worker import job_of
 from . import study as studies
 from .found import Files, found_of
@@ -51,7 +52,7 @@ def optimize(
     check_place(processes, scheduler)
     path = path_of(path, "study")
     study = studies.load(path)
-    check_packages(path, {"filelock": True, "tomlkit": True, "distributed": bool(scheduler)})
+    need(path, "study", *["sweep"] * bool(scheduler))
     from ...sweeps.directory import owned
 
     job = replace(job_of(study), errors="none")  # a search goes up to the bounds
