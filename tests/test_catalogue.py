@@ -32,6 +32,13 @@ def test_a_variable_is_shown_in_the_unit_that_people_read_it_in() -> None:
     )
 
 
+def test_numbered_variables_are_listed_by_the_first_and_the_last() -> None:
+    assert (
+        "    inputs: torque_1 .. torque_32, work_1 .. work_32, passed_torque_1 .. passed_torque_32"
+        in list(catalogue.overview())
+    )
+
+
 def test_a_machine_and_a_head_are_described_by_what_they_set() -> None:
     for name in (*MACHINES, *HEADS):
         assert len(list(catalogue.details(name))) > 1

@@ -3,7 +3,7 @@
 import re
 import shutil
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -87,7 +87,7 @@ def overview() -> Iterator[str]:
     for name, component in COMPONENTS.items():
         yield f"{name}: {_summary(component)}"
         for causality in ("input", "output"):
-            names = [v.name for v in variables_of(component) if v.causality == causality]
+            names = map(_name, _numbered(v for v in variables_of(component) if v.causality == causality))
             yield f"    {causality}s: {', '.join(names) or 'none'}"
     yield f"machines: {', '.join(MACHINES)}"
     yield f"heads: {', '.join(HEADS)}"
@@ -128,8 +128,20 @@ def _variables(name: str, component: type[Component], width: int) -> Iterator[st
         chosen = [variable for variable in variables if variable.causality == causality]
         if chosen:
             yield f"\n{heading}"
-        for _stem, same in groupby(chosen, key=lambda variable: re.sub(r"\d+$", "", variable.name)):
-            yield from _described(list(same), width)
+        for same in _numbered(chosen):
+            yield from _described(same, width)
+
+
+def _numbered(variables: Iterable[Variable]) -> list[list[Variable]]:
+    """Variables in their order, those together that differ by their number alone."""
+    runs = groupby(variables, key=lambda variable: re.sub(r"\d+$", "", variable.name))
+    return [list(same) for _stem, same in runs]
+
+
+def _name(numbered: Sequence[Variable]) -> str:
+    """The name of a variable, or the first and the last of a run of numbered ones."""
+    first, last = numbered[0].name, numbered[-1].name
+    return first if first == last else f"{first} .. {last}"
 
 
 def _file(fmu: "Fmu", width: int) -> Iterator[str]:
@@ -154,8 +166,8 @@ def _file(fmu: "Fmu", width: int) -> Iterator[str]:
 
 def _described(numbered: Sequence[Variable], width: int) -> Iterator[str]:
     """A variable, or a run of numbered ones: its values and limits, and below what it is."""
-    first, last = numbered[0], numbered[-1]
-    name = first.name if first is last else f"{first.name} .. {last.name}"
+    first = numbered[0]
+    name = _name(numbered)
     unit = "" if first.display == "1" else f" {first.display}"
     starts = [start_text(variable) for variable in numbered]
     shown = ", ".join(starts) if len(starts) <= MOST_VALUES else f"{starts[0]} .. {starts[-1]}"

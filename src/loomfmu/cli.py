@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     def command() -> int:
         given = sys.argv[1:] if arguments is None else arguments
-        parser().parse_args(with_negative(given), options)
+        parser().parse_args(with_negative(given) or ["--help"], options)
         return COMMANDS[options.command](options)
 
     return status_of(command, options)

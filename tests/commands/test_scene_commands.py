@@ -153,3 +153,40 @@ def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
         command = [sys.executable, "-m", "loomfmu.cli", "run", scene(HEAD + SHAFT)]
         done = subprocess.run(command, env=environment, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+KINDS = {  # the text of a file of each kind, and the command that takes it
+    "scene": ("run", HEAD + LOOM),
+    "sweep": ("sweep", 'scene = "scene.toml"\n[grid]\n"shaft.speed" = ["500 rpm"]\n[traces]\n'),
+    "study": ("optimize", 'scene = "scene.toml"\nmaximise = "shaft.speed"\n[ranges]\nspeed = [1, 2]\n'),
+}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        ("run", "scene"),
+        ("limit --vary shaft.speed", "scene"),
+        ("export --ssp x.ssp", "scene"),
+        ("sweep", "sweep"),
+        ("optimize", "study"),
+    ],
+)
+def test_a_file_of_another_kind_is_called_what_it_is(
+    arguments: str, wanted: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command, *options = arguments.split()
+    for kind, (takes, text) in KINDS.items():
+        Path(f"{kind}.toml").write_text(text)
+        if kind != wanted:
+            assert main([command, f"{kind}.toml", *options]) == 2
+            assert one_line(capsys) == f"{kind}.toml: is a {kind}, not a {wanted}; loomfmu {takes} takes it"
+
+
+def test_the_suffix_of_a_scene_and_of_a_trace_may_be_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    scene(HEAD + LOOM)
+    assert main(["run", "scene"]) == 0
+    assert main(["show", "results/scene"]) == 0
+    assert "run by: loomfmu run scene.toml" in capsys.readouterr().out
+    assert main(["run", "other"]) == 2
+    assert one_line(capsys) == "other: cannot be read (No such file or directory)"

@@ -54,7 +54,7 @@ def test_output_that_nobody_takes_is_no_failed_claim() -> None:
         (["show", "missing.h5"], "missing.h5: there is no such file"),
         (
             ["show", "scene.toml"],
-            "scene.toml: cannot be read as a trace (it is not an HDF5 file)",
+            "scene.toml: cannot be read as a trace (it is not an HDF5 file; loomfmu run writes one)",
         ),
         (
             ["show", "other.h5"],

@@ -34,7 +34,6 @@ OTHERS: list[dict[str, Any]] = [
     {"grid": "windows", "steps_per_revolution": 720},
     {"shaft.ramp_duration": "20 ms"},
     {"weft.follow_shaft": False, "weft.speed": "300 rpm"},
-    {"shaft.speed": 600.0},  # probably meant in rev/min
 ]
 
 
@@ -118,6 +117,19 @@ def test_refusals_are_those_of_a_scene_that_is_read_anew(
         loom.evaluate(given)
     assert str(raised.value) == wanted
     same(loom.evaluate(), anew({}))
+
+
+def test_a_number_that_was_probably_meant_in_another_unit_is_refused(loom: loomfmu.Prepared) -> None:
+    doubt = "shaft.speed = 600 is read as 600 rad/s = 5729.578 rev/min"
+    with pytest.raises(
+        LoomfmuError, match=f'^{doubt}; write "600 rev/min" if that is meant, else the unit as well$'
+    ):
+        loom.evaluate({"shaft.speed": 600})
+    assert loom.evaluate({"shaft.speed": 62.0}).claims[0].holds
+    with prepare(DEMO, set=SHORT | {"shaft.speed": 600}) as doubted:  # which says so once, not in a loop
+        assert any(
+            note.startswith(doubt) for note in doubted.evaluate({"belt.guide_clearance": 3e-4}).warnings
+        )
 
 
 def test_what_is_not_a_dictionary_is_refused(loom: loomfmu.Prepared) -> None:

@@ -133,3 +133,20 @@ def test_ctrl_c_while_a_worker_is_started_is_heard_after_it() -> None:
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
         heard = False
     assert heard is False, "the start itself was not disturbed"
+
+
+FIRST = """
+from loomfmu.sweeps.pools import Processes, Task
+import time
+pool = Processes(1)
+pool.submit(Task(0, time.sleep, (600,)))
+print(open(f"/proc/{pool._workers[0].process.pid}/status").read(), flush=True)
+pool.close()
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux shows what a process hears")
+def test_the_very_first_worker_does_not_hear_ctrl_c() -> None:
+    done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True)
+    blocked = dict(line.split(":\t") for line in done.stdout.splitlines() if ":\t" in line)["SigBlk"]
+    assert int(blocked, 16) & 1 << signal.SIGINT - 1

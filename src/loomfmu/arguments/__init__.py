@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
+from ..errors import shown, suggestion
 from ..printed import complain, say
 from ..version import __version__
 from . import package, scenes, studies, traces
@@ -27,6 +28,11 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**named)
         # suppressed: else the default of a command would replace a `--debug` before it
         self.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show tracebacks")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices:
+            hint = suggestion(str(value), map(str, action.choices))
+            raise argparse.ArgumentError(action, f"{shown(value)} is unknown{hint}")
 
     def error(self, message: str) -> NoReturn:
         self.print_usage(sys.stderr)

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .shared import add_force, add_platform, add_scene, add_set
+from .shared import add_force, add_platform, add_scene, add_set, ending
 
 
 def run(commands: Any) -> None:
@@ -30,7 +30,7 @@ def run(commands: Any) -> None:
 def page(commands: Any) -> None:
     """Arguments of `page`."""
     page = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
-    page.add_argument("scene", metavar="SCENE.toml")
+    page.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
     page.add_argument(
         "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
         help="what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a"
@@ -50,7 +50,7 @@ def export(commands: Any) -> None:
     export = commands.add_parser(
         "export", help="write a scene as one FMU, or as a system package (SSP), for other tools"
     )
-    export.add_argument("scene", metavar="SCENE.toml")
+    export.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
     file = export.add_mutually_exclusive_group(required=True)
     file.add_argument(
         "--fmu", type=Path, metavar="FILE.fmu",

@@ -1,11 +1,25 @@
 """Arguments that several commands take."""
 
 import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+
+def ending(suffix: str) -> Callable[[str], str]:
+    """The type of an argument that names a file, whose usual suffix may be left out."""
+
+    def named(given: str) -> str:
+        whole = Path(f"{given}{suffix}")
+        return str(whole) if not Path(given).is_file() and whole.is_file() else given
+
+    return named
 
 
 def add_scene(command: argparse.ArgumentParser) -> None:
     """The scene that a command takes."""
-    command.add_argument("scene", metavar="SCENE", help="a scene (.toml) or a system package (.ssp)")
+    command.add_argument(
+        "scene", type=ending(".toml"), metavar="SCENE", help="a scene (.toml) or a system package (.ssp)"
+    )
 
 
 def add_set(command: argparse.ArgumentParser) -> None:

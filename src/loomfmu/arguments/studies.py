@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from .shared import add_force, add_place, add_scene, add_set
+from .shared import add_force, add_place, add_scene, add_set, ending
 
 
 def sweep(commands: Any) -> None:
     """Arguments of `sweep`."""
     sweep = commands.add_parser("sweep", help="run a scene with many combinations of values")
-    sweep.add_argument("sweep", metavar="SWEEP.toml")
+    sweep.add_argument("sweep", type=ending(".toml"), metavar="SWEEP.toml")
     add_place(sweep, "SWEEP")
 
 
@@ -68,7 +68,7 @@ def optimize(commands: Any) -> None:
         "optimize", help="find the best design within ranges and choices, all claims met",
         epilog="Exit status: 0 a design was found; 1 none meets all claims; 2 bad input or a failed FMU.",
     )  # fmt: skip
-    optimize.add_argument("study", metavar="STUDY.toml")
+    optimize.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
     add_place(optimize, "STUDY")
 
 

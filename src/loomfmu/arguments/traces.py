@@ -2,19 +2,21 @@
 
 from typing import Any
 
-from .shared import add_force
+from .shared import add_force, ending
 
 
 def show(commands: Any) -> None:
     """Arguments of `show`."""
     show = commands.add_parser("show", help="summarise a trace")
-    show.add_argument("trace", metavar="FILE.h5")
+    show.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
 
 
 def report(commands: Any) -> None:
     """Arguments of `report`."""
     report = commands.add_parser("report", help="write a trace as a page to look at (HTML)")
-    report.add_argument("traces", nargs="+", metavar="FILE.h5", help="the trace; others are laid over it")
+    report.add_argument(
+        "traces", nargs="+", type=ending(".h5"), metavar="FILE.h5", help="the trace; others are laid over it"
+    )
     report.add_argument("--output", metavar="FILE.html", help="beside the first trace by default")
     add_force(report, "FILE.html even if it is not a report")
 
@@ -22,7 +24,7 @@ def report(commands: Any) -> None:
 def diagram(commands: Any) -> None:
     """Arguments of `diagram`."""
     diagram = commands.add_parser("diagram", help="draw the timing diagram of a trace (SVG, PNG or PDF)")
-    diagram.add_argument("trace", metavar="FILE.h5")
+    diagram.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
     diagram.add_argument(
         "--revolution", type=int, metavar="N", help="counted from 1; the last whole one by default"
     )
@@ -36,7 +38,7 @@ def diagram(commands: Any) -> None:
 def plot(commands: Any) -> None:
     """Arguments of `plot`."""
     plot = commands.add_parser("plot", help="plot signals of a trace (PNG, SVG or PDF)")
-    plot.add_argument("trace", metavar="FILE.h5")
+    plot.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
     plot.add_argument(
         "names", nargs="+", metavar="SIGNAL",
         help="signals such as belt.margin; other traces (MORE.h5) before them are laid over the first",

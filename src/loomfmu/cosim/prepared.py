@@ -241,6 +241,8 @@ class Prepared:
             return pattern, pattern.with_values(values, overrides)
         except LoomfmuError:  # what was wrong, if anything was, is found where all is read
             pattern = Pattern(checked(self.scene, overrides, self._flavour), self._values)
+            for doubt in pattern.scene.doubts - self.scene.doubts:  # nobody reads the warnings of each run
+                raise LoomfmuError(f"{doubt}, else the unit as well") from None
             return pattern, pattern.scene
 
     def _pattern(self, overrides: dict[str, Any]) -> Pattern:

@@ -107,7 +107,7 @@ def _damage(path: Path) -> str:
     try:
         size, length = path.stat().st_size, superblock(path)[2]
         if not h5py.is_hdf5(path):
-            return "it is not an HDF5 file" if size else "it is empty"
+            return "it is not an HDF5 file; loomfmu run writes one" if size else "it is empty"
     except (OSError, RuntimeError):
         return ""
     return f"it is cut off: {size} of its {length} bytes are left" if size < length else ""

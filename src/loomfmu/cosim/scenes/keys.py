@@ -1,7 +1,8 @@
 """The keys of a scene: its own, and what its instances may be called."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from ...errors import LONGEST_NAME, LoomfmuError, shown
 from ...own.declared import ISOLATED
@@ -15,6 +16,12 @@ KEYS = ("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inpu
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")
 CHOSEN = ("steps_per_revolution", "grid", COARSE)  # what an accuracy chooses
+# what files are: the command that takes each kind, and keys that tell it from the others
+KINDS = {
+    "scene": ("run", {"revolutions", "duration", "record", "loom", "shaft", "wires", "inputs", "claims"}),
+    "sweep": ("sweep", {"scene", "values", "sample", "sensitivity", "traces", "map"}),
+    "study": ("optimize", {"scene", "maximise", "minimise", "ranges", "choices", "search"}),
+}
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 
@@ -24,6 +31,15 @@ def replaced(keys: Collection[str]) -> tuple[str, ...]:
     if ACCURACY in keys:
         return CHOSEN
     return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
+
+
+def check_kind(tables: Mapping[str, Any], wanted: str) -> None:
+    """Refuse the tables of a file that is plainly of another kind, and name the command that takes it."""
+    given = set(tables)
+    marks = {kind: len(own & given) for kind, (_, own) in KINDS.items() if "scene" not in own - given}
+    found = max(marks, key=lambda kind: marks[kind])
+    if marks[found] > marks.get(wanted, 0):
+        raise LoomfmuError(f"is a {found}, not a {wanted}; loomfmu {KINDS[found][0]} takes it")
 
 
 def check_name(name: str) -> None:

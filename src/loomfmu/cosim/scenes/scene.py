@@ -16,7 +16,7 @@ from .drives import Drive
 from .graph import Wire
 from .instance_tables import instance, instance_tables, own_texts
 from .instances import Instance
-from .keys import COARSE, GRIDS, KEYS, LAGGED, UNIFORM, replaced
+from .keys import COARSE, GRIDS, KEYS, LAGGED, UNIFORM, check_kind, replaced
 from .overrides import components, overridden, override, override_weave
 from .tables import choice, number, toml, truth
 from .tables import text as text_of
@@ -82,6 +82,12 @@ class Scene:
         return [name for name, each in self.instances.items() if not (each.fmu.built or self.isolates(name))]
 
     @property
+    def doubts(self) -> set[str]:
+        """Warnings of values that were probably meant in another unit."""
+        found = {doubt for each in self.instances.values() for doubt in each.doubts.values()}
+        return found - {""}
+
+    @property
     def speed(self) -> float:
         """Mean speed of the main shaft [rad/s]."""
         shaft = self.instances["shaft"]
@@ -121,6 +127,7 @@ def parse(
     `directory` is where the files that the scene names are looked for.
     """
     tables = toml(text)
+    check_kind(tables, "scene")
     rest = override_weave(tables, overrides or {})
     texts = standard_loom.resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
