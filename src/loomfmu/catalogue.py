@@ -1,7 +1,6 @@
 """FMUs with their variables, published machines and rapier heads, and the example scenes."""
 
 import re
-import shutil
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .components import COMPONENTS
 from .errors import LoomfmuError, listed, suggestion
+from .files import ANY, write_file
 from .fmi.description.documentation import accuracy_text, limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .own import load
@@ -38,9 +38,8 @@ def examples() -> Path:
 def start(directory: Path, *, everything: bool = False) -> list[Path]:
     """Write the demo's scene and a sweep of it into a folder, or every example; the files written.
 
-    Raises:
-        LoomfmuError: the folder is a file, or a file is there already; nothing has been written
-        OSError: the folder cannot be written
+    Raises LoomfmuError: the folder is a file, or a file is there already and differs, and nothing has been
+    written; or a file cannot be written, and those before it have been.
     """
     if directory.is_file() or directory.suffix in KINDS:
         raise LoomfmuError(
@@ -51,18 +50,18 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
     chosen = found if everything else [source / name for name in STARTERS]
     targets = {path: directory / path.relative_to(source) for path in chosen}
     for path, target in targets.items():
-        if target.is_symlink() or (target.exists() and not _same(path, target)):
+        if target.is_symlink() or (target.exists() and not _free(target, path)):
             raise LoomfmuError(
                 f"{target} already exists and differs; nothing was written: name another folder"
             )
     for path, target in targets.items():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path, target)
+        write_file(target, path.read_bytes(), ANY)
     return list(targets.values())
 
 
-def _same(path: Path, other: Path) -> bool:
-    return other.is_file() and path.read_bytes() == other.read_bytes()
+def _free(target: Path, path: Path) -> bool:
+    """Whether a file is empty, as a full disk may leave it, or the same as the one to be written."""
+    return target.is_file() and target.read_bytes() in (b"", path.read_bytes())
 
 
 def components(names: Sequence[str]) -> list[type[Component]]:

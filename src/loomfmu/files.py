@@ -139,18 +139,50 @@ def replace_file(path: Path, content: Any) -> Path:
     """Write a file over what may be there, whole or not at all. Raises LoomfmuError naming it."""
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         try:
             with temporary.open("xb") as file:  # new: nothing is written through a link
                 file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            temporary.replace(path)
+            put(temporary, path)
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
         raise cannot_write(path, error) from None
     return path
+
+
+def put(finished: Path, path: Path) -> None:
+    """Give a finished file or folder its final name. Raises OSError.
+
+    After a power loss the name stands for all of it, or for what it replaced. A file system may write a name
+    long before the content, so the content has to be on the disk first.
+    """
+    _wait_for_disk(finished)
+    finished.replace(path)
+    _wait_for_disk(path.parent)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, to outlast a power loss. Raises OSError."""
+    missing = [each for each in (folder, *folder.parents) if not each.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in missing:
+        _wait_for_disk(each.parent)
+
+
+def _wait_for_disk(path: Path) -> None:
+    """Wait until the content of a file, or the names in a folder, are on the disk."""
+    folder = path.is_dir()
+    if folder and os.name == "nt":  # which opens no folder
+        return
+    descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)  # Windows: only what can be written
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if not (folder and error.errno == errno.EINVAL):  # a file system that cannot do so for folders
+            raise
+    finally:
+        os.close(descriptor)
 
 
 def text_of(path: Path) -> str:

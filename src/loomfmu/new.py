@@ -13,7 +13,7 @@ from .components import COMPONENTS
 from .cosim.scenes.keys import KEYS, TAKEN
 from .cosim.scenes.standard_loom import COMPONENT_OF
 from .errors import LoomfmuError
-from .files import ANY, cannot_write, check_target, write_file
+from .files import ANY, cannot_write, check_target, put, write_file
 
 NAME = re.compile("[A-Z][A-Za-z0-9]*")
 TEMPLATE = Path(__file__).with_name("template")
@@ -46,7 +46,7 @@ def new(name: str, directory: Path = Path()) -> list[Path]:
             text = (TEMPLATE / file).read_text(encoding="utf-8")
             text = text.replace("Eccentric", name).replace("eccentric", own)
             write_file(partial / target, text.encode(), ANY)
-        partial.rename(folder)
+        put(partial, folder)
     except OSError as error:
         raise cannot_write(folder, error) from None
     finally:

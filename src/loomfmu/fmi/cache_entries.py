@@ -20,7 +20,7 @@ from pathlib import Path, PurePosixPath
 from types import ModuleType
 
 from ..errors import LoomfmuError
-from ..files import cannot_write
+from ..files import cannot_write, put
 from .cache import cache_directory, is_private
 
 fcntl: ModuleType | None
@@ -191,7 +191,7 @@ def _keep(path: Path, content: bytes) -> bool:
     try:
         partial.touch(mode=0o600, exist_ok=False)
         partial.write_bytes(content)
-        partial.replace(path)
+        put(partial, path)
     finally:
         partial.unlink(missing_ok=True)
     return True

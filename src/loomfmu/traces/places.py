@@ -12,6 +12,8 @@ import secrets
 import weakref
 from pathlib import Path
 
+from ..files import put
+
 
 class Place:
     """Where the file of a trace lies now; shared by all that read it."""
@@ -42,7 +44,7 @@ def replace(new: Path, path: Path) -> None:
             path.rename(aside)
         place.path = aside
         weakref.finalize(place, _remove, aside, os.getpid())
-    new.replace(path)
+    put(new, path)
     if (moved := _places.pop(os.path.realpath(new), None)) is not None:
         moved.path = path
         _places[os.path.realpath(path)] = moved

@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 
 from .. import units
+from ..files import make_folder, put
 from ..version import __version__
 from .chunks import ROWS, Columns
 from .created import INTEGERS, REALS, annotate, dataset
@@ -51,7 +52,7 @@ class TraceWriter:
         self.partial = partial_of(path, secrets.token_hex(4))
         self.channels = channels
         self.rows = 0
-        self.partial.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(self.partial.parent)
         texts = [str(value) for each in (attributes, *groups.values()) for value in each.values()]
         stored = sum(PER_ATTRIBUTE + len(text.encode()) for text in texts)
         header = SPARE + stored + PER_DATASET * (len(channels) + 2)
@@ -187,7 +188,8 @@ class TraceWriter:
         with contextlib.suppress(OSError):  # a full disk: what was flushed can still be read
             self.seal()
             self._annotate({"status": status})
-            self.partial = self.partial.replace(partial_of(self.path))
+            put(self.partial, partial_of(self.path))
+            self.partial = partial_of(self.path)
         return self.partial
 
 
