@@ -1,6 +1,7 @@
 /* The FMI 2.0 motor, which does one thing that no FMU may do: MISBEHAVES, in WHERE, from AT s on in a step. */
 
 #define _GNU_SOURCE
+#include <fenv.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@
 #undef fmi2EnterInitializationMode
 #undef fmi2DoStep
 
-enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE, FORK };
+enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE, FORK, ROUND };
 enum { STEP, INITIALIZATION, TERMINATE, FREE };
 
 #ifndef RETURNED
@@ -69,6 +70,9 @@ static void misbehave(Instance *i)
         break;
     case FORK: /* both go on */
         fork();
+        break;
+    case ROUND: /* as some numerical libraries do */
+        fesetround(FE_UPWARD);
         break;
     case LOG:
         for (int line = 0; line < 10000; line++)

@@ -19,6 +19,7 @@ import loomfmu
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cosim.importing import pool
 from loomfmu.cosim.importing.isolated_slave import IsolatedSlave
+from loomfmu.cosim.master import steppers
 from loomfmu.cosim.run import evaluate
 from loomfmu.cosim.scenes import scene as scenes
 
@@ -349,6 +350,23 @@ def test_a_changed_working_directory_is_changed_back(
     misbehaving(tmp_path, "MOVE", where)
     result = ran(tmp_path, IN_THIS_PROCESS, Path())
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+@pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])
+def test_a_changed_rounding_is_changed_back_before_others_compute(
+    tmp_path: Path, where: str, compiled: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not compiled:
+        monkeypatch.setattr(steppers, "library_of", lambda _source: None)
+    weft = '[weft]\nspeed = "500 rpm"\nfollow_shaft = false\n'
+    found = []
+    for what in ("ROUND", "STATUS"):
+        misbehaving(tmp_path, what, where)
+        found.append(ran(tmp_path, IN_THIS_PROCESS + weft, tmp_path / what).trace["weft.travel"])
+        tiny = 1e-300
+        assert 1.0 + tiny == 1.0
+    np.testing.assert_array_equal(*found)
 
 
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION"])

@@ -76,4 +76,4 @@ class Call(NamedTuple):
 
 def address(function: Any) -> int | None:
     """Where the machine code of a library's function is."""
-    return ctypes.cast(cast(Any, function), ctypes.c_void_p).value
+    return ctypes.cast(cast(Any, getattr(function, "plain", function)), ctypes.c_void_p).value

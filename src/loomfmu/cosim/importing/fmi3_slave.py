@@ -59,7 +59,7 @@ class Fmi3Slave(Slave):
         super().__init__(fmu, name)
         self.pooled = fmu.trusted
         if not fmu.trusted:  # it may have threads that log: they need Python's lock
-            self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+            self._library = self._guarded_library()
         self._flags = _Flags()
         self._types = {port.reference: port.base_type for port in fmu.ports.values()}
         self._names = {port.reference: port.name for port in fmu.ports.values()}
@@ -82,6 +82,8 @@ class Fmi3Slave(Slave):
         except FMICallException as error:
             self.fatal = self.fatal or error.status == FATAL
             raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
+        finally:
+            self.environment.restore()
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the values and enter the initialization."""

@@ -52,7 +52,7 @@ class ForeignSlave(Slave):
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
-        self._library = ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle)
+        self._library = self._guarded_library()
 
     def _open(self) -> Any:
         slave = FMU2Slave(
@@ -86,6 +86,8 @@ class ForeignSlave(Slave):
         except FMICallException as error:
             self.fatal = self.fatal or error.status == FATAL
             raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
+        finally:
+            self.environment.restore()
 
     def finish_initialization(self) -> None:
         """Leave the initialization."""
@@ -95,9 +97,9 @@ class ForeignSlave(Slave):
         kept = list(self.messages)  # it may complain of being asked
         ended, time = ctypes.c_int(), ctypes.c_double(-math.inf)
         try:
-            status = self._library.fmi2GetBooleanStatus(self._component, TERMINATED, ctypes.byref(ended))
+            status = self._library["fmi2GetBooleanStatus"](self._component, TERMINATED, ctypes.byref(ended))
             if status <= WARNING and ended.value:
-                self._library.fmi2GetRealStatus(self._component, LAST_SUCCESSFUL_TIME, ctypes.byref(time))
+                self._library["fmi2GetRealStatus"](self._component, LAST_SUCCESSFUL_TIME, ctypes.byref(time))
         except AttributeError:  # the library lacks a function that it should have
             return None
         self.messages[:] = kept

@@ -28,6 +28,7 @@ from fmpy.fmi2 import (
 
 from ...errors import LoomfmuError
 from . import calls
+from .arithmetic import Environment, Guarded
 from .calls import DISCARD, ERROR, FATAL, OK, PENDING, REFUSED, WARNING, Call, Compiled, Rollback
 from .logged import Logged
 from .ports import Value
@@ -83,6 +84,7 @@ class Slave(Logged):
         self._settings: dict[tuple[str, ...], list[Setting]] = {}
         self.fatal = False
         self.started = False
+        self.environment = Environment()
         self._connect()
 
     def _connect(self) -> None:
@@ -97,8 +99,14 @@ class Slave(Logged):
             raise LoomfmuError(
                 f"{self.name}: {self.fmu.path} cannot be instantiated: {self._reason(error)}{hint}"
             ) from None
+        finally:
+            self.environment.restore()
         self._library: Any = ctypes.PyDLL(self._slave.dll._name, handle=self._slave.dll._handle)
         self._component = ctypes.c_void_p(self._slave.component)
+
+    def _guarded_library(self) -> Guarded:
+        """The library of a third-party FMU: it may have threads that log, which need Python's lock."""
+        return Guarded(ctypes.CDLL(self._slave.dll._name, handle=self._slave.dll._handle), self.environment)
 
     def _open(self) -> Any:
         """fmpy's slave, instantiated."""
@@ -281,6 +289,7 @@ class Slave(Logged):
         """Free the instance, unless it ended fatally: then that is not allowed."""
         if not self.fatal:
             self._slave.freeInstance()
+            self.environment.restore()
             self.fatal = True
 
 

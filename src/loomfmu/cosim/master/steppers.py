@@ -175,6 +175,8 @@ class _Plan(ctypes.Structure):
         ("driven_integer_count", ctypes.c_size_t),
         ("interrupted", ctypes.c_void_p),
         ("loop", ctypes.c_void_p),
+        ("environment", ctypes.c_void_p),
+        ("control", ctypes.c_uint64),
     )
 
 
@@ -205,12 +207,14 @@ class CompiledStepper:
         for action, call in zip(actions, self._calls, strict=True):
             call.logged = ctypes.addressof(action.slave.logged)
             call.silent = ctypes.addressof(action.slave.silent_of(action.call.name))
+        foreign = next((each.slave for each in actions if not each.slave.fmu.trusted), None)
         self._plan = _Plan(
             ctypes.addressof(self._calls), len(actions),
             memory.reals.ctypes.data, len(memory.reals),
             memory.integers.ctypes.data, len(memory.integers),
             *(part for slots in self._driven for part in (slots.ctypes.data, len(slots))),
             ctypes.addressof(memory.interrupted), loop,
+            ctypes.addressof(foreign.environment.content) if foreign else None,
         )  # fmt: skip
         self._outcome = _Outcome()
 

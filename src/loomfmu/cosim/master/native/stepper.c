@@ -1,6 +1,7 @@
 /* Steps the FMUs of a scene along a plan that was prepared in Python: the same calls in the same order, and
  * the same arithmetic for a loop that is iterated. calls.py and steppers.py have the same structs. */
 
+#include <fenv.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -85,6 +86,8 @@ struct plan {
     size_t driven_integer_count;
     const int32_t *interrupted; /* set by whoever wants the end of the run */
     const struct loop *loop;    /* NULL where nothing is iterated */
+    const fenv_t *environment;  /* what third-party FMUs may not change; NULL where there are none */
+    uint64_t control;           /* the words of it that count, once the plan is carried out */
 };
 
 struct outcome {
@@ -169,6 +172,30 @@ static int perform(const struct call *call, double start, double size)
     return call->masters && call->kind == GET_3 && sound && !moved(call) ? REFUSED : status;
 }
 
+/* How this thread rounds, what it traps and flushes to zero. Setting the environment takes longer than
+ * many a call, looking whether it is another one a few nanoseconds. */
+static uint64_t control(void)
+{
+#if defined(__x86_64__)
+    uint32_t vectors;
+    uint16_t stack;
+    __asm__ volatile("stmxcsr %0\n\tfnstcw %1" : "=m"(vectors), "=m"(stack));
+    return (uint64_t)(vectors & ~0x3fu) << 16 | stack; /* without the flags of what has happened */
+#elif defined(__aarch64__)
+    uint64_t word;
+    __asm__ volatile("mrs %0, fpcr" : "=r"(word));
+    return word;
+#else
+#error "for this processor the words that control its arithmetic are not known"
+#endif
+}
+
+static void restore_environment(const struct plan *plan)
+{
+    if (plan->environment && control() != plan->control)
+        fesetenv(plan->environment);
+}
+
 /* Make the calls from first to end; whether all of them went well. */
 static bool perform_all(const struct plan *plan, size_t first, size_t end, double start, double size,
                         struct outcome *outcome)
@@ -177,6 +204,7 @@ static bool perform_all(const struct plan *plan, size_t first, size_t end, doubl
         const struct call *call = &plan->calls[place];
         int64_t logged = *call->logged;
         int status = perform(call, start, size);
+        restore_environment(plan);
         if (status == WARNING && *call->logged == logged && !call->silent->count++)
             call->silent->first = start;
         if (status < OK || status > WARNING) {
@@ -217,11 +245,13 @@ static void learn(const struct loop *loop, const double *change, const double *e
                 (change[place] - answer[place]) * row[column] / scale;
 }
 
-static bool roll(const struct loop *loop, bool back, struct outcome *outcome)
+static bool roll(const struct plan *plan, bool back, struct outcome *outcome)
 {
+    const struct loop *loop = plan->loop;
     for (size_t place = 0; place < loop->rollback_count; place++) {
         const struct rollback *each = &loop->rollbacks[place];
         int status = back ? each->restore(each->instance, *each->state) : each->save(each->instance, each->state);
+        restore_environment(plan);
         if (status != OK && status != WARNING) {
             outcome->call = (int64_t)place;
             outcome->status = back ? NOT_RESTORED : NOT_SAVED;
@@ -283,7 +313,7 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
     double least = INFINITY, left;
     int64_t stalls = 0;
 
-    if (!roll(loop, false, outcome))
+    if (!roll(plan, false, outcome))
         return false;
     for (size_t place = 0; place < count; place++)
         guess[place] = extrapolated(loop, place, plan->reals[loop->slots[place]]);
@@ -291,7 +321,7 @@ static bool settle(const struct plan *plan, double start, double size, struct ou
         for (size_t place = 0; place < count; place++)
             plan->reals[loop->slots[place]] = guess[place];
         memcpy(loop->integers, plan->integers, plan->integer_count * sizeof(int32_t));
-        if (exchange && !roll(loop, true, outcome))
+        if (exchange && !roll(plan, true, outcome))
             return false;
         if (!perform_all(plan, loop->first, loop->end, start, size, outcome))
             return false;
@@ -328,10 +358,11 @@ static bool take_step(const struct plan *plan, double start, double size, struct
 }
 
 /* Take steps; return how many were taken. A row of all values is written after each. */
-EXPORT int64_t advance(const struct plan *plan, int64_t steps, const double *starts, const double *sizes,
+EXPORT int64_t advance(struct plan *plan, int64_t steps, const double *starts, const double *sizes,
                        const double *driven_reals, const int32_t *driven_integers, double *real_rows,
                        int32_t *integer_rows, struct outcome *outcome)
 {
+    plan->control = control();
     for (int64_t step = 0; step < steps; step++) {
         if (*(const volatile int32_t *)plan->interrupted)
             return step;
