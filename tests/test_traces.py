@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import pickle
 import re
 import resource
 import shlex
@@ -575,6 +576,42 @@ def test_a_trace_whose_file_another_process_replaced_says_so(result: loomfmu.Res
     other.replace(path)
     with pytest.raises(LoomfmuError, match=r"run\.h5: another trace has replaced it"):
         _ = trace["belt.margin"]
+
+
+def test_a_copy_from_another_process_reads_the_file_that_it_was_made_of(
+    result: loomfmu.Result, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(result.path.read_bytes())
+    sent = pickle.dumps(Trace(path))
+    np.testing.assert_array_equal(pickle.loads(sent)["belt.margin"], result.trace["belt.margin"])
+    other = tmp_path / "other.h5"
+    other.write_bytes(path.read_bytes())
+    other.replace(path)
+    copied = pickle.loads(sent)  # which takes it over: only what is read of it is refused
+    with pytest.raises(LoomfmuError, match=r"run\.h5: another trace has replaced it"):
+        _ = copied["belt.margin"]
+    path.unlink()
+    with pytest.raises(LoomfmuError, match=r"run\.h5: there is no such file"):
+        _ = copied.rows
+
+
+def test_results_of_other_processes_never_have_the_trace_of_another_run(
+    tmp_path: Path, fmu_cache: None
+) -> None:
+    (tmp_path / "shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
+    script = (
+        "import loomfmu, os, pickle, sys; os.chdir(sys.argv[1])\n"
+        "at = [{'shaft.speed': f'{n}00 rpm'} for n in (4, 5)]\n"
+        "own = [pickle.dumps(loomfmu.run('shaft.toml', set=each)) for each in at]\n"
+        "one = [pickle.dumps(loomfmu.run('shaft.toml', set=each, output='x.h5')) for each in at]\n"
+        "for sent in own + one:\n"
+        "    try:\n"
+        "        print(round(pickle.loads(sent).trace['shaft.velocity'][0] * 30 / 3.14159265))\n"
+        "    except loomfmu.LoomfmuError as error:\n"
+        "        print('another' in str(error))\n"
+    )
+    assert in_a_process(script, str(tmp_path)).split() == ["400", "500", "True", "500"]
 
 
 # ---- runs that are cut off

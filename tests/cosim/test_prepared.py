@@ -15,6 +15,7 @@ import loomfmu
 from loomfmu import Evaluation, LoomfmuError, evaluate, prepare, run
 from loomfmu.cosim import prepared
 from loomfmu.cosim.importing import pool
+from loomfmu.cosim.planning.requested import claims_of
 from loomfmu.cosim.scenes import scene as scenes
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
@@ -180,6 +181,20 @@ def test_threads_take_turns(loom: loomfmu.Prepared) -> None:
 def test_a_copy_is_prepared_where_it_is_loaded(loom: loomfmu.Prepared) -> None:
     copied = pickle.loads(pickle.dumps(loom))
     same(copied.evaluate(VALUES[1]), anew(VALUES[1]))
+
+
+def test_an_evaluation_can_be_sent_to_another_process(loom: loomfmu.Prepared) -> None:
+    found = loom.evaluate(VALUES[1])
+    copied = pickle.loads(pickle.dumps(found))
+    assert copied.claims == found.claims and list(copied.trace) == list(found.trace)
+    for signal in found.trace:
+        np.testing.assert_array_equal(copied.trace[signal], found.trace[signal])
+    stroke = "heald_1.stroke"
+    assert copied.trace.parameter(stroke) == found.trace.parameter(stroke)
+    # what is judged on it is read where it lies now, not where it lay in the other process
+    assert [claim.judge(copied.trace).worst for claim in claims_of(copied.scene)] == [
+        claim.judge(found.trace).worst for claim in claims_of(found.scene)
+    ]
 
 
 def test_further_signals_are_kept() -> None:

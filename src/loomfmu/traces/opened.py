@@ -22,20 +22,26 @@ class TraceFile:
     """The file of a trace, wherever a newer one under its name has moved it to.
 
     Messages call it what it was `given` as. Raises LoomfmuError for what is not a trace, is damaged or was
-    replaced by another program.
+    replaced by another program: at once, or for a copy from another process, which has the `state` that the
+    file had there, when it is first read.
     """
 
-    def __init__(self, path: Path):
+    def __init__(self, path: Path, state: tuple[int, ...] = ()):
         self._place = place_of(path)
         self.given = path
         self._file: Any = None
         self._turn = RLock()  # threads may share a trace
-        self._state: tuple[int, ...] = ()
+        self._state = state
+        if state:
+            return
         with self.opened() as file:
             if lacking := _lacking(file):
                 raise LoomfmuError(f"{self.given}: not a trace of loomfmu ({lacking} is missing)")
             if file.attrs["status"] != "running":  # else it grows
                 self._state = _state(self.path)
+
+    def __reduce__(self) -> tuple[type["TraceFile"], tuple[Any, ...]]:
+        return TraceFile, (self.path, self._state)  # not opened before it is read, unless it grows
 
     @property
     def path(self) -> Path:
@@ -121,6 +127,6 @@ def _lacking(file: Any) -> str:
 
 
 def _state(path: Path) -> tuple[int, ...]:
-    """What tells a file from another one under its name."""
+    """What tells a file from another one under its name, on every machine that shares it."""
     found = path.stat()
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+    return found.st_ino, found.st_size, found.st_mtime_ns

@@ -43,8 +43,9 @@ class Trace(Signals):
         self._cache: dict[str, NDArray[Any]] = {}
         self._texts: dict[tuple[str, str], str | None] = {}
 
-    def __reduce__(self) -> tuple[type["Trace"], tuple[Path]]:
-        return Trace, (self.path,)
+    def __getstate__(self) -> dict[str, Any]:
+        """Which file it is. A copy in another process reads values when it needs them, of this file alone."""
+        return {"_file": self._file, "given": self.given, "name": self.name, "_cache": {}, "_texts": {}}
 
     def __repr__(self) -> str:
         return f"<Trace {self.given}>"

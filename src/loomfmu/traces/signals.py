@@ -171,6 +171,9 @@ class Signals(ABC):
         )
 
 
+DERIVED = ("_joined", "_places", "time", "shaft_angle")  # of the blocks of a recording, when first read
+
+
 class Recording(Signals):
     """A run that is kept in memory.
 
@@ -188,7 +191,7 @@ class Recording(Signals):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
-        self._wires = wires
+        self._wires = dict(wires)
         self._parameters: dict[str, float] = {}
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
@@ -200,8 +203,13 @@ class Recording(Signals):
         """Keep a block: values along the rows, signals along the columns."""
         self._blocks.append((time, angle, reals, integers))
         self._shared.clear()
-        for kept in ("_joined", "_places", "time", "shaft_angle"):
-            self.__dict__.pop(kept, None)
+        for derived in DERIVED:
+            self.__dict__.pop(derived, None)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The samples, without what was derived of them: addresses mean nothing in another process."""
+        kept = {name: value for name, value in self.__dict__.items() if name not in DERIVED}
+        return kept | {"_shared": {}}
 
     @property
     def wires(self) -> Mapping[str, str]:
