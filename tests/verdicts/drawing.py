@@ -9,6 +9,7 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from loomfmu import prepare
 from loomfmu.cosim.scenes.scene import parse
 
 TABLES = tomllib.loads((Path(__file__).with_name("families.toml")).read_text(encoding="utf-8"))
@@ -16,6 +17,8 @@ FAMILIES = tuple(TABLES["families"])
 PLACE = re.compile(r"<(\w+)>")
 NAMED, SIGNALS = 4, 5  # claims of a scene: of kinds that its family lists, and on outputs that are drawn
 COARSEST, FINEST, MANY = 45, 4000, 1440  # steps in a revolution
+FASTEST = 900.0  # rev/min
+JUMP = (math.log(1e-5), math.log(1e-2))  # of a revolution, from one row of a table to a near one
 OWN = ("bound", "between", "also", "whole")  # what a listed claim says to this test, not to its scene
 
 
@@ -62,10 +65,21 @@ def _family(name: str) -> dict[str, Any]:
 
 def _filled(text: str, draw: Mapping[str, Any], random: Random) -> str:
     """The text with all that it names drawn, and what that names in turn."""
-    while place := PLACE.search(text):
-        found = _value(draw[place[1]], random)
+    while places := list(PLACE.finditer(text)):
+        place = min(places, key=lambda each: "at" in draw[each[1]])  # what others decide comes last
+        how = draw[place[1]]
+        found = _near(text, how["at"], random) if "at" in how else _value(how, random)
         text = text[: place.start()] + found + text[place.end() :]
     return text
+
+
+def _near(text: str, signal: str, random: Random) -> str:
+    """A speed near the lowest value that a signal has at another speed."""
+    claim = f'\n[[claims]]\nkind = "above"\nsignal = "{signal}"\nbound = 1.0\n'
+    with prepare(parse(PLACE.sub("400", text) + claim)) as loom:
+        (verdict,) = loom.evaluate(errors="none").claims
+    away = random.choice([-1.0, 1.0]) * math.exp(random.uniform(math.log(1e-6), math.log(0.1)))
+    return f"{min(verdict.displayed(verdict.worst) * (1.0 + away), FASTEST):.9g}"
 
 
 def _value(how: Any, random: Random) -> str:
@@ -74,8 +88,9 @@ def _value(how: Any, random: Random) -> str:
     if "log" in how:
         return f"{math.exp(random.uniform(*map(math.log, how['log']))):.6g}"
     if "table" in how:
-        times = sorted({0.0, *(round(random.uniform(0.0, 3.0), 6) for _ in range(random.randint(1, 8)))})
-        rows = [f'[{time}, "{random.uniform(*how["table"]):.6g} {how["unit"]}"]' for time in times]
+        times = {0.0, *(round(random.uniform(0.0, 3.0), 6) for _ in range(random.randint(1, 8)))}
+        times |= {round(each + math.exp(random.uniform(*JUMP)), 6) for each in times if random.random() < 0.2}
+        rows = [f'[{time}, "{random.uniform(*how["table"]):.6g} {how["unit"]}"]' for time in sorted(times)]
         return f"[{', '.join(rows)}]"
     return str(random.choice(how["of"]))
 

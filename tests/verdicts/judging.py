@@ -48,7 +48,10 @@ class Stated(NamedTuple):
 
 @dataclass(frozen=True)
 class Found:
-    """One verdict beside the truth; `first` is the first one of its claim and steps, whose error counts."""
+    """One verdict beside the truth; `first` is the first one of its claim and steps, whose error counts.
+
+    `together` are all claims that were judged in that run: a window grid has steps for each of them.
+    """
 
     scene: Drawn
     stated: Stated
@@ -57,6 +60,7 @@ class Found:
     verdict: Verdict
     truth: Truth
     first: bool
+    together: Sequence[Stated]
 
     @property
     def claim(self) -> Claim:
@@ -162,7 +166,8 @@ def _truth(stated: Stated, traces: Sequence[Signals]) -> Truth:
 
 
 def _on(scene: Drawn, claims: Sequence[tuple[Stated, Truth]], setting: dict[str, Any]) -> Iterator[Found]:
-    loaded = parse(text_with(scene, [stated for stated, _truth in claims]))
+    together = [stated for stated, _truth in claims]
+    loaded = parse(text_with(scene, together))
     try:
         with prepare(loaded, set=setting) as loom:
             found = loom.evaluate()
@@ -170,7 +175,7 @@ def _on(scene: Drawn, claims: Sequence[tuple[Stated, Truth]], setting: dict[str,
         return
     steps, before = found.steps / found.scene.periods, None
     for (stated, truth), verdict in zip(claims, found.claims, strict=True):
-        yield Found(scene, stated, setting, steps, verdict, truth, stated.claim is not before)
+        yield Found(scene, stated, setting, steps, verdict, truth, stated.claim is not before, together)
         before = stated.claim
 
 
@@ -180,7 +185,7 @@ def confirmed(found: Sequence[Found]) -> list[Found]:
     if not doubtful:
         return list(found)
     scene, finest = doubtful[0].scene, CONFIRMED * doubtful[0].scene.fine[-1]
-    traces = fine_runs(scene, [finest - 2, finest])
+    traces = fine_runs(scene, [finest // 2, finest])
     better = {id(each.truth): _truth(each.stated, traces) for each in doubtful}  # one for each bound
     return [_with_better(each, better.get(id(each.truth))) for each in found]
 

@@ -24,7 +24,8 @@ def _paragraph(found: Found, path: Path) -> str:
         for key, value in found.setting.items()
     )
     path.parent.mkdir(parents=True, exist_ok=True)
-    text = text_with(found.scene, [found.stated])
+    others = [each for each in found.together if each is not found.stated] if "grid" in found.setting else []
+    text = text_with(found.scene, [found.stated, *others])
     path.write_text(f"{setting}\n{text}", encoding="utf-8")
     verdict, truth = found.verdict, found.truth
     fault = f"wrong: {found.wrong}" if found.wrong else "error too small"
