@@ -13,6 +13,8 @@ from typing import Any, Literal, get_args
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..traces import Signals, Verdict
 from . import accuracy
+from .claims.claim import Claim
+from .claims.measures import measure
 from .estimates import Coarser, Estimates
 from .importing import pool
 from .importing.fmus import Flavour
@@ -36,14 +38,15 @@ MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
 class Pattern:
     """A scene that is read, wired and planned, for runs that differ in values alone."""
 
-    def __init__(self, scene: Scene, values: Sequence[str]):
+    def __init__(self, scene: Scene, values: Sequence[str], measures: Sequence[Claim] = ()):
         self.scene = scene
         self.values = Values(scene)
         self.claims = claims_of(scene)
         wanted = with_rates(scene, [*shaft_angle(scene), *values])
-        self.judged = tuple(dict.fromkeys([*wanted, *judged_by(scene)]))
+        self._all = [*self.claims, *measures]
+        self.judged = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
-        self._estimates = Estimates(scene, self.claims, self._on, len(self.judged))
+        self._estimates = Estimates(scene, self._all, self._on, len(self.judged))
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
@@ -75,10 +78,10 @@ class Pattern:
         return self._in_memory(scene, self.judged, grid).recording
 
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
-        return tuple(claim.judge(trace) for claim in self.claims)
+        return tuple(claim.judge(trace) for claim in self._all)
 
     def _estimated(self, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
-        return self._estimates.of(trace, self._judged(trace), coarser)
+        return self._estimates.of(trace, self._judged(trace), coarser)[: len(self.claims)]
 
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
@@ -90,9 +93,10 @@ class Pattern:
             wanted = self._estimates.near(verdicts) if errors == "near" else range(len(verdicts))
             coarser = known or self._estimates.coarser(scene, grid, wanted)
             verdicts = self._estimates.of(found.recording, verdicts, coarser)
+        count = len(self.claims)
         return Evaluation(
-            scene, verdicts, (*scene.notes, *found.warnings), explained(found.plan), found.steps,
-            found.recording, ended=ended_text(found.ended), chosen=chosen,
+            scene, verdicts[:count], (*scene.notes, *found.warnings), explained(found.plan), found.steps,
+            found.recording, verdicts[count:], ended=ended_text(found.ended), chosen=chosen,
         )  # fmt: skip
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
@@ -165,12 +169,13 @@ class Prepared:
 
     def __init__(
         self, scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: Flavour,
-        values: Sequence[str],
+        values: Sequence[str], measures: Sequence[str] = (),
     ):  # fmt: skip
         if not isinstance(values, list | tuple) or not all(isinstance(signal, str) for signal in values):
             raise LoomfmuError(f'values = {shown(values)} is not a list such as ["belt.margin"]')
         self._values, self._flavour = tuple(values), flavour
-        self._base = Pattern(checked(scene, overrides, flavour), self._values)
+        self._measures = tuple(measures)
+        self._base = self._new(checked(scene, overrides, flavour))
         self._patterns: OrderedDict[str, Pattern] = OrderedDict()
         self._turn = threading.Lock()
 
@@ -224,7 +229,10 @@ class Prepared:
         self.close()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Prepared, (self.scene, None, self._flavour, self._values)
+        return Prepared, (self.scene, None, self._flavour, self._values, self._measures)
+
+    def _new(self, scene: Scene) -> Pattern:
+        return Pattern(scene, self._values, list(map(measure, self._measures)))
 
     def _ready(self, given: dict[str, Any] | None) -> tuple[Pattern, Scene]:
         """What runs the scene with these values. Raises LoomfmuError for a value that cannot be."""
@@ -240,7 +248,7 @@ class Prepared:
                 pattern = self._pattern({key: each for key, each in overrides.items() if key not in values})
             return pattern, pattern.with_values(values, overrides)
         except LoomfmuError:  # what was wrong, if anything was, is found where all is read
-            pattern = Pattern(checked(self.scene, overrides, self._flavour), self._values)
+            pattern = self._new(checked(self.scene, overrides, self._flavour))
             for doubt in pattern.scene.doubts - self.scene.doubts:  # nobody reads the warnings of each run
                 raise LoomfmuError(f"{doubt}, else the unit as well") from None
             return pattern, pattern.scene
@@ -249,7 +257,7 @@ class Prepared:
         """The scene with other than values; the last ones are kept."""
         key = repr(overrides)
         if key not in self._patterns:
-            self._patterns[key] = Pattern(checked(self.scene, overrides, self._flavour), self._values)
+            self._patterns[key] = self._new(checked(self.scene, overrides, self._flavour))
         self._patterns.move_to_end(key)
         if len(self._patterns) > MOST_PATTERNS:
             self._patterns.popitem(last=False)

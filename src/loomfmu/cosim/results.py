@@ -80,6 +80,10 @@ class Result(Judged):
 
 @dataclass(frozen=True, repr=False)
 class Evaluation(Judged):
-    """A finished run with its trace in memory: `trace["belt.margin"]` are the signal's values in SI."""
+    """A finished run with its trace in memory: `trace["belt.margin"]` are the signal's values in SI.
+
+    `measured` has what was to be measured: its number as the worst value, and its error.
+    """
 
     trace: Recording
+    measured: tuple[Verdict, ...] = ()

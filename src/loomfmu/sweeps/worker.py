@@ -18,7 +18,6 @@ from ..cosim.claims.claims import called
 from ..cosim.importing.fmus import Flavour
 from ..cosim.master.master import Interrupted
 from ..cosim.prepared import Errors, Prepared
-from ..cosim.run import prepare
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError, described
 from ..traces import Verdict
@@ -38,6 +37,7 @@ class Job:
     values: tuple[str, ...]
     identity: str
     errors: Errors = "near"
+    measures: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,8 @@ class ClaimResult(NamedTuple):
 
 @dataclass(frozen=True)
 class Batch:
-    """Results of some rows, each: final values, then a `ClaimResult` of each claim, whether all hold, the
-    first claim that does not, warnings, and what went wrong.
+    """Results of some rows, each: final values and measures, then a `ClaimResult` of each claim, whether all
+    hold, the first claim that does not, warnings, and what went wrong.
 
     None stands for what there is not.
 
@@ -150,7 +150,7 @@ def _prepared(job: Job) -> Prepared:
         raise LoomfmuError(
             f"{job.path}: a worker has another version of loomfmu, or the file has changed since the start"
         )
-    return prepare(scene, flavour=job.flavour, values=job.values)
+    return Prepared(scene, None, job.flavour, job.values, job.measures)
 
 
 def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any], tuple[Verdict, ...]]:
@@ -158,6 +158,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
     try:
         found = loom.evaluate(settings, errors=job.errors)
         values = [found.trace[signal][-1].item() for signal in job.values]
+        values += [_finite(each.worst) for each in found.measured]
     except (OSError, MemoryError):  # of the machine, not of the row
         raise
     except Interrupted:
@@ -179,7 +180,8 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:
     """The result of a row that has none."""
-    return [None] * len(job.values) + [*ClaimResult()] * len(scene.claims) + [None] * 3 + [reason]
+    empty = [None] * len((*job.values, *job.measures))
+    return [*empty, *[*ClaimResult()] * len(scene.claims), None, None, None, reason]
 
 
 def _finite(value: float) -> float | None:

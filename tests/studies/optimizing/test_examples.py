@@ -25,7 +25,7 @@ def best_of_grid(found: Optimum, grid: Sequence[Sequence[object]]) -> tuple[floa
     """The best goal of the designs of a grid in which all claims hold, and how many designs there are."""
     study, count, heights = found.study, 0, []
     (goal,) = study.goals
-    with prepare(study.scene, values=study.values) as loom:
+    with prepare(study.scene, values=study.measures) as loom:
         for values in product(*grid):
             count += 1
             run = loom.evaluate(study.setting(values))  # type: ignore[arg-type]

@@ -12,6 +12,7 @@ from study_files import DEMO, FAST, QUICK, SIMS, study
 from loomfmu import LoomfmuError, Optimum, evaluate, optimize
 from loomfmu.cli import main
 from loomfmu.design import loom as design
+from loomfmu.studies.optimizing import optimum
 from loomfmu.studies.optimizing import runs as runs_module
 from loomfmu.studies.optimizing.runs import Design
 from loomfmu.studies.optimizing.search import _front
@@ -91,7 +92,7 @@ def test_of_two_claims_that_bind_together_neither_is_worth_anything_alone(tmp_pa
     scene.write_text(f"{head}[[claims]]{claim}\n[[claims]]{claim.replace(SAFE, 'again')}")
     text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["400 rpm", "900 rpm"]\n'
     found = optimize(study(tmp_path, text, scene, FAST + QUICK), processes=1)
-    assert {*found.binding} <= {SAFE, "again"} and {each.gain for each in found.front[0].limits} == {0.0}
+    assert found.binding == (SAFE, "again") and {each.gain for each in found.front[0].limits} == {0.0}
     assert "is worth nothing alone" in str(found)
 
 
@@ -267,6 +268,39 @@ def test_a_goal_may_be_the_distance_of_a_claim(tmp_path: Path) -> None:
     found = optimize(study(tmp_path, text, head=FAST + QUICK), processes=1)
     assert found.values == pytest.approx({"shaft.speed": 500.0 * RPM, "belt.guide_clearance": 0.2e-3})
     assert found.goal == pytest.approx(found.verdicts[0].distance, rel=1e-12)
+
+
+def test_a_goal_of_a_signal_is_spelt_and_has_an_error(tmp_path: Path) -> None:
+    """The lowest acceleration is that of the samples of far finer steps, within its error."""
+    text = """maximise = "lowest heald_1.acceleration"
+[choices]
+"dobby.law" = ["sloped_line", "sloped_sine"]"""
+    found = optimize(study(tmp_path, text), processes=1)
+    setting = {"revolutions": 1, "steps_per_revolution": 5760, "dobby.law": found.values["dobby.law"]}
+    run = evaluate(DEMO, set=setting, values=["heald_1.acceleration"], errors="none").trace
+    (error,) = found.front[0].errors
+    assert abs(found.goal - np.min(run["heald_1.acceleration"])) <= error < 1e-2 * abs(found.goal)
+    assert f"m/s2 (error {error:.1g} m/s2)." in str(found)
+
+
+def test_a_value_that_changes_nothing_within_a_range_says_so(tmp_path: Path) -> None:
+    found = optimize(study(tmp_path, SMALL, head=FAST + QUICK), processes=1)
+    (best,) = found.front
+    low, high = best.indifferent["dobby.speed_reduction"]
+    assert low <= best.values["dobby.speed_reduction"] <= high and high - low > 0.1  # type: ignore[operator]
+    assert "shaft.speed" not in best.indifferent
+    rows = {row[0]: row[3] for row in optimum.value_rows(found, best)}
+    assert rows["dobby.speed_reduction"] == f"indifferent from {low:.7g} to {high:.7g}"
+    # all claims hold at both ends as at the best value; just beyond a low end one does not
+    for share, fine in ((low, True), (low - 1e-3, False)):
+        setting = {
+            "revolutions": 1,
+            "steps_per_revolution": 90,
+            **best.values,
+            "dobby.speed_reduction": share,
+        }
+        judged = evaluate(DEMO, set=setting, errors="none")
+        assert all(each.distance >= 0.0 for each in judged.claims) == fine
 
 
 def test_whole_numbers_may_vary(tmp_path: Path) -> None:

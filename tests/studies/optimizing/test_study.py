@@ -25,7 +25,7 @@ def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
     assert [(each.kind, each.sign) for each in found.goals] == [
         ("signal", 1.0), ("variable", -1.0), ("claim", -1.0)
     ]  # fmt: skip
-    assert found.values == ("damper_1.peak_load",)
+    assert found.measures == ("damper_1.peak_load",)
     assert found.shares == (0.02,) * len(found.scene.claims)
     speed = found.variables[0]
     assert speed.value(0.0) == pytest.approx(41.887902) and speed.value(1.0) == pytest.approx(94.247780)
@@ -56,6 +56,17 @@ def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
         (f"maximise = 3\n{SPEED}", "maximise = 3 is not a name"),
         (f"maximise = 'belt.magrin'\n{SPEED}",
          "maximise: belt has no output 'magrin'; did you mean 'margin'?"),
+        (f"minimise = 'heald_1.acceleration'\n{SPEED}",
+         "heald_1.acceleration rises and falls in the run, so that its final value says little; write"
+         " 'highest heald_1.acceleration', 'lowest heald_1.acceleration', 'mean heald_1.acceleration' or"
+         " 'heald_1.acceleration at 90 deg'"),
+        (f"minimise = 'highest heald_1.aceleration'\n{SPEED}",
+         "minimise: heald_1 has no output 'aceleration'; did you mean 'acceleration'?"),
+        (f"minimise = 'highst heald_1.acceleration'\n{SPEED}",
+         "minimise: 'highst heald_1.acceleration' is not one of 'highest SIGNAL', 'lowest SIGNAL'"),
+        (f"minimise = 'heald_1.acceleration at 90 mm'\n{SPEED}", "'90 mm' is in mm, which does not fit rad"),
+        ("minimise = 'highest shaft.speed'\n[ranges]\n'heald.stroke' = ['90 mm', '98 mm']",
+         "shaft.speed is a parameter; put it into [ranges]"),
         (f"maximise = ['shaft.speed', 'shaft.speed']\n{SPEED}", "maximise: shaft.speed is already a goal"),
         (f"maximise = 'dobby.law'\n{SPEED}[choices]\n'dobby.law' = ['uniform', 'sloped_sine']",
          "is a choice; a goal must be a number"),

@@ -109,10 +109,10 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     check_speed(name, float(value), wanted)
 
 
-def judged_by(scene: Scene) -> list[str]:
-    """The signals that the scene's claims need, those that hold extremes of these, and the rates of all."""
+def judged_by(scene: Scene, claims: Iterable[Claim] | None = None) -> list[str]:
+    """The signals that claims, by default the scene's, need, what holds extremes of these, and all rates."""
     wanted = []
-    for claim in claims_of(scene):
+    for claim in claims_of(scene) if claims is None else claims:
         signals = list(signals_of(scene, claim))
         held = (output_port(scene, each, "claim").beside for each in signals)
         names = [each.lowest if claim.sense > 0 else each.highest for each in held]

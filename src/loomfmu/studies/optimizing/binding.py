@@ -13,6 +13,7 @@ from .runs import Design, Floats, Runs, about
 
 NEAR = 1e-6  # of a claim's scale or of a range: what is as near to its end may bind
 STEP = 1e-3  # of the ranges, within which a better design is looked for
+FAR = 1e9  # of a claim's scale: room that no step takes
 PRICE = 1e-9  # of the goal: what is gained by less room does not bind
 RELAXED = 0.01  # of a bound, or of a range
 STILL, NOISE = 0.1, 1e-6  # of a gain, and of the goal: what tangents may promise without it; more is a kink
@@ -34,8 +35,9 @@ class Limit:
 def binding(runs: Runs, design: Design, names: Sequence[str], bounds: Floats) -> list[Limit]:
     """The claims, by their names and bounds, and the values at an end of their range that limit a design.
 
-    A linear program asks for a step that is better in all goals; what has a price in it binds. Where a claim
-    jumps, it has no slope: it binds if it fails after that step.
+    A linear program asks for a step that is better in all goals; what has a price in it binds, and so does
+    what a step that minds no claim would take below its bound: of several claims that bind together only one
+    has a price. Where a claim jumps, it has no slope: it binds if it fails after that step.
     """
     places = runs.study.continuous
     ranges = [runs.study.variables[place].key for place in places]
@@ -47,7 +49,9 @@ def binding(runs: Runs, design: Design, names: Sequence[str], bounds: Floats) ->
         return []
     step, claims, ends = _priced(here)
     near = design.room <= NEAR
-    binds = near & (claims > PRICE)
+    free = _solved(here, np.full(len(near), FAR), np.maximum(-STEP, -x), np.minimum(STEP, 1.0 - x))
+    lost = here.changes @ free.x[: len(x)] < -PRICE if free is not None else np.zeros_like(near)
+    binds = near & ((claims > PRICE) | lost)
     (after,) = function([np.clip(x + step, 0.0, 1.0)])
     jumps = near & ~binds & (after.room < 0.0) if after is not None else np.zeros_like(near)
     relaxed = RELAXED * np.where(bounds == 0.0, 1.0, np.abs(bounds) / runs.limits.scales)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ... import units
 from ...cosim.claims.claims import called
-from ...cosim.run import evaluate
+from ...cosim.prepared import Prepared
 from ...errors import listed
 from ...extras import install, installed
 from ...files import ANY, write_file
@@ -23,6 +23,7 @@ from ...sweeps.directory import files
 from ...traces import Verdict
 from .. import rewritten
 from .binding import binding
+from .indifferent import indifferent
 from .optimum import Best, Optimum, front_table
 from .runs import Design, Point, Runs
 from .start import SAME
@@ -98,11 +99,14 @@ def _written(runs: Runs, design: Design, names: Sequence[str], path: Path) -> Be
     """A best design, written as a scene and judged as that scene runs."""
     study = runs.study
     rewritten.write(study.scene, study.written(design.values), path, True, _origin(study, path))
-    verdicts = evaluate(path, flavour=study.flavour).claims  # with their errors, as any run of it has them
+    # with their errors, as any run of it has them
+    found = Prepared(path, None, study.flavour, (), study.measures).evaluate()
+    verdicts, of_kind = found.claims, {"signal": found.measured, "claim": found.claims}
+    errors = [of_kind[goal.kind][goal.place].error if goal.kind in of_kind else 0.0 for goal in study.goals]
     values = dict(zip((each.key for each in study.variables), design.values, strict=True))
     goals = [goal.sign * float(height) for goal, height in zip(study.goals, design.heights, strict=True)]
     limits = binding(runs, design, names, np.array([each.bound for each in verdicts]))
-    return Best(values, tuple(goals), verdicts, tuple(limits), path)
+    return Best(values, tuple(goals), tuple(errors), verdicts, tuple(limits), indifferent(runs, design), path)
 
 
 def _origin(study: Study, path: Path) -> str:

@@ -7,7 +7,7 @@ from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 
-from ...cosim.run import evaluate
+from ...cosim.prepared import Prepared
 from ...cosim.scenes.scene_files import files_of
 from ...errors import LoomfmuError, path_of
 from ...extras import need
@@ -55,14 +55,15 @@ def optimize(
     need(path, "study", *["sweep"] * bool(scheduler))
     from ...sweeps.directory import owned
 
-    job = replace(job_of(study), errors="none")  # a search goes up to the bounds
+    job = replace(job_of(study), errors="none", measures=study.measures)  # a search goes up to the bounds
     files = Files(path_of(output, "output") if output is not None else Path("results") / study.name)
     fingerprint = hashlib.sha256(f"{study.text}\0{job.identity}".encode()).hexdigest()
     with resumable(files.directory, "runs"), ExitStack() as stack:
         own = own_point(study)
         try:  # what could not be run or written is refused now, not after the search
             files.check(study, own)
-            verdicts = evaluate(study.scene, flavour=study.flavour, errors="none").claims
+            loom = Prepared(study.scene, None, study.flavour, (), study.measures)
+            verdicts = loom.evaluate(errors="none").claims
         except LoomfmuError as error:
             raise LoomfmuError(f"{path}: {error}") from None
         limits = limits_of(study, verdicts, path)

@@ -23,14 +23,17 @@ CLAIMS = ("verdict", "claim", "worst", "bound", "distance", "")
 class Best:
     """A best design: the values (SI) of what varies by their keys, its goals, and the verdicts on its claims.
 
-    `limits` are what keeps it from being better: claims that are as near to their bounds as they may be, and
-    values that are at an end of their range. `scene` is the file that has it.
+    `errors` are the numerical ones of its goals; `indifferent` has the ranges of values in which it is as
+    good, each alone. `limits` are what keeps it from being better: claims that are as near to their bounds as
+    they may be, and values that are at an end of their range. `scene` is the file that has it.
     """
 
     values: dict[str, Value]
     goals: tuple[float, ...]
+    errors: tuple[float, ...]
     verdicts: tuple[Verdict, ...]
     limits: tuple[Limit, ...]
+    indifferent: dict[str, tuple[float, float]]
     scene: Path
 
     @property
@@ -116,6 +119,18 @@ def shown_goal(goal: Goal, best: Best, place: int) -> str:
     return _shown(goal, best.goals[place])
 
 
+def shown_error(goal: Goal, best: Best, place: int) -> str:
+    """The numerical error of a goal with its unit; an empty text where it is a value that was chosen."""
+    error = best.errors[place]
+    if goal.kind == "variable":
+        return ""
+    if not math.isfinite(error):
+        return "error unknown"
+    return (
+        f"error {best.verdicts[goal.place].shown_error if goal.kind == 'claim' else _shown(goal, error, 1)}"
+    )
+
+
 def _shown(goal: Goal, value: float, digits: int = 7) -> str:
     """A value of a goal with its unit."""
     shown, unit = value / units.unit(goal.display).factor, goal.unit if goal.display == "1" else goal.display
@@ -142,13 +157,21 @@ def _note(found: Optimum, best: Best, key: str | int) -> str:
         if key == (limit.name if limit.claim is None else limit.claim):
             gain, way = shown_gain(found, best, limit), "wider" if limit.claim is None else "looser"
             return f"binds; 1 % {way}: {gain}" if gain else "binds"
+    if key in best.indifferent:
+        varied = {each.key: each.varied for each in found.study.variables}[str(key)]
+        return f"indifferent from {' to '.join(map(varied.show, best.indifferent[str(key)]))}"
     return ""
 
 
 def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     """A row for each goal and each variable, below `HEADINGS`."""
     goals: list[tuple[str, ...]] = [
-        (goal.words, shown_goal(goal, best, place), "", "goal")
+        (
+            goal.words,
+            shown_goal(goal, best, place),
+            "",
+            "; ".join(filter(None, ("goal", shown_error(goal, best, place)))),
+        )
         for place, goal in enumerate(found.study.goals)
     ]
     return goals + [
@@ -201,7 +224,9 @@ def conclusion(found: Optimum) -> Iterator[str]:
     elif len(found.study.goals) == 1:
         (best,) = found.front
         goal = found.study.goals[0]
-        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}."
+        error = shown_error(goal, best, 0)
+        known = f" ({error})" if error else ""
+        yield f"{goal.words[0].upper()}{goal.words[1:]}: {shown_goal(goal, best, 0)}{known}."
         if best.limits:
             yield f"It is limited by {' and '.join(map(_in_words, best.limits))}."
             yield from _gains(found, best)

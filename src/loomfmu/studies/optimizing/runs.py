@@ -105,7 +105,7 @@ class Runs:
 
     def _design(self, point: Point, values: tuple[Value, ...], result: list[Any]) -> Design:
         study = self.study
-        signals, claims = result[: len(study.values)], result[len(study.values) :]
+        signals, claims = result[: len(study.measures)], result[len(study.measures) :]
         size = len(ClaimResult._fields)
         parts = range(0, size * len(study.scene.claims), size)
         found = [ClaimResult(*claims[part : part + size]) for part in parts]

@@ -7,6 +7,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
+from ...cosim.claims.measures import measure, signal_in
 from ...cosim.importing.fmus import Flavour
 from ...cosim.planning.requested import output_port
 from ...cosim.scenes.scene import Scene
@@ -92,7 +93,7 @@ class Study:
     header: Header
     variables: tuple[Variable, ...]
     goals: tuple[Goal, ...]
-    values: tuple[str, ...]
+    measures: tuple[str, ...]
     required: tuple[bool, ...]
     shares: tuple[float, ...]
     amounts: tuple[str, ...]
@@ -117,6 +118,11 @@ class Study:
     def flavour(self) -> Flavour:
         """That of its FMUs."""
         return self.header.flavour
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """Signals whose final values are wanted: none."""
+        return ()
 
     @property
     def fixed(self) -> dict[str, Any]:
@@ -238,7 +244,7 @@ def _goals(scene: Scene, tables: dict[str, Any], known: Sequence[Variable]) -> l
 
 
 def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variable], signals: int) -> Goal:
-    """A goal: a variable, a claim by its name, or the final value of an output."""
+    """A goal: a variable, a claim by its name, or what an output is worth."""
     keys = [each.key for each in known]
     if name in keys:
         each = known[keys.index(name)].varied
@@ -248,12 +254,16 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
     claims = [str(claim.get("name")) for claim in scene.claims]
     if name in claims:
         return Goal(name, sign, "claim", claims.index(name))
-    owner, _, variable = name.rpartition(".")
+    signal = signal_in(name)
+    owner, _, variable = signal.rpartition(".")
     settable = scene.instances[owner].fmu.ports.get(variable) if owner in scene.instances else None
     if settable and settable.causality == "parameter":
-        raise LoomfmuError(f"{way}: {name} is a parameter; put it into [ranges]")
+        raise LoomfmuError(f"{way}: {signal} is a parameter; put it into [ranges]")
     try:
-        port = output_port(scene, name, way)
+        measure(name, f"{way}: ")
+        port = output_port(scene, signal, way)
+        if name != signal and port.kind == "Boolean":
+            raise LoomfmuError(f"{way}: {signal} is not a number; a goal must be one")
     except LoomfmuError as error:
         near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
         raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None

@@ -1,0 +1,61 @@
+"""What a signal is worth, on a curve that is known in closed form."""
+
+import math
+
+import numpy as np
+import pytest
+
+from loomfmu import LoomfmuError
+from loomfmu.cosim.claims.measures import measure, signal_in
+from loomfmu.traces.signals import Channel, Recording
+
+TURN = 2.0 * math.pi
+
+
+def swing() -> Recording:
+    """Two revolutions of a second each, in which a signal is 3 sin(angle) + time, and a count rises."""
+    time = np.linspace(0.0, 2.0, 81)
+    angle = TURN * time
+    value, rate = 3.0 * np.sin(angle) + time, 3.0 * TURN * np.cos(angle) + 1.0
+    names = {"shaft.angle": "rad", "a.value": "m", "a.rate": "m/s", "a.count": "1"}
+    channels = [
+        Channel(*name.split("."), unit, unit, "", place, rate="rate" if name == "a.value" else None)
+        for place, (name, unit) in enumerate(names.items())
+    ]
+    found = Recording("swing", channels, lambda _instance, _name: None)
+    reals = np.stack([angle, value, rate, np.floor(time)], axis=1)
+    found.append(time, angle, reals, np.zeros((len(time), 0), np.int32))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("highest a.value", 1.25 + 3.0 + 0.0014),  # the slope of 1 m/s moves the vertex: 1 / (2 * 3 * TURN^2)
+        ("mean a.value", 1.0),
+        ("a.value at 90 deg", 3.0 + 1.25),
+        ("a.count", 2.0),
+    ],
+)
+def test_numbers_of_a_signal(text: str, value: float) -> None:
+    # a cubic through 40 samples of a revolution is off by 3 (TURN / 40)^4 / 384 = 5e-6
+    found = measure(text).judge(swing())
+    assert found.worst == pytest.approx(value, abs=3e-3 if "highest" in text else 1e-5)
+    assert signal_in(text) in ("a.value", "a.count")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "a.value",
+            "a.value rises and falls in the run, so that its final value says little",
+        ),
+        ("mean a.value at 90 deg", "is not one of 'highest SIGNAL'"),
+        ("worst a.value", "is not one of"),
+        ("a.value at 90 mm", "does not fit rad"),
+    ],
+)
+def test_what_says_nothing_of_a_signal_is_refused(text: str, said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        measure(text).judge(swing())
