@@ -252,6 +252,26 @@ def test_a_page_claims_the_equations_that_its_component_declares(name: str) -> N
         assert component.origin == (MIXED if own else PUBLISHED)
 
 
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_values_that_a_page_calls_assumed_are_marked_so_where_they_are_declared(name: str) -> None:
+    variables = {variable.name: variable for variable in variables_of(COMPONENTS[name])}
+    page = (folder(COMPONENTS[name]) / "README.md").read_text()
+    assumptions = page.split("## Assumptions")[1].split("\n## ")[0]
+    named = re.findall(r"^\| `(\w+)`", assumptions, re.M)  # rows of a table, or "`name` = 1 ... assumed"
+    named += re.findall(r"`(\w+)`(?: = [^`.]*)? (?:is|are) assumed", " ".join(assumptions.split()))
+    for variable in (variables[each] for each in named):
+        assert "assum" in variable.description, f"{name}.{variable.name}"
+
+
+def test_the_readme_quotes_the_benchmarks() -> None:
+    (row,) = re.findall(r"^\| a step, all outputs recorded \| (\w+) us \| .* \((\S+) us\) \|$",
+                        (HOUSE / "results" / "benchmarks.md").read_text(), re.M)  # fmt: skip
+    ours, other = (round(float(each)) for each in row)
+    text = " ".join(README.read_text().split())
+    assert f"all outputs recorded, takes {ours} us" in text
+    assert f"the fastest other master that records takes {other} us" in text
+
+
 SOURCES = HOUSE / "docs" / "sources.md"
 
 

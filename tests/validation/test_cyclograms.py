@@ -1,9 +1,8 @@
-"""Factors and cyclograms: the harmonic motion that is inferred, and phases that close."""
+"""Cyclograms: the harmonic motion that is inferred, and phases that close."""
 
 import math
 from itertools import pairwise
 
-import numpy as np
 import pytest
 
 from loomfmu.machines import table
@@ -25,8 +24,3 @@ def test_phases_of_a_part_follow_one_another(part, degrees):
     for before, after in pairwise(rows):
         assert before["to_deg"] == after["from_deg"]
     assert cyclograms.total("KRU-20", part) == degrees
-
-
-def test_variances_of_the_factors():
-    loads = np.array([[float(row[factor]) for factor in "ABCD"] for row in table("factor_matrix")])
-    assert list(cyclograms.variances().values()) == pytest.approx(np.diag(loads.T @ loads), rel=1e-14)

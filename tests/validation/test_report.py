@@ -8,7 +8,18 @@ import pytest
 from loomfmu import cli
 from loomfmu.machines import MACHINES, table
 from loomfmu.validation import accuracy, belt_motion, driven, findings, plots, report, sections
-from loomfmu.validation.sections import USED, Pair, Row, Section, number
+from loomfmu.validation.sections import (
+    COMPUTED,
+    CONSISTENT,
+    DERIVED,
+    MARKS,
+    OUTCOMES,
+    USED,
+    Pair,
+    Row,
+    Section,
+    number,
+)
 
 RESULTS = Path(__file__).parents[2] / "results"
 LARGEST = 60_000  # bytes of a figure
@@ -103,10 +114,12 @@ def test_every_section_is_there(text):
         "Table 3: length factor", "Figure 10", "Table 5: safe speed", "Table 5: critical load",
         "Table 6: safe speed", "Table 6: critical load", "Table 7: safe speed",
         "Section 4.2 and Figure 11: deflection", "Table 1: bending stiffness",
-        "Table 2: measured restraint load", "Table 3: restraint load", "Table 2.2 and section 2.2",
+        "Table 2: measured restraint load", "Table 3: restraint load", "Sections 1.1, 2.2 and 2.3",
+        "Table 2.2: loads", "Section 2.2: variance",
         "Section 2.5: cyclograms", "Table 3.1, possible explanations", "Sections 3.1 and 3.6",
         "Section 3.1: every rotor law", "Table 3.1 and Figure 3.17", "Section 2.5",
-        "Section 3.4 and Figure 3.18", "Tables 4.1 and 4.2", "Section 4.2, Figures 4.5 to 4.8", "Appendix 2",
+        "Section 3.4 and Figure 3.18", "Tables 4.1 and 4.2", "Section 4.2, Figures 4.5 to 4.8",
+        "Section 4.2: largest speed of a frame", "Appendix 2",
         "Appendix 3", "Section 3.6.1.1", "Section 3.6.1.2", "Sections 3.5 and 5.1", "Section 5.3",
         "Table 1.1", "Table 1.4", "Appendix 1", "Section 3.3, Figure 4",
         "Sections 3.2 and 3.4, Figures 5 and 6", "Figure 5", "Table 1: torques",
@@ -147,6 +160,8 @@ PUBLISHED = [
     ("Table 2: measured restraint", "belt_wrap_experiment", ("D_mm", "wrap_deg"),
      ("c_0.1", "c_0.2", "c_0.3", "c_0.4", "c_0.5")),
     ("Table 3: restraint", "belt_wrap_theory", ("D_mm",), ("c_0.1", "c_0.2", "c_0.3", "c_0.4", "c_0.5")),
+    ("Sections 1.1", "thesis_arithmetic", ("place", "quantity"), ("printed",)),
+    ("Table 2.2", "factor_matrix", ("requirement",), ("A", "B", "C", "D")),
     ("Table 3.1 and", "heald_dwell_experiment", ("speed_reduction",), ("upper_dwell_deg",)),
     ("Table 1.1", "productivity", ("machine",), ("coefficient",)),
     ("Table 1.4", "floor_space", ("machine",), ("area_m2", "rate_m_min", "rate_per_m2")),
@@ -160,7 +175,7 @@ def test_every_published_row_appears(text, wanted):
     rows = next(rows for title, rows in tables(text).items() if title.startswith(start))
     for published in table(source) if isinstance(source, str) else source:
         found = next(row for row in rows if row[: len(names)] == [published[name] for name in names])
-        cells = [cell.split(" / ")[0].rstrip(USED) for cell in found[len(names) :]]
+        cells = [cell.split(" / ")[0].rstrip(MARKS) for cell in found[len(names) :]]
         place = 0
         for column in columns:  # as printed, and in this order
             place = cells.index(published[column] or "not printed", place) + 1
@@ -192,6 +207,8 @@ def test_what_is_not_reproduced_is_marked_and_listed(text, chapters):
     [
         f"mu = 0.8: published 475{USED}, computed 418.7",
         "published 54.81, computed 59.10 (misprint, see Errata)",
+        f"published 100000{CONSISTENT}, computed 105570.0",
+        "knife dobby SKN-14: published 3.2, computed 1.39",
         "sloped sine: measured 140, computed 100.1",
         "published 59.6, computed 5.960 (misprint, see Errata)",
         "measured 76.6, computed 53.2",
@@ -207,7 +224,8 @@ def test_a_number_that_chose_a_value_is_marked_and_not_counted():
         Pair("100", 90.0, 1, used=True),
         Pair("100", 100.0, 1),
     )
-    assert report._counts([met, missed, free]) == ["3", "1", "1", "0", "0", "1"]
+    assert [pair.outcome for pair in (met, missed, free)] == [USED, "other", COMPUTED]
+    assert report._counts([met, missed, free]) == ["3", "1", "0", "0", "0", "1", "0", "0", "1"]
     section = Section("Table", ("machine", ""), (Row(("WL", met)), Row(("WM", missed)), Row(("WN", free))))
     assert f"| WL | 100{USED} | 100.0 | 0.0 |" in section.markdown()
     assert (
@@ -246,6 +264,37 @@ def test_what_chose_a_value(chapters, start, labels, used, count):
     assert (sum(pair.used for pair in pairs), len(pairs)) == (used, count)
 
 
+@pytest.mark.parametrize(
+    ("start", "outcome", "count"),
+    [  # how many met numbers of a section prove how much
+        ("Table 5: safe speed", DERIVED, 18),  # by 1/mu from those for 0.8, which are used
+        ("Table 6: safe speed", DERIVED, 25),  # by 1/sqrt(m) from case I, which is used
+        ("Table 5: critical", COMPUTED, 7),  # for 0.8; the others follow from them
+        ("Table 6: critical", COMPUTED, 0),  # Table 5 again
+        ("Table 7", COMPUTED, 10),  # case I
+        ("Table 3: length factor", CONSISTENT, 5),  # fitted to loads of the same source
+        ("Table 2.2", CONSISTENT, 44),
+        ("Table 1.1", CONSISTENT, 21),
+        ("Table 1.4", CONSISTENT, 15),
+        ("Appendix 1", CONSISTENT, 19),
+        ("Table 2 against itself", CONSISTENT, 11),
+        ("Section 2.5", CONSISTENT, 5),
+        ("Section 4.2, Figures 4.5", "inequality", 1),
+        ("Section 3.3, Figure 4", "inequality", 3),
+        ("Section 3.6.1.2", "inequality", 0),  # 500 W are of the whole dobby, 111 W of a part of it
+    ],
+)
+def test_what_a_met_number_proves(chapters, start, outcome, count):
+    section = next(s for chapter in chapters for s in chapter.sections if s.title.startswith(start))
+    assert sum(pair.outcome == outcome for pair in section.pairs) == count
+
+
+def test_no_number_is_both_met_and_a_misprint(text):
+    """The pawl's 12 deg are 12.35 deg, rounded."""
+    errata = text.split("\n## Errata\n")[1]
+    assert "12‡ | 12.35" in text and "12 deg |" not in errata
+
+
 def test_a_ratio_that_set_the_ramp_is_marked_among_the_inferences(text):
     rows = next(
         rows for title, rows in tables(text).items() if "possible explanations of the measured" in title
@@ -255,10 +304,15 @@ def test_a_ratio_that_set_the_ramp_is_marked_among_the_inferences(text):
 
 
 def test_readme_quotes_the_totals(text):
-    numbers, reproduced, used = tables(text)["Summary"][-1][1:4]
+    numbers, *counts = tables(text)["Summary"][-1][1:]
+    by_outcome = dict(zip(OUTCOMES, counts, strict=True))
     readme = " ".join((RESULTS.parent / "README.md").read_text(encoding="utf-8").split())
     assert f"puts {numbers} published numbers" in readme
-    assert f"{reproduced} are reproduced" in readme and f"{used} more are met" in readme
+    assert f"{by_outcome[COMPUTED]} are computed by a component" in readme
+    assert f"{by_outcome[DERIVED]} follow by a known factor" in readme
+    assert f"{by_outcome[CONSISTENT]} follow from others of their source" in readme
+    assert f"{by_outcome[USED]} were used" in readme
+    assert f"{by_outcome['inequality']} are bounds" in readme
 
 
 def test_a_miss_cannot_hide():

@@ -104,7 +104,7 @@ class BeltDynamicsVariables(Component):
         nominal=1e-3,
     )  # fmt: skip
     shortest_length: float = parameter(
-        "m", 0.02, "Free length below which the belt is taken as straight", display="mm",
+        "m", 0.02, "Free length below which the belt is taken as straight (assumed)", display="mm",
         minimum=1e-4, maximum=1.0, nominal=0.01,
     )  # fmt: skip
     modes: int = parameter(

@@ -57,7 +57,8 @@ class HealdFrame(Component):
         nominal=10.0,
     )  # fmt: skip
     warp_ratio: float = parameter(
-        "1", 0.16666666666666666, "Warp height at the rapier as a share of the lift",
+        "1", 0.16666666666666666,
+        "Warp height at the rapier as a share of the lift (assumed: that of an air-jet loom)",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)

@@ -46,7 +46,7 @@ class PatternLock(ShaftDriven):
         "1", 0.15, "Share of the pawl's width that stays outside the slot", minimum=0.0, maximum=1.0
     )
     engagement_start: float = parameter(
-        "rad", 2.4870941840919194, "Shaft angle at which the engagement begins", display="deg",
+        "rad", 2.4870941840919194, "Shaft angle at which the engagement begins (assumed)", display="deg",
         minimum=-6.283185307179586, maximum=6.283185307179586,
     )  # fmt: skip
     engagement_angle: float = parameter(

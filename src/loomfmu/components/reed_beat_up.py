@@ -59,30 +59,30 @@ class ReedBeatUp(ShaftDriven):
         minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     crank_x: float = parameter(
-        "m", -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell",
-        display="mm", minimum=-10.0, maximum=10.0,
+        "m", -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell"
+        " (identified)", display="mm", minimum=-10.0, maximum=10.0,
     )  # fmt: skip
     crank_y: float = parameter(
-        "m", 0.525749, "Position of the crank's centre from the rocker's pivot, upwards",
+        "m", 0.525749, "Position of the crank's centre from the rocker's pivot, upwards (identified)",
         display="mm", minimum=-10.0, maximum=10.0,
     )  # fmt: skip
     assembly: int = parameter("1", -1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
     crank_direction: int = parameter(
-        "1", 1, "Direction in which the crank turns: 1 from x to y, or -1", minimum=-1, maximum=1
+        "1", 1, "Direction in which the crank turns: 1 from x to y, or -1 (assumed)", minimum=-1, maximum=1
     )
     arm_length: float = parameter(
-        "m", 0.67984, "Length of the rocker's arm from its pivot to the reed's rod", display="mm",
-        minimum=1e-4, maximum=10.0, nominal=0.1,
+        "m", 0.67984, "Length of the rocker's arm from its pivot to the reed's rod (identified)",
+        display="mm", minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     arm_angle: float = parameter(
         "rad", 0.0, "Angle from the rocker to its arm", display="deg", minimum=-7.0, maximum=7.0
     )
     rod_length: float = parameter(
-        "m", 0.48748, "Length of the rod that drives the reed", display="mm",
+        "m", 0.48748, "Length of the rod that drives the reed (identified)", display="mm",
         minimum=1e-4, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     reed_height: float = parameter(
-        "m", 0.66933, "Height of the reed's line above the rocker's pivot", display="mm",
+        "m", 0.66933, "Height of the reed's line above the rocker's pivot (identified)", display="mm",
         minimum=-10.0, maximum=10.0,
     )  # fmt: skip
     beat_up_angle: float = parameter(

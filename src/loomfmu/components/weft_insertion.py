@@ -53,7 +53,8 @@ class WeftInsertion(ShaftDriven):
         minimum=0.0, maximum=1.5707963267948966,
     )  # fmt: skip
     crank_phase: float = parameter(
-        "rad", 0.0, "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre",
+        "rad", 0.0, "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre"
+        " (identified)",
         display="deg", minimum=-7.0, maximum=7.0,
     )  # fmt: skip
     lead: float = parameter(
@@ -75,12 +76,14 @@ class WeftInsertion(ShaftDriven):
         "m", 0.121, "Length KG", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
     pivot_x: float = parameter(
-        "m", 0.243, "Position of G from C, x", display="mm", minimum=-10.0, maximum=10.0
+        "m", 0.243, "Position of G from C, x (identified)", display="mm", minimum=-10.0, maximum=10.0
     )
     pivot_y: float = parameter(
-        "m", 0.258, "Position of G from C, y", display="mm", minimum=-10.0, maximum=10.0
+        "m", 0.258, "Position of G from C, y (identified)", display="mm", minimum=-10.0, maximum=10.0
     )
-    assembly: int = parameter("1", 1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
+    assembly: int = parameter(
+        "1", 1, "Assembly mode of the four-bar: 1 or -1 (identified)", minimum=-1, maximum=1
+    )
     gear_ratio: float = parameter(
         "1", 9.625, "Gear ratio from sector gear to rapier wheel", minimum=1e-3, maximum=1e3
     )

@@ -32,7 +32,13 @@ class WeftVariables(ShaftDriven):
     )
 
     linear_density: float = parameter(
-        "kg/m", 30e-6, "Linear density of the yarn", display="tex", minimum=0.0, maximum=1.0, nominal=1e-5
+        "kg/m",
+        30e-6,
+        "Linear density of the yarn (assumed)",
+        display="tex",
+        minimum=0.0,
+        maximum=1.0,
+        nominal=1e-5,
     )
     yarn_stiffness: float = parameter(
         "N", 75.0, "Tensile stiffness EA of the yarn, force per strain (assumed)",
@@ -43,11 +49,11 @@ class WeftVariables(ShaftDriven):
         minimum=1e-9, maximum=1.0, nominal=1e-4,
     )  # fmt: skip
     yarn_diameter: float = parameter(
-        "m", 0.2e-3, "Diameter of the yarn, for its air drag", display="mm",
+        "m", 0.2e-3, "Diameter of the yarn, for its air drag (assumed)", display="mm",
         minimum=0.0, maximum=0.01, nominal=1e-4,
     )  # fmt: skip
     air_friction: float = parameter(
-        "1", 0.04, "Coefficient of friction in air along the yarn, for its circumference",
+        "1", 0.04, "Coefficient of friction in air along the yarn, for its circumference (assumed)",
         minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     supply_tension: float = parameter(
@@ -55,7 +61,7 @@ class WeftVariables(ShaftDriven):
         minimum=0.0, maximum=1e3, nominal=0.1,
     )  # fmt: skip
     unwinding_factor: float = parameter(
-        "1", 1.0, "Unwinding tension over that of the yarn's momentum; above 1 with a balloon",
+        "1", 1.0, "Unwinding tension over that of the yarn's momentum; above 1 with a balloon (assumed)",
         minimum=0.0, maximum=100.0,
     )  # fmt: skip
     brake_force: float = parameter(

@@ -9,7 +9,7 @@ from ..design.buckling import LengthFactor, fit_length_factor
 from ..machines import HEADS, MACHINES, parameters, table
 from ..physics import belt as physics
 from ..units import STANDARD_GRAVITY
-from .sections import Chapter, Pair, Row, Section, number
+from .sections import COMPUTED, DERIVED, Chapter, Pair, Row, Section, consistent, number
 
 CASES = ("I", "II", "III", "IV")
 # Tables 6 and 7 print the columns III and IV the other way round: printed column of each case
@@ -138,7 +138,7 @@ def table_3() -> Section:
     """Length factors."""
     factors = {clearance: fit.factor for clearance, fit in fits().items()}
     printed = {row["clearance_mm"]: row["length_factor"] for row in table("length_factor")}
-    rows = tuple(Row((c, Pair(printed[c], factors[c], 3))) for c in CLEARANCES)
+    rows = tuple(Row((c, consistent(printed[c], factors[c], 3))) for c in CLEARANCES)
     return Section(
         "Table 3: length factor fitted to Table 2",
         ("clearance, mm", ""),
@@ -206,9 +206,11 @@ def table_5() -> tuple[Section, Section]:
     for row in table("safe_speed_by_length_factor"):
         name = row["machine"]
         found = {mu: safe(name, "G6300 left", float(mu)) for mu in FACTORS}
-        pairs = (Pair(row[f"n_mu_{mu}"], rpm(found[mu]), 1, used=mu == "0.8") for mu in FACTORS)
+        pairs = (
+            Pair(row[f"n_mu_{mu}"], rpm(found[mu]), 1, used=mu == "0.8", proves=DERIVED) for mu in FACTORS
+        )
         speeds.append(Row((name, *pairs, number(math.degrees(found["0.8"].angle), 2))))
-        loads.append(Row((name, *(_load(row[f"load_mu_{mu}"], found[mu].critical_force) for mu in FACTORS))))
+        loads.append(Row((name, *(_load(row, mu, found[mu].critical_force) for mu in FACTORS))))
     heads = tuple(f"mu = {mu}" for mu in FACTORS)
     title = "Table 5: safe speed over the length factor, rev/min (case I, 110.5 g)"
     remark = (
@@ -226,14 +228,18 @@ def table_5() -> tuple[Section, Section]:
             figures=figures,
         ),
         Section(
-            "Table 5: critical load at the safe speed, N", ("machine", *heads), tuple(loads), split=False
+            "Table 5: critical load at the safe speed, N", ("machine", *heads), tuple(loads), split=False,
+            intro="By (8) the loads for the other length factors follow from those for 0.8.",
         ),
     )  # fmt: skip
 
 
-def _load(printed: str, found: float) -> Pair | str:
+def _load(row: dict[str, str], factor: str, found: float) -> Pair | str:
     """A load of Table 5; one is not printed."""
-    return Pair(printed, found, 1) if printed else f"not printed / {number(found, 1)}"
+    printed = row[f"load_mu_{factor}"]
+    if not printed:
+        return f"not printed / {number(found, 1)}"
+    return Pair(printed, found, 1, proves=COMPUTED if factor == "0.8" else DERIVED)
 
 
 def table_6() -> tuple[Section, Section]:
@@ -242,9 +248,11 @@ def table_6() -> tuple[Section, Section]:
     for row in table("safe_speed_by_case"):
         name = row["machine"]
         found = {case: safe(name, CASE_HEADS[case], 0.8) for case in CASES}
-        limits = (Pair(row[f"n_{PRINTED[c]}"], rpm(found[c]), 1, used=c == "I") for c in CASES)
+        limits = (
+            Pair(row[f"n_{PRINTED[c]}"], rpm(found[c]), 1, used=c == "I", proves=DERIVED) for c in CASES
+        )
         speeds.append(Row((name, *limits)))
-        pairs = (Pair(row[f"load_{PRINTED[c]}"], found[c].critical_force, 1) for c in CASES)
+        pairs = (Pair(row[f"load_{PRINTED[c]}"], found[c].critical_force, 1, proves=DERIVED) for c in CASES)
         loads.append(Row((name, *pairs)))
     heads = tuple(f"{c}, {HEADS[CASE_HEADS[c]]['mass_g'].rstrip('0').rstrip('.')} g" for c in CASES)
     return (
@@ -261,7 +269,8 @@ def table_6() -> tuple[Section, Section]:
             ("machine", *heads),
             tuple(loads),
             intro="Columns III and IV are corrected. By (8) to (10) the load cannot depend on the mass: the"
-            " mass does not change the angle at which the limit is lowest.",
+            " mass does not change the angle at which the limit is lowest. So all four columns are that of"
+            " Table 5.",
             split=False,
         ),
     )
@@ -273,7 +282,12 @@ def table_7() -> Section:
     for row in table("safe_speed_by_yarn_tension"):
         tension = 1e-3 * float(row["tension_gf"]) * STANDARD_GRAVITY
         pairs = (
-            Pair(row[f"n_{PRINTED[c]}"], rpm(safe("WL680-3600", CASE_HEADS[c], 1.0, tension)), 1)
+            Pair(
+                row[f"n_{PRINTED[c]}"],
+                rpm(safe("WL680-3600", CASE_HEADS[c], 1.0, tension)),
+                1,
+                proves=COMPUTED if c == "I" else DERIVED,
+            )
             for c in CASES
         )
         rows.append(Row((row["tension_gf"], *pairs)))
@@ -281,7 +295,8 @@ def table_7() -> Section:
         "Table 7: safe speed under a weft tension, rev/min (WL680-3600, mu = 1)",
         ("tension, gf", *CASES),
         tuple(rows),
-        intro="The tension is in gram-force (9.80665 mN). Columns III and IV are corrected.",
+        intro="The tension is in gram-force (9.80665 mN). Columns III and IV are corrected. By (9) the"
+        " columns II to IV follow from the first.",
         split=False,
     )
 

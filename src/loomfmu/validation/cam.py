@@ -9,7 +9,8 @@ from ..components.dobby.drive import DobbyDrive
 from ..design.cam import Cam, design_cam, published_path
 from ..machines import table
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
-from .sections import Pair, Row, Section, number
+from . import rotor
+from .sections import Pair, Row, Section, consistent, number
 
 FRAME = 6.0  # travel of the frame over the height of the warp, Appendix 2
 HEIGHT = 0.015  # m, of the warp above the lowest: what has to be clear of the air stream
@@ -38,7 +39,7 @@ def cam() -> Cam:
 
 def sections() -> tuple[Section, ...]:
     """Everything on the cam."""
-    return table_4_2(), extremes(), profile(), program()
+    return table_4_2(), extremes(), other_drives(), profile(), program()
 
 
 def table_4_2() -> Section:
@@ -50,12 +51,12 @@ def table_4_2() -> Section:
         "Tables 4.1 and 4.2: heights of the warp at the control points, mm",
         ("quantity", ""),
         (
-            Row(("height of the shed on the axis of the air stream, (4.2)", Pair("16.5", h, 2))),
-            Row(("entry, lower warp, 657 deg, (4.4)", Pair(printed["657"], low - GAPS["5"], 2)),
+            Row(("height of the shed on the axis of the air stream, (4.2)", consistent("16.5", h, 2))),
+            Row(("entry, lower warp, 657 deg, (4.4)", consistent(printed["657"], low - GAPS["5"], 2)),
                 "Table 4.2 prints 657: see Errata"),
-            Row(("entry, upper warp, 295 deg, (4.5)", Pair(printed["295"], high + GAPS["4"], 2))),
-            Row(("exit, lower warp, 80 deg, (4.6)", Pair(printed["80"], low - GAPS["7"], 2))),
-            Row(("exit, upper warp, 450 deg, (4.7)", Pair(printed["450"], high + GAPS["6"], 2))),
+            Row(("entry, upper warp, 295 deg, (4.5)", consistent(printed["295"], high + GAPS["4"], 2))),
+            Row(("exit, lower warp, 80 deg, (4.6)", consistent(printed["80"], low - GAPS["7"], 2))),
+            Row(("exit, upper warp, 450 deg, (4.7)", consistent(printed["450"], high + GAPS["6"], 2))),
         ),
     )  # fmt: skip
 
@@ -84,12 +85,32 @@ def extremes() -> Section:
         ),
         remarks=(
             "The figures that show these curves are lost; only the 140 deg are given in the text.",
-            "Section 4.2 says that other dobbies move their frames 2.1, 2.4 and 3.2 times as fast. That"
-            " cannot be computed, because their strokes are not given.",
         ),
         figures=(("spline_cam.png", "Travel, speed and acceleration of a frame on the spline cam (Figures"
                                     " 4.6 to 4.8)"),),
     )  # fmt: skip
+
+
+def other_drives() -> Section:
+    """How much faster frames move under the laws of the modulator."""
+    faster = {
+        law: rotor.largest_lift_rate(law, 0.7, order=1) / drive().highest_speed
+        for law in ("uniform", *rotor.MODULATED)
+    }
+    most = max(faster.values())
+    by_law = ", ".join(f"{law} {number(found, 2)}" for law, found in faster.items())
+    return Section(
+        "Section 4.2: largest speed of a frame over that with the spline cam, at equal stroke",
+        ("drive", ""),
+        (
+            Row(("slotted levers and differential, the modulator", Pair("2.1", most, 2))),
+            Row(("cam drive of the STB", Pair("2.4", most, 2))),
+            Row(("knife dobby SKN-14", Pair("3.2", most, 2))),
+        ),
+        intro="Computed: the most that a published law gives, zeta = 0.7. Laws of the other two drives, and"
+        " all strokes, are not published.",
+        remarks=(f"By law: {by_law}. Larger strokes of the other drives would make up the difference.",),
+    )
 
 
 def _lowest() -> float:
@@ -113,7 +134,7 @@ def profile() -> Section:
         "Appendix 2: the cam",
         ("quantity", ""),
         (
-            Row(("scale from travel to radius, 23 mm over 0.108 m", Pair("212.963", 23.0 / 0.108, 3)),
+            Row(("scale from travel to radius, 23 mm over 0.108 m", consistent("212.963", 23.0 / 0.108, 3)),
                 "the travel is not 108 mm: see Errata"),
             Row(("lowest radius of the working profile, mm",
                  Pair("84", float(radii.min()), 2, used=True)), "put in"),

@@ -1,43 +1,12 @@
-"""Korolev, the factors of section 2.2 and the cyclograms of the two dobbies, section 2.5."""
+"""Korolev, the cyclograms of the two dobbies, section 2.5."""
 
 import math
 
 from ..machines import table
-from .sections import Pair, Row, Section, number
+from .sections import Row, Section, consistent, number
 
-FACTORS = {"A": ("2.84", "25.85"), "B": ("2.63", "26.64"), "C": ("2.66", "24.17"), "D": ("2.35", "21.37")}
 STROKE, GAP = 11.4, 3.0  # mm, of the needles, and their distance from the tape
 PICKS = 720.0  # deg, of a cyclogram
-
-
-def sections() -> tuple[Section, ...]:
-    """Factors and cyclograms."""
-    return factors(), cyclograms()
-
-
-def variances() -> dict[str, float]:
-    """Sum of the squared loads of each factor of Table 2.2."""
-    return {factor: sum(float(row[factor]) ** 2 for row in table("factor_matrix")) for factor in FACTORS}
-
-
-def factors() -> Section:
-    """Table 2.2."""
-    found, count = variances(), len(table("factor_matrix"))
-    rows = [
-        Row((
-            factor, Pair(variance, found[factor], 3, misprint=factor == "B"),
-            Pair(share, 100.0 * found[factor] / count, 2),
-        ))
-        for factor, (variance, share) in FACTORS.items()
-    ]  # fmt: skip
-    total = 100.0 * sum(found.values()) / count
-    return Section(
-        "Table 2.2 and section 2.2: variance of the factors and their share, %",
-        ("factor", "variance", "share, %"),
-        (*rows, Row(("all", "", Pair("98.03", total, 2)))),
-        split=False,
-        remarks=("Computed from the loads of Table 2.2, which are printed with two decimals.",),
-    )
 
 
 def phase(dobby: str, part: str, name: str) -> tuple[float, float]:
@@ -57,7 +26,7 @@ def needle_place(share: float, begin: float, end: float) -> float:
     return begin + (end - begin) * math.acos(1.0 - 2.0 * share) / math.pi
 
 
-def cyclograms() -> Section:
+def section() -> Section:
     """Section 2.5."""
     frames, kru = phase("prototype", "frames", "dwell"), phase("KRU-20", "frames", "dwell")
     to_a, to_b = (phase("prototype", "knives", f"move to track {track}") for track in "ab")
@@ -67,15 +36,15 @@ def cyclograms() -> Section:
         "Section 2.5: cyclograms of the two dobbies, deg of the shaft",
         ("quantity", ""),
         (
-            Row(("prototype: dwell of the frames, 135 to 225", Pair("90", frames[1] - frames[0], 0))),
-            Row(("its middle", Pair("180", sum(frames) / 2.0, 0, place=True))),
-            Row(("middle of the knives' motion to track a", Pair("360", sum(to_a) / 2.0, 0, place=True))),
-            Row(("middle of the knives' motion to track b", Pair("720", sum(to_b) / 2.0, 0, place=True))),
+            Row(("prototype: dwell of the frames, 135 to 225", consistent("90", frames[1] - frames[0], 0))),
+            Row(("its middle", consistent("180", sum(frames) / 2.0, 0, place=True))),
+            Row(("middle of the knives' way to track a", consistent("360", sum(to_a) / 2.0, 0, place=True))),
+            Row(("middle of the knives' way to track b", consistent("720", sum(to_b) / 2.0, 0, place=True))),
             Row(("needles flush with the tape on their way down", number(down, 2)),
                 "published 37; an inference, not counted"),
             Row(("needles flush with the tape on their way up, even pick", number(up - 360.0, 2)),
                 "published 323; an inference, not counted"),
-            Row(("KRU-20: dwell of the frames, 320 to 55", Pair("95", kru[1] - kru[0], 0))),
+            Row(("KRU-20: dwell of the frames, 320 to 55", consistent("95", kru[1] - kru[0], 0))),
             Row(("phases of the tape, of two picks", number(total("KRU-20", "tape"), 0))),
             Row(("phases of the needles, of two picks", number(total("KRU-20", "needles"), 0))),
             Row(("phases of the knives, of two picks", number(total("KRU-20", "knives"), 0)),
@@ -91,14 +60,10 @@ def cyclograms() -> Section:
 
 
 def misprints() -> tuple[Row, ...]:
-    """Slips of both sections."""
-    found, count = variances()["B"], len(table("factor_matrix"))
+    """Slips of the section."""
     begin, end = phase("prototype", "tape", "in contact with its pin")
     last = phase("prototype", "knives", "last 2 mm")
     return (
-        Row(("section 2.2, variance of factor B", "2.63", number(found, 2),
-             f"its printed share of 26.64 % of {count} is {number(0.2664 * count, 2)}; 2.63 would be"
-             f" {number(100.0 * 2.63 / count, 2)} %")),
         Row(("section 2.5, prototype, pin and tape", "30 deg of the even pick to 30 deg of the odd one",
              "from 330 deg (inferred)",
              f"the middle would be at {number(0.5 * (begin + end) - 360.0, 0)} deg of the even pick; the"

@@ -20,8 +20,8 @@ def section() -> Section:
         "Dobby: rotor laws (Korolev, sections 1.2, 3.1 and 3.4)",
         ("where", "printed", "corrected", "what is wrong with the printed form"),
         (
-            levers(), gears(), third_piece(), line_acceleration(), *line_constant(), line_angle(),
-            last_acceleration(), sine_acceleration(), sine_angle(), *table_3_1(),
+            levers(), gears(), third_piece(), largest_speed(), line_acceleration(), *line_constant(),
+            line_angle(), last_acceleration(), sine_acceleration(), sine_angle(), *table_3_1(),
         ),
         intro="Values at zeta = 0.7; the levers and gears with the assumed dimensions.",
     )  # fmt: skip
@@ -79,6 +79,13 @@ def third_piece() -> Row:
             f" {number(harmonic_ends(0.0, ZETA)[1], 2)}",
         )
     )
+
+
+def largest_speed() -> Row:
+    """After (3.9)."""
+    speed = number(harmonic_ends(math.pi, ZETA)[1], 1)
+    fails = "by (3.2) and (3.5) the speed rises to 1 + zeta/7; 0.7 is zeta, the most that is taken off"
+    return Row(("after (3.9)", "largest speed 0.7 1/s", f"{speed} 1/s", fails))
 
 
 def line_acceleration() -> Row:

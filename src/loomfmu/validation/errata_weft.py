@@ -13,7 +13,7 @@ HEADINGS = ("where", "printed", "corrected", "what is wrong with the printed for
 
 def sections() -> tuple[Section, ...]:
     """Both papers."""
-    of_belt = (deflection(), *columns(), loads(), factors(), wl450_4000(), *references())
+    of_belt = (deflection(), *columns(), loads(), factors(), wl450_4000(), proportion(), *references())
     return (
         Section("Rapier belt outside its guide", HEADINGS, of_belt),
         Section("Rapier belt on its wheel", HEADINGS, (wrapped(),)),
@@ -116,6 +116,20 @@ def wl450_4000() -> Row:
             "its window and its free length follow from Table 1, its speeds do not: at the printed 475"
             f" rev/min the lowest margin is {number(margin, 3)}; which of the tables is wrong cannot be"
             " settled",
+        )
+    )
+
+
+def proportion() -> Row:
+    """The first conclusion of section 4.1."""
+    rows = {row["clearance_mm"]: float(row["length_factor"]) for row in table("length_factor")}
+    return Row(
+        (
+            "section 4.1, conclusion a",
+            "the safe speed is inversely proportional to the clearance",
+            "to the length factor",
+            f"from 0.30 to 0.80 mm the clearance grows {number(0.80 / 0.30, 2)} times, the length factor"
+            f" {number(rows['0.80'] / rows['0.30'], 2)} times",
         )
     )
 

@@ -223,7 +223,7 @@ def limits() -> Section:
     """Which mechanism limits the speed of the loom."""
     lock = PatternLock()
     lock.initialize(0.0)
-    crest = rotor.STROKE * rotor.largest_lift_acceleration("sloped sine", 0.5)
+    crest = rotor.STROKE * rotor.largest_lift_rate("sloped sine", 0.5)
     spline = cam.frame_span() * cam.drive().highest_acceleration
     rows = (
         Row(("belt, clearance 0.3 mm", number(belt.rpm(belt.safe(LOOM, "G6300 left", 0.8)), 1))),

@@ -12,7 +12,7 @@ from ..physics.pattern_lock import (
     release_time,
     torque_speed_limit,
 )
-from .sections import Pair, Row, Section, number
+from .sections import DERIVED, Pair, Row, Section, consistent, number
 
 RPM = math.pi / 30.0
 MASS, LENGTH, WIDTH = 0.170, 0.16, 0.03
@@ -47,8 +47,9 @@ def speed() -> Section:
             Row(("moment of inertia that the source continues with, 1e-6 kg m2",
                  Pair("3750", 1e6 * INERTIA, 1, misprint=True))),
             Row(("turn of the pawl, rad, (3.30)", Pair("0.216", turn, 4))),
-            Row(("turn of the pawl, deg", Pair("12", math.degrees(turn), 2)), "the source continues with 12"),
-            Row(("torque of the spring, N m, (3.32)", Pair("1.0", FORCE * ARM, 2))),
+            Row(("the same, deg", Pair("12", math.degrees(turn), 2, proves=DERIVED)),
+                "rounded to whole degrees, with which the source goes on"),
+            Row(("torque of the spring, N m, (3.32)", consistent("1.0", FORCE * ARM, 2))),
             Row(("largest acceleration at 1 rad/s, 12 deg, 1/s2, (3.34)",
                  Pair("0.32", largest_bend(SPAN, TWELVE), 3, misprint=True))),
             Row(("speed limit from the torque, 12 deg, rev/min",
@@ -84,12 +85,10 @@ def power() -> Section:
         ("quantity", ""),
         (
             Row(("at a shaft speed of 1 rad/s", Pair("1.63", unit, 3))),
-            Row(("at 650 rev/min", Pair("111", fast, 1))),
-            Row(
-                (
-                    "at 650 rev/min; the published limit is for the whole dobby",
-                    Pair("500", fast, 1, sense="<="),
-                )
-            ),
+            Row(("at 650 rev/min", Pair("111", fast, 1, proves=DERIVED))),
+        ),
+        remarks=(
+            "That the whole dobby takes no more than 500 W, as the source expects, cannot be judged by this"
+            " part of it.",
         ),
     )

@@ -4,7 +4,7 @@ import math
 
 from ..design.loom import productivity_coefficient, weft_insertion_rate
 from ..machines import table
-from .sections import Pair, Row, Section
+from .sections import Row, Section, consistent
 
 RPM = math.pi / 30.0
 
@@ -21,7 +21,8 @@ def coefficient() -> Section:
         width, rate = float(row["width_m"]), float(row["rate_m_min"])
         speed = 2.0 * math.pi * rate / 60.0 / width
         slip = row["machine"].startswith(("TM", "Jurgens"))
-        pair = Pair(row["coefficient"], 60.0 * productivity_coefficient(width, speed), 1, misprint=slip)
+        found = 60.0 * productivity_coefficient(width, speed)
+        pair = consistent(row["coefficient"], found, 1, misprint=slip)
         rows.append(Row((row["machine"], row["width_m"], row["rate_m_min"], pair)))
     return Section(
         "Table 1.1: productivity coefficient, m/min over the square root of m",
@@ -39,9 +40,9 @@ def floor_space() -> Section:
         area = float(row["machine_width_m"]) * float(row["machine_depth_m"])
         share = float(row["rate_m_min"]) / float(row["needed_m2"])
         pairs = (
-            Pair(row["area_m2"], area, 2, misprint=row["machine"].startswith("Gunne")),
-            Pair(row["rate_m_min"], rate, 0, misprint=row["machine"].endswith("L5200")),
-            Pair(row["rate_per_m2"], share, 2),
+            consistent(row["area_m2"], area, 2, misprint=row["machine"].startswith("Gunne")),
+            consistent(row["rate_m_min"], rate, 0, misprint=row["machine"].endswith("L5200")),
+            consistent(row["rate_per_m2"], share, 2),
         )
         rows.append(Row((row["machine"], *pairs)))
     return Section(
@@ -61,7 +62,8 @@ def consumption() -> Section:
         width = 0.01 * float(row["woven_cm"]) * int(row["webs"])
         rate = 60.0 * weft_insertion_rate(width, float(row["speed_rpm"]) * RPM)
         woven = f"{row['webs']} x {row['woven_cm']}" if row["webs"] != "1" else row["woven_cm"]
-        pair = Pair(row["weft_m_min"], rate, 0, misprint=row["machine"] == "Sulzer P7100 dress")
+        slip = row["machine"] == "Sulzer P7100 dress"
+        pair = consistent(row["weft_m_min"], rate, 0, misprint=slip)
         rows.append(Row((row["machine"], row["speed_rpm"], woven, pair)))
     return Section(
         "Appendix 1: weft used, m/min",

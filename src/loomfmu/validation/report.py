@@ -1,5 +1,6 @@
 """The report: every chapter, what is reproduced, and the figures."""
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -7,6 +8,7 @@ from ..extras import installed
 from ..files import check_target, starts_with, write_file
 from . import (
     accuracy,
+    arithmetic,
     attack,
     belt,
     cam,
@@ -29,7 +31,18 @@ from . import (
     warp,
     wrap,
 )
-from .sections import CALCULATION, MEASUREMENT, USED, Chapter, Pair, Section, number
+from .sections import (
+    CALCULATION,
+    CONSISTENT,
+    DERIVED,
+    MEASUREMENT,
+    OUTCOMES,
+    USED,
+    Chapter,
+    Pair,
+    Section,
+    number,
+)
 
 NAME = "validation.md"
 REPORT = starts_with("a report of loomfmu validate", b"# Validation\n")
@@ -42,23 +55,26 @@ def _share(value: float) -> str:
 INTRO = f"""# Validation
 
 The published numbers that can be computed, table by table, beside what the components compute.
-Written by `loomfmu validate`. Where a published number was used to choose a value, it is marked and not
-counted.
+Written by `loomfmu validate`. Where a published number was used to choose a value, it is marked and
+counted apart.
 
-- A published calculation counts as reproduced if the computed number is within {_share(CALCULATION)} of
-  it, a measurement if within {_share(MEASUREMENT)}; either also counts if it differs by at most one unit of
+- A published calculation is met if the computed number is within {_share(CALCULATION)} of
+  it, a measurement if within {_share(MEASUREMENT)}; either also if it differs by at most one unit of
   the last printed digit. For angles that mark a position, where a percentage means nothing, only that unit
   counts.
+- Meeting a number does not always prove the same. Without a mark it was computed by a component or a design
+  function. {DERIVED} marks a number that follows by a known factor, such as 1/mu or 1/sqrt(m), from one that
+  was used or is counted elsewhere. {CONSISTENT} marks one that follows from others of its source, by
+  arithmetic or by a fit: that tests no component. Inequalities are counted apart: many values meet a bound.
 - {USED} marks a published number that was used to choose a value, a dimension or a law. Meeting it proves
-  nothing, so it is not counted as reproduced but in a column of its own. One that is not met in spite of that
-  counts as not reproduced.
+  nothing. One that is not met in spite of that counts as not reproduced.
 - Whatever is not reproduced is marked in the last column, with both values, and listed below.
 - Published numbers are shown as printed, computed ones with more digits. The difference is computed minus
   published, in percent of the published number.
 - "Misprint" means that the section Errata shows by calculation that the printed number is wrong.
-- Tables of prices, energy, expert ratings and the like are left out, because nothing in them can be computed
-  (Korolev, Tables 1.2, 1.3, 2.1, 2.3 to 2.5 and 3.2, and the rest of Appendix 1). Most figures of the
-  sources are lost; where one is named, its numbers are given in the text."""
+- Left out are tables from which no printed number follows: prices (Korolev, Table 1.2), letters for
+  functions (2.3), shares of faults (2.5), ranges of friction (3.2), and of Appendix 1 all but the weft used.
+  Most figures of the sources are lost; where one is named, its numbers are given in the text."""
 
 
 def chapters() -> tuple[Chapter, ...]:
@@ -70,8 +86,9 @@ def chapters() -> tuple[Chapter, ...]:
             "Rotary dobby (Korolev, thesis, Moscow 2014)",
             "Most of the source's curves are in figures that are lost.",
             (
-                *cyclograms.sections(), *rotor.sections(), dwells.section(), *loads.sections(),
-                *cam.sections(), *lock.sections(), *warp.sections(), *productivity.sections(),
+                *arithmetic.sections(), cyclograms.section(), *rotor.sections(), dwells.section(),
+                *loads.sections(), *cam.sections(), *lock.sections(), *warp.sections(),
+                *productivity.sections(),
             ),
         ),
         reed.chapter(),
@@ -120,26 +137,13 @@ def write(directory: Path, overwrite: bool = False) -> list[Path]:
 
 
 def _counts(pairs: list[Pair]) -> list[str]:
-    """Counts of numbers, of those reproduced, of those met but used, and of the three kinds of misses."""
-    missed = [pair for pair in pairs if not pair.reproduced]
-    used = sum(pair.used for pair in pairs if pair.reproduced)
-    slips = [pair for pair in missed if pair.misprint]
-    measured = [pair for pair in missed if pair.measured]
-    others = len(missed) - len(slips) - len(measured)
-    counts = (len(pairs), len(pairs) - len(missed) - used, used, len(slips), len(measured), others)
-    return [str(count) for count in counts]
+    """Counts of numbers, and of those with each outcome."""
+    counts = Counter(pair.outcome for pair in pairs)
+    return [str(len(pairs)), *(str(counts[outcome]) for outcome in OUTCOMES)]
 
 
 def _summary(of_sources: tuple[Chapter, ...]) -> str:
-    heads = [
-        "source",
-        "numbers",
-        "reproduced",
-        f"met, but used{USED}",
-        "misprints",
-        "measurements not reproduced",
-        "other numbers not reproduced",
-    ]
+    heads = ["source", "numbers", *OUTCOMES.values()]
     lines = [heads, ["---"] * len(heads)]
     everything: list[Pair] = []
     for chapter in of_sources:

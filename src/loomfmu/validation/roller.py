@@ -6,7 +6,7 @@ from functools import cache
 
 from ..components.detaching_roller import DetachingRoller
 from ..physics.detaching_roller import drafting_force, top_roller_torque
-from .sections import Chapter, Pair, Row, Section, number
+from .sections import COMPUTED, DERIVED, Chapter, Pair, Row, Section, consistent, number
 
 ROLLER, TOP = 12.5e-3, 12.25e-3
 ROLLER_INERTIA, TOP_INERTIA = 135.64e-6, 33.98e-6
@@ -97,16 +97,21 @@ def built_in() -> Section:
     for name, (peak, valley) in TABLE_1.items():
         slip = name in ("M1", "M2")
         used = name in ("M11", "M13")
-        low = Pair(valley, found[name].valley, 3, misprint=name == "M2", used=used) if valley else "0"
-        rows.append(Row((name, Pair(peak, found[name].peak, 3, misprint=slip, used=used), low)))
+        known = DERIVED if name == "M12" else COMPUTED
+        low: Pair | str = "0"
+        if valley:
+            low = Pair(valley, found[name].valley, 3, misprint=name == "M2", used=used, proves=known)
+        high = Pair(peak, found[name].peak, 3, misprint=slip, used=used, proves=known)
+        rows.append(Row((name, high, low)))
     return Section(
         "Table 1 and Figures 8 and 9: torques at 300 nips/min with the built-in motion, N m",
         ("torque", "peak", "valley"),
         tuple(rows),
         split=False,
         remarks=(
-            "M13 proves nothing: the motion was made to match it. M12 follows from the inertias. The load of"
-            " 300 N was taken as that of a whole top roller because that gives the published M11.",
+            "M13 proves nothing: the motion was made to match it. M12 follows from the inertias, as in the"
+            " table before. The load of 300 N was taken as that of a whole top roller because that gives the"
+            " published M11.",
             "Published valleys are shown with the minus signs that they have lost.",
         ),
         figures=(
@@ -152,20 +157,21 @@ def against_itself() -> Section:
         Row(
             (
                 f"peak of M at {nips} nips/min from that at 300, by the square of the speed",
-                Pair(printed[nips, "M"][0], first * (float(nips) / 300.0) ** 2, 3),
+                consistent(printed[nips, "M"][0], first * (float(nips) / 300.0) ** 2, 3),
             )
         )
         for nips in ("400", "500")
     ]
     for nips in ("300", "400", "500"):
-        peak, valley = (8.0 * float(each) for each in printed[nips, "M"])
-        rows.append(Row((f"peak of M0 at {nips} nips/min, 8 M", Pair(printed[nips, "M0"][0], peak, 3))))
-        rows.append(Row((f"valley of M0 at {nips} nips/min, 8 M", Pair(printed[nips, "M0"][1], valley, 3))))
+        of_unit, of_machine = printed[nips, "M"], printed[nips, "M0"]
+        for what, one, eight in zip(("peak", "valley"), of_unit, of_machine, strict=True):
+            pair = consistent(eight, 8.0 * float(one), 3)
+            rows.append(Row((f"{what} of M0 at {nips} nips/min, 8 M", pair)))
     rows.append(_middle_valley())
     for what, place, growth in (("peak", 0, "177"), ("valley", 1, "206")):
         slow, fast = (float(printed[nips, "M0"][place]) for nips in ("300", "500"))
         name = f"growth of the {what} of M0 from 300 to 500 nips/min, %"
-        rows.append(Row((name, Pair(growth, 100.0 * (fast / slow - 1.0), 1))))
+        rows.append(Row((name, consistent(growth, 100.0 * (fast / slow - 1.0), 1))))
     return Section("Table 2 against itself, N m", ("quantity", ""), tuple(rows))
 
 
@@ -174,6 +180,6 @@ def _middle_valley() -> Row:
     valley = {nips: float(low) for nips, name, _high, low in TABLE_2 if name == "M"}
     inertia = (valley["300"] - valley["500"]) / ((500.0 / 300.0) ** 2 - 1.0)
     friction = valley["300"] + inertia
-    pair = Pair("-1.9", friction - inertia * (400.0 / 300.0) ** 2, 3)
+    pair = consistent("-1.9", friction - inertia * (400.0 / 300.0) ** 2, 3)
     law = f"{number(friction, 3)} - {number(inertia, 3)} (nips / 300)^2"
     return Row(("valley of M at 400 nips/min from those at 300 and 500", pair), law)

@@ -44,14 +44,14 @@ def rotor(law: str, reduction: float, x: float) -> tuple[float, float, float]:
     return drive(law, reduction).rotor(x)
 
 
-def largest_lift_acceleration(law: str, reduction: float, **shape: float) -> float:
-    """Largest second derivative of the lift by the shaft angle, as a share of the stroke."""
+def largest_lift_rate(law: str, reduction: float, *, order: int = 2, **shape: float) -> float:
+    """Largest derivative of that order of the lift by the shaft angle, as a share of the stroke."""
     from scipy.optimize import minimize_scalar
 
     turned = new_drive(law, reduction, **shape)
 
     def size(x: float) -> float:
-        return -abs(lift_fraction(*turned.rotor(x))[2])
+        return -abs(lift_fraction(*turned.rotor(x))[order])
 
     step = math.pi / 360.0
     start = min((k * step for k in range(361)), key=size)
@@ -64,7 +64,7 @@ def largest_lift_acceleration(law: str, reduction: float, **shape: float) -> flo
 
 def growth(law: str, **shape: float) -> float:
     """Growth of the largest acceleration of a frame from zeta = 0.3 to 0.7, %."""
-    low, high = (largest_lift_acceleration(law, z, **shape) for z in (0.3, 0.7))
+    low, high = (largest_lift_rate(law, z, order=2, **shape) for z in (0.3, 0.7))
     return 100.0 * (high / low - 1.0)
 
 
@@ -82,8 +82,8 @@ def published_peaks() -> Section:
         ("quantity", ""),
         (
             Row(("harmonic ends: largest S''", Pair("1.6", harmonic.highest_acceleration, 4))),
-            Row(("harmonic ends: speed reduction at the slow point", Pair("0.7", taken_off, 4, used=True)),
-                "put in as zeta"),
+            Row(("harmonic ends: largest speed taken off", Pair("0.7", taken_off, 4, used=True)),
+                "put in as zeta; printed as the largest speed: see Errata"),
             *(
                 Row((f"{law}: largest rotor speed relative to the shaft's",
                      Pair("1.4", drive(law, 0.7).highest_speed, 4, used=True)))
@@ -192,7 +192,7 @@ def frame_acceleration() -> Section:
     """Growth of the frame's acceleration over the speed reduction."""
     rows = []
     for law in ("uniform", *MODULATED):
-        low, high = (STROKE * SPEED**2 * largest_lift_acceleration(law, z) for z in (0.3, 0.7))
+        low, high = (STROKE * SPEED**2 * largest_lift_rate(law, z) for z in (0.3, 0.7))
         cell = (
             number(growth(law), 1)
             if law == "uniform"

@@ -15,6 +15,22 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 CALCULATION = 0.02
 MEASUREMENT = 0.05
 USED = "\N{DAGGER}"  # marks a published number that was used to choose a value
+# What a number that is met proves, each with its mark: the model, if a component or a design function of
+# loomfmu computes it; a known factor, if it follows by one from a number that is used or counted elsewhere;
+# or nothing but the source's own arithmetic
+COMPUTED, DERIVED, CONSISTENT = "", "\N{DOUBLE DAGGER}", "\N{SECTION SIGN}"
+MARKS = USED + DERIVED + CONSISTENT
+# What becomes of a published number, as the summary counts it
+OUTCOMES = {
+    COMPUTED: "computed by a component and met",
+    DERIVED: f"derived from another number and met{DERIVED}",
+    CONSISTENT: f"consistent within the source{CONSISTENT}",
+    "inequality": "inequalities met",
+    USED: f"met, but used{USED}",
+    "misprint": "misprints",
+    "measured": "measurements not reproduced",
+    "other": "other numbers not reproduced",
+}
 
 _EIGHT_DIGITS = Context(prec=8, rounding=ROUND_HALF_UP)
 
@@ -53,7 +69,8 @@ class Pair:
 
     `digits` are the decimals of the computed one; `place` says that it is a place on the shaft's circle,
     `misprint` that the printed number is known to be wrong, `used` that it was used to choose a value, so
-    that meeting it proves nothing; `sense` is "=" or, where the source gives a bound, ">=" or "<=".
+    that meeting it proves nothing; `proves` is what meeting it proves otherwise; `sense` is "=" or, where the
+    source gives a bound, ">=" or "<=".
     """
 
     published: str
@@ -64,6 +81,7 @@ class Pair:
     misprint: bool = False
     used: bool = False
     sense: str = "="
+    proves: str = COMPUTED
 
     @property
     def value(self) -> float:
@@ -89,10 +107,17 @@ class Pair:
         return abs(self.computed - self.value) <= max(share * abs(self.value), unit) * (1.0 + 1e-9)
 
     @property
+    def outcome(self) -> str:
+        """What becomes of it, a key of `OUTCOMES`."""
+        if self.reproduced:
+            return USED if self.used else self.proves if self.sense == "=" else "inequality"
+        return "misprint" if self.misprint else "measured" if self.measured else "other"
+
+    @property
     def shown(self) -> tuple[str, str, str]:
-        """Published, with its mark if it was used, computed, difference in percent."""
+        """Published, with its mark, computed, difference in percent."""
         bound = {">=": "at least ", "<=": "at most ", "=": ""}[self.sense]
-        published = bound + self.published + (USED if self.used else "")
+        published = bound + self.published + (USED if self.used else self.proves)
         return published, number(self.computed, self.digits), number(self.difference, 1, True)
 
     @property
@@ -104,6 +129,13 @@ class Pair:
         why = " (misprint, see Errata)" if self.misprint else ""
         published, computed, _difference = self.shown
         return f"{what} {published}, computed {computed}{why}"
+
+
+def consistent(
+    published: str, computed: float, digits: int, *, place: bool = False, misprint: bool = False
+) -> Pair:
+    """A number that follows from others of its source, and tests no component."""
+    return Pair(published, computed, digits, place=place, misprint=misprint, proves=CONSISTENT)
 
 
 Cell = str | Pair

@@ -12,7 +12,7 @@ from ..components.warp_tension import WarpTension
 from ..physics.damper import design_stiffness
 from ..physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
 from .chain import HealdLine
-from .sections import Pair, Row, Section, number
+from .sections import Pair, Row, Section, consistent, number
 
 Floats = NDArray[np.float64]
 STEPS, TURNS = 360, 20
@@ -179,8 +179,8 @@ def springs() -> Section:
         "Section 5.3: springs of the heald carrier",
         ("quantity", ""),
         (
-            Row(("load of the warp on a frame, N, (5.4)", Pair("957.6", load, 2)), "see Errata"),
-            Row(("inertia force of the frame, N, (5.5)", Pair("600", 15.0 * 40.0, 1))),
+            Row(("load of the warp on a frame, N, (5.4)", consistent("957.6", load, 2)), "see Errata"),
+            Row(("inertia force of the frame, N, (5.5)", consistent("600", 15.0 * 40.0, 1))),
             Row(("stiffness of a spring, N/m, (5.6)", Pair("5960", stiffness, 2))),
             Row(("stiffness of a spring, N/mm", Pair("59.6", 1e-3 * stiffness, 3, misprint=True))),
             Row(("displacement of a carrier of 15 kg under both forces, mm",

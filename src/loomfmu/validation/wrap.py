@@ -2,7 +2,7 @@
 
 from ..machines import table
 from ..physics.belt_wrap import cantilever_stiffness, restraint_load
-from .sections import Chapter, Pair, Row, Section, number
+from .sections import Chapter, Pair, Row, Section, consistent, number
 
 CLEARANCES = ("0.1", "0.2", "0.3", "0.4", "0.5")
 HEADS = tuple(f"c = {c} mm" for c in CLEARANCES)
@@ -37,14 +37,21 @@ def table_1() -> Section:
     """Bending stiffness."""
     found = stiffnesses()
     rows = [
-        Row((row["length_mm"], row["force_N"], row["deflection_mm"], Pair(row["EI_Nm2"], stiffness, 4)))
+        Row(
+            (
+                row["length_mm"],
+                row["force_N"],
+                row["deflection_mm"],
+                consistent(row["EI_Nm2"], stiffness, 4),
+            )
+        )
         for row, stiffness in zip(table("belt_stiffness_experiment"), found, strict=True)
     ]
     mean = sum(found) / len(found)
     return Section(
         "Table 1: bending stiffness from the cantilever test, N m2",
         ("length, mm", "force, N", "deflection, mm", ""),
-        (*rows, Row(("mean", "", "", Pair("0.25", mean, 4)))),
+        (*rows, Row(("mean", "", "", consistent("0.25", mean, 4)))),
         intro="Computed: equation (2).",
         labels=3,
     )
@@ -75,8 +82,8 @@ def _scatter() -> str:
             groups.setdefault((row["D_mm"], clearance), []).append(float(row[f"c_{clearance}"]))
     most = max((max(loads) - min(loads)) / min(loads) for loads in groups.values())
     return (
-        f"The loads measured at the three wrap angles differ by up to {number(100 * most, 1)} %. That the"
-        " wrap angle does not affect them is reproduced."
+        f"The loads measured at the three wrap angles differ by up to {number(100 * most, 1)} %. So"
+        " they agree with (8), in which the wrap angle does not appear."
     )
 
 

@@ -49,13 +49,11 @@ class LawParameters(ShaftDriven):
         minimum=0.0, maximum=10.0, nominal=0.1,
     )  # fmt: skip
     gear_harmonic: tuple[float, ...] = array(
-        parameter("1", share, f"Amplitude of the {which}", minimum=-10.0, maximum=10.0)
-        for share, which in (
-            (-0.27, "1st harmonic of the rotor speed (noncircular_gears; assumed)"),
-            (-0.13, "2nd harmonic of the rotor speed"),
-            (-0.05, "3rd harmonic of the rotor speed"),
-            (-0.025, "4th harmonic of the rotor speed"),
+        parameter(
+            "1", share, f"Amplitude of the {which} harmonic of the rotor speed (noncircular_gears; assumed)",
+            minimum=-10.0, maximum=10.0,
         )
+        for share, which in ((-0.27, "1st"), (-0.13, "2nd"), (-0.05, "3rd"), (-0.025, "4th"))
     )  # fmt: skip
     cam_angle: tuple[float, ...] = array(
         parameter(
@@ -82,12 +80,12 @@ class LawParameters(ShaftDriven):
         for point in range(36)
     )  # fmt: skip
     plateau_angle: float = parameter(
-        "rad", 0.5 * pi, "Shaft angle of lowest speed, half to either side of the slow point (plateau)",
-        display="deg", minimum=0.0, maximum=2.0 * pi,
+        "rad", 0.5 * pi, "Shaft angle of lowest speed, half to either side of the slow point (plateau;"
+        " inferred)", display="deg", minimum=0.0, maximum=2.0 * pi,
     )  # fmt: skip
     ramp_angle: float = parameter(
-        "rad", 40.9 * pi / 180.0, "Shaft angle from lowest to highest speed (plateau)", display="deg",
-        minimum=pi / 180.0, maximum=pi,
+        "rad", 40.9 * pi / 180.0, "Shaft angle from lowest to highest speed (plateau; inferred)",
+        display="deg", minimum=pi / 180.0, maximum=pi,
     )  # fmt: skip
     cam_bend: tuple[float, ...] = array(
         auxiliary("m", f"Second derivative of the cam's spline at control point {number}")
