@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from loomfmu import cli
+from loomfmu import cli, extras
 from loomfmu.machines import MACHINES, table
 from loomfmu.validation import accuracy, belt_motion, driven, findings, plots, report, sections
 from loomfmu.validation.sections import (
@@ -383,7 +383,8 @@ def test_looms_with_carriers_and_warp_follow_one_integration():
 
 
 def test_command_without_matplotlib(tmp_path, monkeypatch, capsys, text):
-    monkeypatch.setattr(plots, "available", lambda: False)
+    for module in (extras, report):
+        monkeypatch.setattr(module, "installed", lambda extra: False)
     monkeypatch.setattr(report, "text", lambda: text)
     assert cli.main(["validate", "--output", str(tmp_path / "new")]) == 0
     told = capsys.readouterr()
