@@ -48,7 +48,7 @@ class DrivenShaft(Component):
     )
     torque: tuple[float, ...] = array(
         input_(
-            "N.m", 0.0, f"Load torque of mechanism {number}; positive brakes the shaft", nominal=10.0,
+            "N.m", 0.0, f"Load torque of mechanism {number}; positive acts backwards", nominal=10.0,
             minimum=-1e12, maximum=1e12, source="*.shaft_torque",
         )
         for number in range(1, LOADS + 1)
