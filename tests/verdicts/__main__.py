@@ -5,9 +5,11 @@
 
 import argparse
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 
 from verdicts.drawing import FAMILIES, drawn
@@ -20,27 +22,35 @@ FOLDER = Path(__file__).parents[2] / "build" / "verdicts"
 
 
 def main() -> int:
-    """Judge random scenes and write the figures; 1 if a verdict is wrong."""
-    options = _parser().parse_args()
-    found = list(_all(options))
+    """Judge random scenes and write the figures, also where it is interrupted; 1 if a verdict is wrong."""
+    options, found = _parser().parse_args(), list[Found]()
+    with suppress(KeyboardInterrupt):
+        for some in _all(options):
+            found += some
+            for paragraph in listed(some, FOLDER) if options.list_wrong else ():
+                print(paragraph, end="\n\n", flush=True)
     text = table(found)
-    if options.output:
+    if options.output and found:
         options.output.write_text(text, encoding="utf-8")
-    print(text if not options.output else options.output)
+    print(options.output or text)
     print(summary(found))
     return 1 if any(each.wrong for each in found) else 0
 
 
-def _all(options: argparse.Namespace) -> Iterator[Found]:
+def _all(options: argparse.Namespace) -> Iterator[list[Found]]:
+    """The verdicts on each scene."""
     numbers = [options.scene] if options.scene is not None else range(options.scenes)
     wanted = [(options.seed, family, number) for number in numbers for family in options.family or FAMILIES]
-    with ProcessPoolExecutor(options.jobs) as pool:
-        for done, some in enumerate(pool.map(_one, wanted, chunksize=1), 1):
-            yield from some
-            for paragraph in listed(some, FOLDER) if options.list_wrong else ():
-                print(paragraph, end="\n\n", flush=True)
+    pool = ProcessPoolExecutor(
+        options.jobs, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
+    )
+    try:
+        for done, some in enumerate(pool.map(_one, wanted), 1):
+            yield some
             if sys.stderr.isatty():
                 print(f"\r{done} of {len(wanted)} scenes", end="", file=sys.stderr, flush=True)
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def _one(place: tuple[int, str, int]) -> list[Found]:

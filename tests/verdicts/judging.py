@@ -6,15 +6,16 @@ from dataclasses import dataclass, replace
 from random import Random
 from typing import Any, NamedTuple
 
+import numpy as np
 from verdicts.drawing import Claim, Drawn
 
 from loomfmu import LoomfmuError, Verdict, judge, prepare
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.traces import Signals
 
-BOUNDS = 4  # to either side of the truth, at random distances
+BOUNDS = 6  # to either side of the truth, at random distances
 NEAREST, FARTHEST = 1e-9, 0.3  # of the truth
-ROUNDING = 1e-12  # of value or bound: what sums may leave
+ROUNDING = 1e-12  # of value, bound and signal: what sums may leave
 CONFIRMED = 4  # times the finest steps, where a verdict seems to be wrong
 ANY = 0.25  # a bound that all claims take
 SPREAD = 3.0  # times what the fine runs differ by: how uncertain the truth is
@@ -22,15 +23,19 @@ SPREAD = 3.0  # times what the fine runs differ by: how uncertain the truth is
 
 @dataclass(frozen=True)
 class Truth:
-    """What a claim judges, by far finer steps, how uncertain that is, and its distance from the bound."""
+    """What a claim judges, by far finer steps, how uncertain that is, and its distance from the bound.
+
+    `scale` is the value's size, or that of the signal where the value is 0.
+    """
 
     value: float
     uncertainty: float
     distance: float
+    scale: float
 
     def says(self, whole: bool) -> bool | None:
         """Whether the claim holds; None where the truth is too uncertain to tell."""
-        exact = whole and self.uncertainty == 0.0
+        exact = whole and self.uncertainty < 0.5
         return self.distance >= 0.0 if abs(self.distance) > self.uncertainty or exact else None
 
 
@@ -138,16 +143,16 @@ def _bounded(scene: Drawn, trace: Signals, random: Random) -> list[Stated]:
             found += [Stated(claim, each) for each in bounds if each >= 0.0]
         else:
             low, high = claim.between
-            bounds = [*_about(truth.value, random), *claim.also]
+            bounds = [*_about(truth, random), *claim.also]
             found += [Stated(claim, each) for each in bounds if low <= each < high]
     return found
 
 
-def _about(value: float, random: Random) -> list[float]:
-    """Bounds to either side of a value, at random distances."""
-    scale, ends = abs(value) or 1.0, (math.log(NEAREST), math.log(FARTHEST))
-    sides = BOUNDS * (-1.0, 1.0)
-    return [value + side * scale * math.exp(random.uniform(*ends)) for side in sides]
+def _about(truth: Truth, random: Random) -> list[float]:
+    """Bounds to either side of the truth, at random distances."""
+    ends = (math.log(NEAREST), math.log(FARTHEST))
+    distances = [truth.scale * math.exp(random.uniform(*ends)) for _ in range(2 * BOUNDS)]
+    return [truth.value + (-1) ** place * each for place, each in enumerate(distances)]
 
 
 def fine_runs(scene: Drawn, fine: Sequence[int]) -> list[Signals]:
@@ -162,7 +167,9 @@ def _truth(stated: Stated, traces: Sequence[Signals]) -> Truth:
     verdicts = [judge(trace, **stated.table) for trace in traces]
     values, last = [each.worst for each in verdicts], verdicts[-1]
     spread = SPREAD * (max(values) - min(values)) if all(map(math.isfinite, values)) else math.nan
-    return Truth(last.worst, spread, last.sense * (last.worst - last.bound))
+    size = float(np.max(np.abs(traces[-1][last.signal]))) if last.signal in traces[-1] else 0.0
+    distance = last.sense * (last.worst - last.bound)
+    return Truth(last.worst, spread + ROUNDING * size, distance, abs(last.worst) or size or 1.0)
 
 
 def _on(scene: Drawn, claims: Sequence[tuple[Stated, Truth]], setting: dict[str, Any]) -> Iterator[Found]:
