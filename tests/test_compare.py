@@ -4,6 +4,7 @@ import json
 import math
 import tracemalloc
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import h5py
@@ -12,7 +13,7 @@ import pytest
 
 import loomfmu
 from loomfmu import LoomfmuError, cli
-from loomfmu.traces import Channel, TraceWriter, Verdict
+from loomfmu.traces import Channel, TraceWriter, Verdict, comparing
 
 RPM = 600.0
 SPEED = RPM * math.pi / 30.0
@@ -149,6 +150,28 @@ def test_claims_of_one_text_belong_together_by_their_signals(tmp_path: Path) -> 
     assert change.row == ("claim", "highest value", "holds, 1 m, bound 0 m", "missing")
     (change,) = loomfmu.compare(one, judged(tmp_path / "x.h5", ("highest value", "belt.x", 1.0))).changes
     assert change.row[2:] == ("holds (belt.y), 1 m, bound 0 m", "holds (belt.x), 1 m, bound 0 m")
+
+
+class Counting(str):
+    """The text of a claim that counts how often it is compared."""
+
+    compared = 0
+    __hash__ = str.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        Counting.compared += 1
+        return str.__eq__(self, other)
+
+
+def test_many_claims_of_other_names_are_not_compared_each_with_each() -> None:
+    first, second = (
+        [SimpleNamespace(claim=Counting(f"{run} {number}"), signal="a.b") for number in range(300)]
+        for run in "xy"
+    )
+    Counting.compared = 0
+    pairs = list(comparing._paired(first, second))
+    assert pairs == [*((one, None) for one in first), *((None, other) for other in second)]
+    assert Counting.compared < 10 * 300
 
 
 def test_causes_are_listed_first_and_few_signals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

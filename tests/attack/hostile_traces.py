@@ -82,6 +82,10 @@ def _virtual(file: h5py.File) -> None:
     file.create_virtual_dataset("belt/margin", layout)
 
 
+def _title(file: h5py.File) -> None:
+    file.attrs.create("title", b"a loom \xff", dtype=h5py.string_dtype())
+
+
 def _filtered(file: h5py.File) -> None:
     """A filter that HDF5 would look for among its plugins."""
     del file["belt/margin"]
@@ -107,6 +111,9 @@ def crafted() -> Iterator[tuple[str, Callable[[h5py.File], None]]]:
         )
         yield f"{name} is linked", _link(name, h5py.ExternalLink("secret.h5", "/secret"))
         yield f"{name} is soft", _link(name, h5py.SoftLink("/shaft_angle"))
+    packed = {"chunks": (4096,), "compression": "gzip", "compression_opts": 9, "shuffle": True}
+    yield "time never goes on", _instead("time", data=np.zeros(4_000_000, "i1"), **packed)
+    yield "the title is not text", _title
     yield "a group is linked", _link("belt", h5py.ExternalLink("secret.h5", "/"))
     yield "margin is virtual", _virtual
     yield "margin needs a plugin", _filtered

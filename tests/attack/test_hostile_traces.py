@@ -69,6 +69,10 @@ def test_what_somebody_crafts_is_refused(
         assert SECRET not in trace.time
         _ = trace.verdicts
     assert str(raised.value).startswith(f"{path}: ")
+    for command in (["report"], ["diagram"], ["plot", "belt.margin"], ["compare", str(path)]):
+        status = main([command[0], str(path), *command[1:]])  # not each reads what was changed
+        printed = capsys.readouterr().err
+        assert printed.count("\n") == (status == 2) and "a bug in loomfmu" not in printed, printed
     record("traces crafted to do harm, shown", 1, 1)
 
 

@@ -132,6 +132,17 @@ def test_a_batch_that_cannot_be_read_is_named(plan: SweepPlan, tmp_path: Path) -
             store.finish()
 
 
+def test_a_bit_of_the_table_that_turned_is_noticed(plan: SweepPlan, tmp_path: Path) -> None:
+    with opened(tmp_path / "results", plan, "one", restart=False) as store:
+        store.write(range(ROWS), batch(range(ROWS)))
+        store.finish()
+        content = bytearray(store.table_path.read_bytes())
+        content[4 + 60] ^= 1  # behind the first page's header: in its values
+        store.table_path.write_bytes(content)
+        with pytest.raises(LoomfmuError, match=r"table\.parquet: cannot be read \(.*CRC"):
+            store.finish()
+
+
 def test_rows_that_are_there_twice_are_refused(plan: SweepPlan, tmp_path: Path) -> None:
     with opened(tmp_path / "results", plan, "one", restart=False) as store:
         for rows in (range(0, 12), range(10, 24)):

@@ -108,7 +108,7 @@ class Store:
 
     def _read(self, path: Path) -> Any:
         try:
-            return pq.read_table(path)
+            return pq.read_table(path, page_checksum_verification=True)
         except (OSError, pa.ArrowInvalid) as error:
             reason = str(error).splitlines()[0]
             raise LoomfmuError(
@@ -154,5 +154,5 @@ def opened(
 def _write(table: Any, path: Path) -> None:
     """Write a table: whole, or not under that name."""
     sink = pa.BufferOutputStream()
-    pq.write_table(table, sink, row_group_size=max(1, table.num_rows))
+    pq.write_table(table, sink, row_group_size=max(1, table.num_rows), write_page_checksum=True)
     replace_file(path, sink.getvalue())

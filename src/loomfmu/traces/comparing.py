@@ -2,7 +2,7 @@
 
 import fnmatch
 import math
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
@@ -209,15 +209,17 @@ def _paired(
 ) -> Iterator[tuple[Verdict | None, Verdict | None]]:
     """The verdicts on the same claim: those of one text and signal, of the others those of one text."""
     found: dict[int, Verdict] = {}
-    left = list(second)
+    left = dict(enumerate(second))
     for wanted in (("claim", "signal"), ("claim",)):
         same = attrgetter(*wanted)
+        places: dict[Any, deque[int]] = {}
+        for place, other in left.items():
+            places.setdefault(same(other), deque()).append(place)
         for number, one in enumerate(first):
-            of_it = (place for place, other in enumerate(left) if same(other) == same(one))
-            if number not in found and (place := next(of_it, None)) is not None:
-                found[number] = left.pop(place)
+            if number not in found and (of_it := places.get(same(one))):
+                found[number] = left.pop(of_it.popleft())
     yield from ((one, found.get(number)) for number, one in enumerate(first))
-    yield from ((None, other) for other in left)
+    yield from ((None, other) for other in left.values())
 
 
 def _alike(a: Verdict, b: Verdict, tolerance: Tolerance) -> bool:

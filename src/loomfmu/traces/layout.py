@@ -7,6 +7,7 @@ import h5py
 FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 BESIDE = {"valid_if": "ancillary_variables"}  # roles of `Beside` that have another name in CF
 EXPANSION = 1100  # bytes that a stored byte may become: gzip makes up to 1032 of it
+EXPANSION_OF_TIME = 150  # bytes of 8 a row: what grows from row to row is packed to 1/105 at best
 
 
 class Foreign(Exception):
@@ -30,6 +31,20 @@ def check_link(group: Any, name: str) -> None:
         raise Foreign(f"{group.name.rstrip('/')}/{name} is a link")
 
 
+def attributes(item: Any) -> dict[str, Any]:
+    """The attributes of a group or a dataset. Raises ValueError for text that is not in UTF-8."""
+    return {name: legible(name, value) for name, value in item.attrs.items()}
+
+
+def legible(name: str, value: Any) -> Any:
+    """The value of an attribute. Raises ValueError for text that is not in UTF-8."""
+    try:
+        f"{name}{value if isinstance(value, str) else ''}".encode()
+    except UnicodeEncodeError:  # h5py gives what it cannot decode as surrogates
+        raise ValueError(f"its attribute {name!a} is not text in UTF-8") from None
+    return value
+
+
 def column(item: Any) -> Any:
     """A dataset of a trace: a column of numbers, stored in this file. Raises Foreign for anything else."""
     if not isinstance(item, h5py.Dataset) or item.shape is None or len(item.shape) != 1:
@@ -44,6 +59,7 @@ def column(item: Any) -> Any:
         raise Foreign(f"{item.name} uses an HDF5 filter that traces never use")
     stored = min(item.id.get_storage_size(), item.file.id.get_filesize())
     chunk = item.chunks[0] * item.dtype.itemsize if item.chunks and item.size else 0
-    if max(item.nbytes, chunk) > EXPANSION * stored:
+    rows_of_time = 8 * item.size if item.name == "/time" else 0
+    if max(item.nbytes, chunk) > EXPANSION * stored or rows_of_time > EXPANSION_OF_TIME * stored:
         raise Foreign(f"{item.name} has {item.size} rows but stores almost none of them")
     return item

@@ -17,7 +17,7 @@ from ..components import COMPONENTS
 from ..errors import LoomfmuError, shown
 from ..units import UnitError
 from ..variables import SHARED, variables_of
-from .layout import BESIDE, check_link, column, has, member
+from .layout import BESIDE, attributes, check_link, column, has, legible, member
 from .opened import TraceFile
 from .signals import Floats, Signals
 from .verdict import HEADINGS, Verdict
@@ -130,11 +130,11 @@ class Trace(Signals):
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
 
         with self._file.opened() as file:
-            dict(file.attrs)
+            attributes(file)
             for signal in (*SHARED, *self):
-                dict(self._item(file, signal).attrs)
+                attributes(self._item(file, signal))
             for name in {signal.partition(".")[0] for signal in self}:
-                dict(member(file, name).attrs)
+                attributes(member(file, name))
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
@@ -153,7 +153,7 @@ class Trace(Signals):
         key = signal, attribute
         if key not in self._texts:
             with self._dataset(signal) as dataset:
-                text = dataset.attrs.get(attribute)
+                text = legible(attribute, dataset.attrs.get(attribute))
                 self._texts[key] = None if text is None else str(text)
         return self._texts[key]
 
@@ -177,7 +177,7 @@ class Trace(Signals):
     def attributes(self) -> dict[str, Any]:
         """What the file says of the run."""
         with self._file.opened() as file:
-            return dict(file.attrs)
+            return attributes(file)
 
     @property
     def status(self) -> str:
@@ -284,7 +284,7 @@ class Trace(Signals):
             return {
                 f"{name}.{key}": value.item() if isinstance(value, np.generic) else str(value)
                 for name, group in groups.items()
-                for key, value in group.attrs.items()
+                for key, value in attributes(group).items()
                 if key not in ABOUT
             }
 
