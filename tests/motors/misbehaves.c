@@ -18,7 +18,7 @@
 #undef fmi2EnterInitializationMode
 #undef fmi2DoStep
 
-enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE, FORK, ROUND };
+enum { CRASH, HANG, EXIT, ABORT, MOVE, FLOOD, PRINT, CLOSE, CHILD, LOG, STATUS, QUIT, OVERWRITE, FORK, ROUND, DAEMON };
 enum { STEP, INITIALIZATION, TERMINATE, FREE };
 
 #ifndef RETURNED
@@ -67,6 +67,15 @@ static void misbehave(Instance *i)
         if (fork() == 0)
             for (;;) pause();
         *(volatile int *)8 = 1;
+        break;
+    case DAEMON: /* a server in a session of its own, started by a process that ends at once */
+        if (fork() == 0) {
+            setsid();
+            if (fork() == 0)
+                for (;;) pause();
+            _exit(0);
+        }
+        if (RETURNED) *(volatile int *)8 = 1;
         break;
     case FORK: /* both go on */
         fork();

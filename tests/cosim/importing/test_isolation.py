@@ -248,6 +248,28 @@ def test_other_rows_of_a_sweep_are_unharmed(tmp_path: Path, what: str) -> None:
         assert row["motor.flange_w"] == pytest.approx(60.0 * (1.0 - np.exp(-0.2 / constant)), rel=1e-12)
 
 
+@pytest.mark.parametrize("crashes", [0, 1])
+def test_what_an_fmu_starts_in_a_session_of_its_own_ends_with_it(
+    tmp_path: Path, crashes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MARK", str(tmp_path))  # what it starts has the same
+    misbehaving(tmp_path, "DAEMON", returned=crashes)
+    if crashes:
+        with pytest.raises(LoomfmuError, match=r"fmi2DoStep crashed its process \(SIGSEGV\)$"):
+            ran(tmp_path, MOTOR, tmp_path)
+    else:
+        assert ran(tmp_path, MOTOR.replace('"0.2 s"', '"0.055 s"'), tmp_path).holds
+    assert [each for each in Path("/proc").glob("[0-9]*/environ") if str(tmp_path) in told(each)] == []
+
+
+def told(path: Path) -> str:
+    """The content of a file of /proc; nothing of a process that has ended."""
+    try:
+        return path.read_text(errors="replace")
+    except OSError:
+        return ""
+
+
 # ---- not isolated
 
 IN_THIS_PROCESS = "isolated = false\n" + LENGTH + '[motor]\nfmu = "Motor.fmu"\n'
@@ -299,13 +321,17 @@ def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
         (tmp_path / "motor.toml").write_text(MOTOR + claim)
         done = [
             subprocess.run(
-                [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--set", f"isolated={isolated}"],
+                [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--set", f"isolated={isolated}",
+                 "--output", f"{bound}_{isolated}.h5"],
                 cwd=tmp_path, capture_output=True, text=True, check=False,
             )
             for isolated in ("true", "false")
         ]  # fmt: skip
         assert [each.returncode for each in done] == [status] * 2, done[1].stderr
-        printed = [[line for line in each.stdout.splitlines() if "us each" not in line] for each in done]
+        printed = [
+            [line for line in each.stdout.splitlines() if "us each" not in line and "trace: " not in line]
+            for each in done
+        ]
         words = [" ".join(" ".join(lines).split()) for lines in printed]
         # errors take further runs, which an FMU in this process could spoil
         note = r" \(numerical error not estimated: motor runs in this process; set isolated = true\)"

@@ -81,7 +81,7 @@ class IsolatedSlave(Slave):
         try:
             answer = Answer(*pickle.loads(reply))
         except Exception:  # an FMU has written into the pipe
-            self._process.end(grace=0.0)
+            self._process.end()
             raise Died("it disturbs the connection to the master") from None
         self.messages[:] = answer.messages
         self._silent = {function: Silent(*each) for function, each in answer.silent.items()}

@@ -8,7 +8,6 @@ import mmap
 import os
 import select
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -23,12 +22,14 @@ from .messages import PART, complete, framed, write
 
 AVAILABLE = hasattr(select, "poll")  # not on Windows
 LOOK = 100  # ms between looks for Ctrl-C and for the limits
-GRACE = 1.0  # s for a call to return after Ctrl-C, and for a process to end
+GRACE = 1.0  # s for a call to return after Ctrl-C, and for a process to end by itself
+END = 30.0  # s for all processes to end that an FMU has started: far more than a busy machine needs
 START = 120.0  # s for Python to start on a busy machine
 MOST_OUTPUT = 4096  # bytes of what an FMU prints that are kept
 MOST_SHOWN = 200  # letters of it that a message shows
 SCRIPT = (
     "import json, pathlib, sys; sys.path[:] = json.loads(pathlib.Path('path').read_bytes());"
+    " from loomfmu.cosim.importing.supervisor import supervise; supervise(*map(int, sys.argv[1:]));"
     " from loomfmu.cosim.importing.worker import main; main()"
 )
 
@@ -141,7 +142,7 @@ class Process:
             else:
                 reason = limits.passed
             if reason:
-                self.end(grace=0.0)
+                self.end()
                 raise Died(reason + self._printed())
 
     def _died(self, action: str) -> Died:
@@ -149,7 +150,7 @@ class Process:
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._popen.wait(GRACE)
         status = self._popen.returncode
-        self.end(grace=0.0)
+        self.end()
         if status is None:
             reason = f"{action} closed the connection to the master"
         elif status < 0:
@@ -168,13 +169,12 @@ class Process:
         last = next(filter(None, reversed(texts)), "")
         return f"; it printed: {last[:MOST_SHOWN]}" if last else ""
 
-    def end(self, grace: float = GRACE) -> None:
-        """End it, and whatever it has started."""
+    def end(self) -> None:
+        """End it, and whatever it has started: its supervisor does, once the pipes are closed."""
         self._close()
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._popen.wait(grace)
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._popen.pid, signal.SIGKILL)
+            self._popen.wait(END)
+        self._popen.kill()
         self._popen.wait()
         shutil.rmtree(self._folder, ignore_errors=True)
 

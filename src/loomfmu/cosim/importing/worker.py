@@ -4,10 +4,7 @@ import ctypes
 import mmap
 import os
 import pickle
-import select
-import shutil
 import sys
-import threading
 from array import array
 from pathlib import Path
 from types import SimpleNamespace
@@ -127,22 +124,5 @@ class Worker:
 
 def main() -> None:
     """Serve the pipes that the arguments name."""
-    requests, replies = map(int, sys.argv[1:])
-    folder = Path.cwd()
-    threading.Thread(target=_end_with_master, args=(requests, folder), daemon=True).start()
-    Worker(requests, replies).serve()
-    _end(folder)
-
-
-def _end_with_master(requests: int, folder: Path) -> None:
-    """Wait until the master is gone, even if the FMU is in a call that does not return."""
-    poll = select.poll()
-    poll.register(requests, 0)
-    poll.poll()
-    _end(folder)
-
-
-def _end(folder: Path) -> None:
-    """End the process without what libraries would do at its end."""
-    shutil.rmtree(folder, ignore_errors=True)
-    os._exit(0)
+    Worker(*map(int, sys.argv[1:])).serve()
+    os._exit(0)  # without what libraries would do at the end of a process
