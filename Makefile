@@ -9,6 +9,8 @@ INSTALL_THIS := $(PIP) install --no-deps --no-build-isolation --editable .
 PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate
 # a file's tests stay in one process; where a process crashes, its test fails and the rest is not tried
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
+COPY := $(CURDIR)/build/checkout
+PACKAGED := src fmus sims pyproject.toml README.md LICENSE THIRD_PARTY.md
 FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
 VERDICTS := $(CURDIR)/src/loomfmu/validation/errors.csv
 
@@ -57,12 +59,14 @@ site: .venv/installed-for-tests
 validation: .venv/installed-for-tests
 	$(BIN)/loomfmu validate
 
-# a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler
+# a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler;
+# built in a copy, since what an interrupted build leaves in src would be run
 wheel: .venv/installed
-	$(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
-	$(BIN)/python -c "from pathlib import Path; from loomfmu.fmi.native.libraries import build_all; build_all(Path('src/loomfmu/cosim').glob('*/native/*.c'))"
-	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist .
-	rm -r src/loomfmu/cosim/*/native/*/ src/loomfmu/fmi/native/shipped
+	rm -rf $(COPY) && mkdir -p $(COPY)
+	cp -R $(PACKAGED) $(COPY)
+	PYTHONPATH=$(COPY)/src $(BIN)/python -c "from loomfmu.fmi.shipping import build_all; build_all()"
+	$(PIP) wheel --no-deps --no-build-isolation --wheel-dir dist $(COPY)
+	rm -r $(COPY)
 
 .venv/created:
 	@echo "making an environment in .venv"

@@ -90,7 +90,9 @@ def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> Non
     said = called(python, "-c", COMMAND, "run", "my_loom.toml", cwd=tmp_path, **cache)
     assert "90 steps with native FMUs, " in said
     assert not (tmp_path / "cache/fmus").exists()  # nothing was built
-    assert not (tmp_path / "cache/stepper").exists()
+    assert not (tmp_path / "cache/stepper").exists()  # nor the stepper, which it brings
+    (stepper,) = python.parents[1].rglob("shipped/*/stepper.*[!6]")
+    assert stepper.parent.name == host()
     with Trace(tmp_path / "results/my_loom.h5") as trace:
         assert trace.attributes["flavour"] == "native"
         assert "notes" not in trace.attributes

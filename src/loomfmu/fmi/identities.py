@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from .. import components
+from ..files import replace_file
 from ..variables import Component
 from .cache_entries import IDENTITIES, made_file
 from .native.platforms import SHIPPED, stamp
@@ -72,7 +73,7 @@ def documents() -> Path:
 
 def write(directory: Path) -> None:
     """Keep the identities in a package that brings its FMUs."""
-    (directory / "identities.json").write_bytes(_everything())
+    replace_file(directory / "identities.json", _everything())
 
 
 def _files(part: Path) -> list[Path]:

@@ -1,23 +1,30 @@
-"""Builds what a package brings so that who installs it needs no compiler: native FMUs for all platforms."""
+"""Builds what a package brings for those without a compiler: native FMUs and our own libraries in C.
+
+It goes into the package that this module is part of. `make wheel` does so in a copy of the checkout, so that
+one that is interrupted leaves nothing that would be run.
+"""
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 from ..components import COMPONENTS
+from ..files import replace_file
 from . import identities
+from .native import libraries
 from .native.builder import build_native
 from .native.compiler import MINGW, mingw_licence
 from .native.platforms import PLATFORMS, SHIPPED
 
 
 def build_all(platforms: tuple[str, ...] = tuple(PLATFORMS)) -> None:
-    """Build the native FMUs of both versions into the package. Raises LoomfmuError, OSError."""
+    """Build the native FMUs of both versions, and the libraries, into the package. Raises LoomfmuError."""
     shutil.rmtree(SHIPPED, ignore_errors=True)
     with ThreadPoolExecutor() as pool:
         for fmi in (2, 3):
             build = partial(build_native, directory=SHIPPED / f"fmi{fmi}", platforms=platforms, fmi=fmi)
             built = pool.map(build, COMPONENTS)
             list(built)
-    (SHIPPED / MINGW).write_bytes(mingw_licence())
+    libraries.build_all(sorted(identities.PACKAGE.glob("cosim/*/native/*.c")), platforms)
+    replace_file(SHIPPED / MINGW, mingw_licence())
     identities.write(SHIPPED)

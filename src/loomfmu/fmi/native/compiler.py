@@ -12,7 +12,6 @@ from threading import BoundedSemaphore
 
 from ...errors import LoomfmuError
 from ...extras import install
-from ...files import ANY, write_file
 from ..cache import compiler_environment
 from .fat_binary import fat_binary
 from .platforms import COMPILER, PLATFORMS, SHIPPED, compiler, platform_of, stamp
@@ -64,11 +63,6 @@ def library_identity(source: Path) -> str:
     """What a shared library of this source depends on, as a name for a cache. Raises as `library`."""
     _required()
     return hashlib.sha256(source.read_bytes() + stamp(COMPILER).encode()).hexdigest()
-
-
-def build_library(source: Path, output: Path, platform: str) -> None:
-    """Compile one C file into a shared library file. Raises LoomfmuError as `library`, or naming the file."""
-    write_file(output, library(source, platform), ANY)
 
 
 def library(source: Path, platform: str) -> bytes:

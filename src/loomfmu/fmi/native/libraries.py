@@ -1,13 +1,16 @@
 """Libraries that do in C what this package also does in Python, with the same bits.
 
-Each comes with the package, or is built once where a compiler is installed.
+Each comes with the package, or is built once where a compiler is installed. One that comes with it is loaded
+only if it is, to the last byte, what was built of the source beside it: each has its digest with it.
 """
 
+import hashlib
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
 from ...errors import LoomfmuError
+from ...files import ANY, write_file
 from ..cache_entries import STEPPER, made_file
 from . import platforms
 
@@ -19,7 +22,7 @@ def library_of(source: Path) -> Path | None:
     if not platform:
         return None
     shipped = _shipped(source, platform)
-    if shipped.exists():
+    if _is_of(shipped, source):
         return shipped
     from . import compiler  # a package that brings its libraries needs none
 
@@ -32,13 +35,32 @@ def library_of(source: Path) -> Path | None:
 
 def _shipped(source: Path, platform: str) -> Path:
     """Where the library of a platform lies in a package that brings it."""
-    return source.with_name(platform) / f"{source.stem}{platforms.PLATFORMS[platform].suffix}"
+    return platforms.SHIPPED / platform / f"{source.stem}{platforms.PLATFORMS[platform].suffix}"
 
 
-def build_all(sources: Iterable[Path]) -> None:
-    """Build libraries for all platforms, for a package that brings them. Raises LoomfmuError, OSError."""
-    from .compiler import build_library
+def _seal_of(library: Path) -> Path:
+    """The file that says which library of which source it is."""
+    return library.with_name(f"{library.name}.sha256")
+
+
+def _seal(source: Path, library: bytes) -> bytes:
+    return hashlib.sha256(hashlib.sha256(source.read_bytes()).digest() + library).hexdigest().encode()
+
+
+def _is_of(library: Path, source: Path) -> bool:
+    """Whether a library that the package brings was built of this source, and not been changed since."""
+    try:
+        return _seal_of(library).read_bytes() == _seal(source, library.read_bytes())
+    except OSError:
+        return False
+
+
+def build_all(sources: Iterable[Path], wanted: Iterable[str]) -> None:
+    """Build libraries for platforms, for a package that brings them. Raises LoomfmuError."""
+    from .compiler import library
 
     for source in sources:
-        for platform in platforms.PLATFORMS:
-            build_library(source, _shipped(source, platform), platform)
+        for platform in wanted:
+            made = library(source, platform)
+            path = write_file(_shipped(source, platform), made, ANY)
+            write_file(_seal_of(path), _seal(source, made), ANY)
