@@ -445,7 +445,7 @@ def test_a_long_scene_and_many_verdicts_fit(tmp_path: Path) -> None:
 def test_the_final_name_is_given_last(tmp_path: Path) -> None:
     path = tmp_path / "sub" / "run.h5"
     writer = TraceWriter(path, {"title": "t"}, [], {})
-    assert re.fullmatch(r"run\.h5\.[0-9a-f]{8}\.partial", writer.partial.name)
+    assert re.fullmatch(rf"run\.h5\.[0-9a-f]{{8}}-{os.getpid()}-[0-9a-f]{{8}}\.partial", writer.partial.name)
     writer.append(np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1), dtype="i4"))
     assert not path.exists()
     assert writer.complete([]).path == path
@@ -555,6 +555,33 @@ def test_what_was_kept_is_gone_with_the_process(tmp_path: Path, fmu_cache: None)
     )
     assert in_a_process(script, str(tmp_path)) == "2 41887902\n"  # 400 rev/min in 1e-6 rad/s
     assert os.listdir(tmp_path / "results") == ["shaft.h5"]
+
+
+def test_what_a_killed_process_left_is_named_and_deleted_by_the_next_run(
+    tmp_path: Path, fmu_cache: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("shaft.toml").write_text("revolutions = 1\nsteps_per_revolution = 8\n[shaft]\n")
+    script = (
+        "import loomfmu, os, signal, sys; os.chdir(sys.argv[1])\n"
+        "from loomfmu.traces import TraceWriter\n"
+        "held = [loomfmu.run('shaft.toml') for _ in range(2)]\n"
+        "begun = TraceWriter(held[0].path, {'title': 'begun'}, [], {})\n"
+        "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(tmp_path)], check=False, capture_output=True)
+    assert done.returncode == -signal.SIGKILL
+    left = sorted({*os.listdir("results")} - {"shaft.h5"})
+    assert [(name.startswith("."), name.endswith(".partial")) for name in left] == [
+        (True, False),
+        (False, True),
+    ]
+    mine = TraceWriter(Path("results/shaft.h5"), {"title": "mine"}, [], {})  # of a process that runs
+    assert cli.main(["run", "shaft.toml"]) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        f"results/{name}: left by a killed process; deleted when this run is complete" for name in left
+    ]
+    assert sorted(os.listdir("results")) == ["shaft.h5", mine.partial.name]
 
 
 def test_more_traces_can_be_held_at_once_than_files_may_be_open(result: loomfmu.Result) -> None:

@@ -216,17 +216,6 @@ def test_six_cold_starts_of_one_package_at_once(own_cache: Path, tmp_path: Path)
 # ---- all entries
 
 
-def test_what_long_was_not_used_is_deleted_when_something_is_written(own_cache: Path) -> None:
-    old, young, other = "1" * 64, "2" * 64, own_cache / FMUS / "of_somebody_else"
-    for key in (old, young):
-        made_file(FMUS, key, "x.fmu", lambda: b"content")
-    other.mkdir()
-    for path in (own_cache / FMUS / old, other):
-        os.utime(path, (0, 0))
-    entry()
-    assert sorted(path.name for path in (own_cache / FMUS).iterdir()) == [young, other.name]
-
-
 def test_an_entry_in_use_is_kept(own_cache: Path) -> None:
     top = entry()
     os.utime(top, (0, 0))
@@ -260,6 +249,7 @@ def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path)
     assert kept.is_dir()
 
 
+USED = 64 * "0"
 USES = """
 import sys
 from pathlib import Path
@@ -286,3 +276,23 @@ def test_a_cache_that_another_process_uses_is_not_emptied(
     assert user.communicate("\n")[0] == "True\n"
     assert cli.main(["cache", "--clear"]) == 0
     assert "0 entries" in capsys.readouterr().out
+
+
+@unix
+def test_what_long_was_not_used_is_deleted_by_the_next_one_to_use_the_cache_alone(own_cache: Path) -> None:
+    fmus_in_it = own_cache / FMUS
+    for name in (old := "1" * 64, young := "2" * 64, other := "of_somebody_else"):
+        (fmus_in_it / name).mkdir(parents=True)
+    for name in (old, other):
+        os.utime(fmus_in_it / name, (0, 0))
+    command = [sys.executable, "-c", USES]
+    first = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert first.stdout is not None and first.stdout.readline() == "ready\n"
+    assert not (fmus_in_it / old).exists()
+    (fmus_in_it / old).mkdir()
+    os.utime(fmus_in_it / old, (0, 0))  # as what the first one has used for a month
+    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, old, young, other])
+    first.communicate("\n")
+    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, young, other])

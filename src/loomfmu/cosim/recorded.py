@@ -13,6 +13,7 @@ from ..files import cannot_write, check_target
 from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
+from ..traces.places import abandoned
 from .master.master import Interrupted
 from .planning.plan import Plan
 from .planning.requested import output_port
@@ -92,6 +93,8 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
     if report and size > LARGE_TRACE:
         printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
+    for left in abandoned(path) if report else ():
+        printed.complain(f"{left}: left by a killed process; deleted when this run is complete")
     try:
         check_room(path, size)
         return path.absolute()

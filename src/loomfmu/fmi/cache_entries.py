@@ -51,10 +51,9 @@ def folder(kind: str, key: str, names: Collection[str], content: Callable[[str],
     try:
         _prepare(top, names)
         files = [name for name in names if not name.endswith("/")]
-        written = [name for name in files if _keep(top / name, content(name))]
+        for name in files:
+            _keep(top / name, content(name))
         _mark_used(top)
-        if written:
-            delete(UNUSED)
     except OSError as error:
         raise cannot_write(Path(error.filename or top), error) from None
     return top
@@ -88,7 +87,7 @@ def _checksum(content: bytes) -> bytes:
 
 
 def _in_use() -> Path:
-    """The cache, which nobody else can empty from now on; waits until one who does has done."""
+    """The cache, of which nobody else can delete anything from now on; waits until one who does has done."""
     directory = cache_directory()
     if directory not in _held:
         _held[directory] = _locked(directory)
@@ -96,12 +95,19 @@ def _in_use() -> Path:
 
 
 def _locked(directory: Path) -> int | None:
-    """A lock on the cache; none where the file system has no locks."""
+    """A lock on the cache; none where the file system has no locks.
+
+    Before a process uses anything, and if no other one does, what was not used for long is deleted.
+    """
     if fcntl is None:
+        delete(UNUSED)
         return None
     lock = None
     try:
         lock = os.open(directory, os.O_RDONLY)
+        with contextlib.suppress(OSError):  # others use it
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            delete(UNUSED)
         fcntl.flock(lock, fcntl.LOCK_SH)
     except OSError:
         if lock is not None:
@@ -182,10 +188,10 @@ def _content(path: Path) -> bytes | None:
         return None
 
 
-def _keep(path: Path, content: bytes) -> bool:
-    """Let a file have this content, whoever else writes the same one; whether it had to be written."""
+def _keep(path: Path, content: bytes) -> None:
+    """Let a file have this content, whoever else writes the same one."""
     if _content(path) == content:
-        return False
+        return
     partial = cache_directory() / PARTIAL / secrets.token_hex(32)
     _make_private(partial.parent)
     try:
@@ -194,7 +200,6 @@ def _keep(path: Path, content: bytes) -> bool:
         put(partial, path)
     finally:
         partial.unlink(missing_ok=True)
-    return True
 
 
 def _mark_used(top: Path) -> None:

@@ -4,12 +4,19 @@ A second run of a scene writes to the name that the first one has. The first fil
 beside it, which lasts as long as the `Trace` objects that read it. That costs no copy, no memory and no open
 file, however long the runs and however many the results; an open file would do on POSIX alone, and there for
 a thousand results or so.
+
+Such files, and those that runs have not finished, have the number of their process in their names: what a
+killed one leaves is known by that.
 """
 
 import contextlib
+import hashlib
 import os
+import platform
+import re
 import secrets
 import weakref
+from functools import cache
 from pathlib import Path
 
 from ..files import put
@@ -37,7 +44,7 @@ def replace(new: Path, path: Path) -> None:
     """
     place = _places.pop(os.path.realpath(path), None)
     if place is not None and path.exists():
-        aside = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+        aside = path.with_name(f".{path.name}.{mark()}")
         try:
             os.link(path, aside)  # first a second name: at no time is there no file under the usual one
         except OSError:  # a file system without links
@@ -48,6 +55,45 @@ def replace(new: Path, path: Path) -> None:
     if (moved := _places.pop(os.path.realpath(new), None)) is not None:
         moved.path = path
         _places[os.path.realpath(path)] = moved
+
+
+def mark() -> str:
+    """A part of a file's name that no other file has and that tells which process it is of."""
+    return f"{_machine()}-{os.getpid()}-{secrets.token_hex(4)}"
+
+
+def abandoned(path: Path) -> list[Path]:
+    """What processes that were killed have left beside a trace: hidden older ones, and those not complete."""
+    pattern = re.compile(rf"\.?{re.escape(path.name)}\.{_machine()}-(\d+)-[0-9a-f]{{8}}(\.partial)?")
+    try:
+        found = [(each, pattern.fullmatch(each.name)) for each in path.parent.iterdir()]
+    except OSError:
+        return []
+    return sorted(each for each, match in found if match and not _runs(int(match[1])))
+
+
+@cache
+def _machine() -> str:
+    """Eight digits for where a number means one process: a machine, on Linux its namespace of processes."""
+    told = [platform.node()]
+    with contextlib.suppress(OSError):
+        told.append(Path("/etc/machine-id").read_text())
+    with contextlib.suppress(OSError):
+        told.append(str(Path("/proc/self/ns/pid").readlink()))
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:8]
+
+
+def _runs(process: int) -> bool:
+    """Whether a process of this machine is there; Windows, where asking would end it, says yes."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # somebody else's
+        return True
+    return True
 
 
 def _remove(path: Path, owner: int) -> None:

@@ -7,7 +7,6 @@ every block written can be read, even after a kill.
 
 import contextlib
 import json
-import secrets
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ from .created import INTEGERS, REALS, annotate, dataset
 from .disk import reserve
 from .edit import edited
 from .layout import BESIDE
-from .places import replace
+from .places import abandoned, mark, replace
 from .reader import Trace
 from .signals import Channel, Floats, Integers
 
@@ -49,7 +48,7 @@ class TraceWriter:
         groups: Mapping[str, Mapping[str, Any]],
     ):
         self.path = path
-        self.partial = partial_of(path, secrets.token_hex(4))
+        self.partial = partial_of(path, mark())
         self.channels = channels
         self.rows = 0
         make_folder(self.partial.parent)
@@ -165,6 +164,9 @@ class TraceWriter:
         with contextlib.suppress(OSError):
             if kept.stat().st_mtime_ns < self._begun:
                 kept.unlink()
+        for left in abandoned(self.path):
+            with contextlib.suppress(OSError):
+                left.unlink()
         return trace
 
     def _claimed(self, verdicts: Sequence[dict[str, Any]]) -> str:
