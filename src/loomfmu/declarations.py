@@ -100,8 +100,10 @@ def output(
     unbounded: bool = False,
     rate: str | None = None,
     depends: tuple[str, ...] | None = None,
+    follows: str | None = None,
     lowest_of: str | None = None,
     highest_of: str | None = None,
+    so_far: bool = False,
     pole: bool = False,
     valid_if: str | None = None,
     error: str | None = None,
@@ -110,8 +112,9 @@ def output(
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
         "output", variability or usual, unit, start, description, display,
-        nominal=nominal, unbounded=unbounded, rate=rate, depends=depends,
-        lowest_of=lowest_of, highest_of=highest_of, pole=pole, valid_if=valid_if, error=error,
+        nominal=nominal, unbounded=unbounded, rate=rate, depends=(follows,) if follows else depends,
+        follows=follows, lowest_of=lowest_of, highest_of=highest_of, so_far=so_far, pole=pole,
+        valid_if=valid_if, error=error,
     )  # fmt: skip
 
 

@@ -22,18 +22,20 @@ class Variable:
 
     `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
     derivative; `depends` the inputs that an output depends on (None: on all of them; empty: on parameters
-    alone; TIME: on time alone); `choices` the names of an enumeration's values, counted from 1; `indicator`
-    says that it changes its sign where an output jumps; `source` is the output that an input is usually wired
-    to, `instance.variable` with # for the
-    instance's own number, and in an array with * for every instance that has such an output; of a parameter
-    it is that of another instance whose value it takes unless it is given one; with `source_for` an input is
+    alone; TIME: on time alone); `follows` the one input with which an output only rises or only falls;
+    `choices` the names of an enumeration's values, counted from 1; `indicator` says that it changes its sign
+    where an output jumps; `source` is the output that an input is usually wired to, `instance.variable` with
+    # for the instance's own number, and in an array with * for every instance that has such an output; of a
+    parameter it is that of another instance whose value it takes unless it is given one; with `source_for` an
+    input is
     wired to the first of its sources, parted by |, that there is, and only where that output is taken, or
     where that input is wired to the same instance; a parameter takes its value only where that input is
     wired;
-    `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `when` and `unless`
-    name the yes-or-no parameter with which, or without which alone, it has an effect, or an enumeration that
-    is off at the first of its choices; `pole` says that an output grows without bound at the edges of its
-    component's windows; `element` is its place in an array,
+    `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `so_far` says that an
+    output only rises or only falls, such as a count, a sum or the extreme of something else; `when` and
+    `unless` name the yes-or-no parameter with which, or without which alone, it has an effect, or an
+    enumeration that is off at the first of its choices; `pole` says that an output grows without bound at the
+    edges of its component's windows; `element` is its place in an array,
     such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
     before the step; `valid_if` names the yes-or-no output that says when an output can be relied on; `error`
     the output, in the same unit, that says how far this one may be off whatever the steps.
@@ -53,12 +55,14 @@ class Variable:
     unbounded: bool = False
     rate: str | None = None
     depends: tuple[str, ...] | None = None
+    follows: str | None = None
     choices: tuple[str, ...] = ()
     indicator: bool = False
     source: str | None = None
     source_for: str | None = None
     lowest_of: str | None = None
     highest_of: str | None = None
+    so_far: bool = False
     when: str | None = None
     unless: str | None = None
     pole: bool = False
@@ -76,6 +80,12 @@ class Variable:
     def settable(self) -> bool:
         """Whether a user or a master sets it."""
         return self.causality in ("parameter", "input")
+
+    @property
+    def one_way(self) -> bool:
+        """Whether it goes one way alone between two samples, so that these are its extremes."""
+        held = self.so_far or self.lowest_of or self.highest_of
+        return bool(held) or self.depends == () or self.variability == "fixed"
 
     @property
     def structured(self) -> str:
@@ -256,7 +266,10 @@ def variables_of(component: type[Component]) -> tuple[Variable, ...]:
 
 
 class Beside(NamedTuple):
-    """The outputs that say more of an output: when it is known, how far it is off, its extremes."""
+    """The outputs that say more of an output: when it is known, how far it is off, its extremes so far.
+
+    An output that goes one way alone between two samples is its own `lowest` and `highest`.
+    """
 
     valid_if: str | None = None
     error: str | None = None
@@ -273,8 +286,11 @@ def beside(component: type[Component]) -> dict[str, Beside]:
     reals = [variable for variable in outputs if variable.type is float]
     lowest = {each.lowest_of: each.name for each in reals}
     highest = {each.highest_of: each.name for each in reals}
+    own = {each.name: each.name for each in outputs if each.one_way}
     return {
-        each.name: Beside(each.valid_if, each.error, lowest.get(each.name), highest.get(each.name))
+        each.name: Beside(
+            each.valid_if, each.error, (own | lowest).get(each.name), (own | highest).get(each.name)
+        )
         for each in outputs
     }
 

@@ -151,7 +151,7 @@ class BeltDynamicsVariables(Component):
     )  # fmt: skip
     largest_at_risk: float = output(
         "m", "That of largest_deflection while the head was pushed", display="mm", nominal=5e-3,
-        valid_if=FOLLOWED, error=ERROR,
+        valid_if=FOLLOWED, error=ERROR, so_far=True,
     )  # fmt: skip
     deflection_error: float = output(
         "m", "How far deflections may be off with any steps, by modes and integration: 1e-2 of the largest so"
@@ -195,28 +195,27 @@ class BeltDynamicsVariables(Component):
     push_work: float = output("J", "Work of the compression on the shortening so far", nominal=0.1)
     guide_work: float = output("J", "Work done on the deflection at the guide so far", nominal=0.1)
     lost_work: float = output("J", "Work lost by damping so far", nominal=0.1)
-    energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1)
+    energy_through: float = output("J", "Sum of all work so far, each positive", nominal=0.1, so_far=True)
     energy_residual: float = output(
         "J", "Energy that all work so far does not explain; a belt that is held adds none", nominal=1e-9,
         valid_if=FOLLOWED,
     )  # fmt: skip
     folded: bool = output(
-        "1",
-        "The belt has folded at least once",
-        start=False,
-        variability="discrete",
+        "1", "The belt has folded at least once", start=False, variability="discrete", so_far=True
     )
     followed: bool = output(
         "1",
         "The belt's motion could always be followed; if not, take more steps",
         start=True,
         variability="discrete",
+        so_far=True,
     )
     too_long: bool = output(
         "1",
         "The free length has been above 5 times bow_length, where largest_deflection does not count",
         start=False,
         variability="discrete",
+        so_far=True,
     )
 
     outside: bool = state("1", "The free length is above the shortest one", start=False)

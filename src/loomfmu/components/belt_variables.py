@@ -81,7 +81,7 @@ class BeltVariables(ShaftDriven):
         "N", "Critical load of the free section; inside the guide, that of a section of 1 mm",
         nominal=100.0, depends=("travel", "velocity", "acceleration", "guide_clearance"),
     )  # fmt: skip
-    length_factor: float = output("1", "Column length factor in use", depends=("guide_clearance",))
+    length_factor: float = output("1", "Column length factor in use", follows="guide_clearance")
     margin: float = output("1", "Margin against buckling, 1 - compression / critical load")
     lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve", lowest_of="margin")
     speed_limit: float = output(

@@ -32,10 +32,10 @@ class BeltWrap(Component):
         minimum=1e-6, maximum=0.01, nominal=1e-3,
     )  # fmt: skip
     lever_arm: float = output(
-        "m", "Lever arm of the restraint load", display="mm", nominal=0.01, depends=("block_clearance",)
+        "m", "Lever arm of the restraint load", display="mm", nominal=0.01, follows="block_clearance"
     )
     restraint_load: float = output(
-        "N", "Load of each block on the belt", nominal=10.0, depends=("block_clearance",)
+        "N", "Load of each block on the belt", nominal=10.0, follows="block_clearance"
     )
     bending_moment: float = output(
         "N.m", "Moment that bends the belt onto the wheel", variability="discrete", depends=()

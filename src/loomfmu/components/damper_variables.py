@@ -96,9 +96,11 @@ class DamperVariables(Threads):
     carrier_velocity: float = output("m/s", "Velocity of the carrier in space", rate="carrier_acceleration")
     carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
     warp_load: float = output("N", "Load of the threads on the carrier, positive upwards", nominal=100.0)
-    stop_contacts: int = output("1", "Contacts with a stop so far", start=0, variability="discrete")
+    stop_contacts: int = output(
+        "1", "Contacts with a stop so far", start=0, variability="discrete", so_far=True
+    )
     peak_load: float = output(
-        "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0
+        "N", "Largest transmitted force so far, on the continuous curve", nominal=1000.0, so_far=True
     )
     acceleration_ratio: float = output(
         "1",

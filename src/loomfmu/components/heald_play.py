@@ -69,16 +69,20 @@ class HealdPlay(Component):
         "m", "Displacement of the heald in its play", display="mm", nominal=0.001, rate="rate"
     )
     rate: float = output("m/s", "Rate of the displacement")
-    travel: float = output("m", "Way of the heald in its play so far", display="mm", nominal=0.1)
-    blows: int = output("1", "Blows of the heald on the bars so far", start=0, variability="discrete")
+    travel: float = output("m", "Way of the heald in its play so far", display="mm", nominal=0.1, so_far=True)
+    blows: int = output(
+        "1", "Blows of the heald on the bars so far", start=0, variability="discrete", so_far=True
+    )
     blow_velocity: float = output("m/s", "Velocity of the last blow", variability="discrete", nominal=0.1)
     hardest_blow: float = output(
-        "m/s", "Largest velocity of a blow so far", variability="discrete", nominal=0.1
+        "m/s", "Largest velocity of a blow so far", variability="discrete", nominal=0.1, so_far=True
     )
     largest_impulse: float = output(
-        "N.s", "Largest impulse of a blow so far", variability="discrete", nominal=0.001
+        "N.s", "Largest impulse of a blow so far", variability="discrete", nominal=0.001, so_far=True
     )
-    total_impulse: float = output("N.s", "Impulse of all blows so far", variability="discrete", nominal=0.01)
+    total_impulse: float = output(
+        "N.s", "Impulse of all blows so far", variability="discrete", nominal=0.01, so_far=True
+    )
     side: int = state("1", "1 or -1 while it rests on the upper or lower bar, else 0", start=0,
                       minimum=-1, maximum=1)  # fmt: skip
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")

@@ -48,10 +48,14 @@ class WarpTension(Threads):
     extension: float = output("m", "Extension of a thread by the shed", display="mm", nominal=0.01)
     tension: float = output("N", "Tension of a thread", display="cN", nominal=0.5)
     highest_tension: float = output(
-        "N", "Highest tension so far, on the continuous curve", display="cN", nominal=0.5
+        "N",
+        "Highest tension so far, on the continuous curve",
+        display="cN",
+        nominal=0.5,
+        highest_of="tension",
     )
     lowest_tension: float = output(
-        "N", "Lowest tension so far, on the continuous curve", display="cN", nominal=0.5
+        "N", "Lowest tension so far, on the continuous curve", display="cN", nominal=0.5, lowest_of="tension"
     )
     mean_tension: float = output("N", "Mean tension so far", display="cN", nominal=0.5)
     frame_load: float = output("N", "Load of the warp on the heald carrier, positive upwards", nominal=100.0)

@@ -102,18 +102,22 @@ class WeftVariables(ShaftDriven):
     )  # fmt: skip
     highest_snatch: float = output(
         "N", "Tension of the hardest snatch so far, as the giver takes the yarn up", display="cN",
-        nominal=0.5, valid_if=FOLLOWED,
+        nominal=0.5, valid_if=FOLLOWED, so_far=True,
     )  # fmt: skip
     longest_slack: float = output(
         "s", "Longest time so far that the weft was carried without tension", display="ms", nominal=1e-3,
-        valid_if=FOLLOWED,
+        valid_if=FOLLOWED, so_far=True,
     )  # fmt: skip
     slack: bool = output(
         "1", "The weft is carried without tension", start=False, variability="discrete", valid_if=FOLLOWED
     )
     carried: bool = output("1", "A head carries the weft", start=False, variability="discrete")
     followed: bool = output(
-        "1", "The shaft never turned back while a head carried the weft", start=True, variability="discrete"
+        "1",
+        "The shaft never turned back while a head carried the weft",
+        start=True,
+        variability="discrete",
+        so_far=True,
     )
     length: float = output(
         "m", "Length of yarn from the brake to the head that carries it", valid_if=FOLLOWED

@@ -18,7 +18,7 @@ from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
-from .master.grid import Grid, chosen
+from .master.grid import Grid, chosen, kinks
 from .planning.requested import signals_of
 from .scenes.graph import step_order
 from .scenes.keys import ITERATED
@@ -160,7 +160,7 @@ def _estimated(
     changes = [method.halved * abs(worst - half), method.quartered * abs(half - quarter)]
     spread = max(change for change in changes if math.isfinite(change))
     floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
-    return verdict.estimated(max(spread, claim.unresolved(trace, verdict), floor), spread)
+    return verdict.estimated(max(spread, claim.left_by_model(trace, verdict), floor), spread)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
@@ -168,11 +168,12 @@ def _noted(verdict: Verdict, note: str) -> Verdict:
 
 
 def _thinned(scene: Scene, grid: Grid) -> Grid | None:
-    """Every other point of a grid, and its last one; None where there are none between, or steps must be
-    equal and would not be."""
+    """Every other point of a grid, its last one and its kinks; None where there are none between, or steps
+    must be equal and would not be."""
     if grid.points is None and grid.steps % 2 == 0:
         return replace(grid, steps=grid.steps // 2, step_size=2.0 * grid.step_size, rate=0.5 * grid.rate)
     if grid.steps < 2 or any(instance.fmu.fixed_step for instance in scene.instances.values()):
         return None
     points = np.arange(grid.steps + 1) * grid.step_size if grid.points is None else grid.points
-    return chosen(scene, np.append(points[:-2:2], points[-1]))  # of an odd number the last step has three
+    kept = np.append(points[:-2:2], points[-1])  # of an odd number the last step has three
+    return chosen(scene, np.union1d(kept, kinks(scene)))

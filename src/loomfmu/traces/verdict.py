@@ -32,8 +32,9 @@ class Verdict:
     and `bound` are in `unit`, which is SI unless a third-party FMU has its own; texts show them in
     `display_unit`, where "1" means `unit`. `sense` is 1 if the worst value must be at least the bound,
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
-    alone, in the same unit; NaN where nothing was estimated. Where the bound is that near, or the signal is
-    not known in part of the run, the claim is not `decided`, and does not hold.
+    alone, in the same unit; NaN where nothing was estimated, infinite where the note says why it is
+    not known. Where the bound is that near, or the signal is not known in part of the run, the claim is not
+    `decided`, and does not hold.
     """
 
     claim: str
@@ -72,14 +73,16 @@ class Verdict:
         that is how a count, a value at rest or a limited one meets it.
         """
         distance = self.distance
+        if not math.isnan(self.error):
+            error = max(error, self.error)
         met = abs(distance) <= MET * max(abs(self.bound), abs(self.worst)) and spread <= MET * abs(self.worst)
-        decided = met or not abs(distance) <= error
+        decided = self.decided and (met or not abs(distance) <= error)
         return replace(self, error=error, decided=decided, holds=self.holds and decided)
 
     @property
     def reason(self) -> str:
-        """Why it is undecided, as the end of a sentence; where there is no value, the note says why."""
-        if self.decided or not math.isfinite(self.worst):
+        """Why it is undecided, as the end of a sentence; empty where the note says why."""
+        if self.decided or not math.isfinite(self.worst) or self.error == math.inf:
             return ""
         known = math.isfinite(self.error)
         return f", numerical error {self.shown_error}" if known else ", numerical error unknown"
@@ -94,7 +97,8 @@ class Verdict:
         samples passes the bound, by no more than it may be off, the claim holds with a negative distance.
         """
         distance = self.sense * (self.worst - self.bound) + 0.0  # not -0
-        return distance if self.sense and (self.holds or not self.decided or distance < 0.0) else math.nan
+        known = distance < 0.0 if self.decided else math.isfinite(self.error)
+        return distance if self.sense and (self.holds or known) else math.nan
 
     @property
     def relative_distance(self) -> float:

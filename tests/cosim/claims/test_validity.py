@@ -18,7 +18,7 @@ TURN = 2.0 * math.pi
 def recorded(directory: Path, values: np.ndarray, known: np.ndarray) -> Trace:
     """A trace of `a.x`, known where `a.sure` says so, over one turn of a shaft in small steps."""
     channels = [
-        Channel("a", "x", "m", "mm", "X", 0, beside=Beside(valid_if="sure")),
+        Channel("a", "x", "m", "mm", "X", 0, beside=Beside(valid_if="sure", lowest="x", highest="x")),
         Channel("a", "sure", "1", "1", "It is in sight", 0, real=False, boolean=True),
         Channel("shaft", "angle", "rad", "deg", "Angle", 1, rate="velocity"),
         Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 2),

@@ -42,6 +42,15 @@ class Name(Argument):
         return given
 
 
+class Flag(Argument):
+    """Yes or no."""
+
+    def read(self, given: Any, where: str, unit_of: UnitOf) -> bool:
+        if not isinstance(given, bool):
+            raise LoomfmuError(f"{where} = {shown(given)} must be true or false")
+        return given
+
+
 class Names(Argument):
     """The names of some instances."""
 

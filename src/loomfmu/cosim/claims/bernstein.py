@@ -42,6 +42,20 @@ def joining(ends: list[tuple[Number, Number]]) -> list[Number]:
     ]
 
 
+def raised(points: Floats, height: Floats) -> Floats:
+    """Points of cubics or quintics with a bump on each, which leaves values and rates at the ends.
+
+    The bump `16 s^2 (1 - s)^2` times its height is what an unknown rate of change of the rates may add.
+    """
+    if len(points) == 4:
+        c0, c1, c2, c3 = points
+        middle = 0.5 * (c1 + c2) + 16.0 / 6.0 * height
+        return np.stack([c0, 0.25 * (c0 + 3.0 * c1), middle, 0.25 * (3.0 * c2 + c3), c3])
+    bumps = np.zeros_like(points)
+    bumps[2:4] = 1.6 * height
+    return np.asarray(points + bumps)
+
+
 def split(points: Floats, share: float | Floats) -> tuple[Floats, Floats]:
     """The pieces before and after a share of the way, by de Casteljau's scheme."""
     left, right = np.empty_like(points), np.empty_like(points)

@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple, dataclass_transform
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import Stretch, motion_of
+from .curves import Doubt, Stretch
 from .extremes import COARSE_NOTE
 from .validity import gaps, off_by, unknown_note
 
@@ -88,10 +88,6 @@ class Claim(ABC):
     def judge(self, trace: Signals) -> Verdict:
         """Whether it holds."""
 
-    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
-        """What a verdict on a trace may be off by and runs on other steps may not show."""
-        return max(self.between(trace, verdict), self.left_by_model(trace, verdict))
-
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
         """What it may be off by whatever the steps, as a signal beside the one that is judged says."""
         return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0
@@ -99,11 +95,6 @@ class Claim(ABC):
     def within(self, trace: Signals) -> list[Stretch] | None:
         """The stretches of time that are judged; None for the whole run."""
         return None
-
-    def between(self, trace: Signals, verdict: Verdict) -> float:
-        """What it may be off by because the signal that is judged is known only at the samples."""
-        known = _judges(trace, verdict) and math.isfinite(verdict.time)
-        return motion_of(trace, verdict.signal).gap_at(verdict.time) if known else 0.0
 
     def landings(self, trace: Signals) -> Landings:
         """Where steps of the window grid must land, as far as a coarse run of its signals tells."""
@@ -116,30 +107,30 @@ class Claim(ABC):
     ) -> Verdict:  # fmt: skip
         """The verdict, with the place on the shaft at its time.
 
-        Unless `holds` says so, the worst value decides; none, NaN, fails. No claim holds on samples that are
-        too far apart. Where all that is known of the signal keeps the bound, but it is `unknown` in some
-        stretches of time, by default those of the whole run, the claim is undecided.
+        Unless `holds` says so, the worst value decides; none, NaN, fails. A claim that holds as far as its
+        signal is known is undecided where the signal is `unknown` in some stretches of time, by default those
+        of the whole run, where the samples are too far apart, and where a note is a `Doubt`.
         """
         turning = shaft.angle(trace)
         if turning is not None and shaft.too_coarse(turning):
             notes = (*notes, COARSE_NOTE)
         if holds is None:
             holds = self.sense * worst >= self.sense * bound
-        holds = bool(holds) and COARSE_NOTE not in notes
         unknown = gaps(trace, signal) if unknown is None else unknown
         if unknown:
-            notes = (unknown_note(trace, signal, unknown[0]), *notes)
-        decided = not (holds and unknown)
-        if not decided:
-            holds, worst, time = False, math.nan, math.nan
+            notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
+        decided = not (holds and any(isinstance(note, Doubt) for note in notes))
+        if unknown and not decided:
+            worst, time = math.nan, math.nan
         angle, revolution = math.nan, None
         if turning is not None and math.isfinite(time):
             angle, revolution = shaft.place(turning, time)
         note = "; ".join(dict.fromkeys(note for note in notes if note))
         claim = f"{self.name}: {text}" if self.name else text
         return Verdict(
-            claim, signal, holds, bound, worst, *(unit or self.unit), time, angle, revolution, note,
-            sense=sense or self.sense, decided=decided,
+            claim, signal, bool(holds) and decided, bound, worst, *(unit or self.unit), time, angle,
+            revolution, note, sense=sense or self.sense, error=math.nan if decided else math.inf,
+            decided=decided,
         )  # fmt: skip
 
 

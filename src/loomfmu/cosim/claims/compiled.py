@@ -25,7 +25,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # results and arguments
     "survey": (None, [_Place, _Place]),
 }
 _MOTION = [Struct(f"{2 + 2 * columns}n") for columns in range(5)]  # `struct motion` of bernstein.c
-_Facts, _Times = _Real * 5, _Real * ROOM
+_Facts, _Times = _Real * 4, _Real * ROOM
 
 
 class Compiled:

@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 BLOCK = 1 << 16  # intervals that are searched together
 SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
-DOUBT = 0.1  # of the difference between second rates over an interval, see `Motion.doubt`
+DOUBT = 0.25  # of the difference between second rates over an interval, see `Motion.doubt`
 ROUNDING = 1e-12  # of the largest value: what rounding may add
 
 
@@ -26,14 +26,17 @@ class Stretch(NamedTuple):
     whole: bool = True
 
 
+class Doubt(str):
+    """A note that leaves a claim undecided which would hold otherwise."""
+
+
 class Survey(NamedTuple):
-    """What the samples of a motion show: whether all are `finite`, whether their values go one way alone.
+    """Facts about the samples of a motion: whether all are `finite`, their range.
 
     `longest` is the longest step from one value to the next; the others are NaN if a value is.
     """
 
     finite: float
-    steady: float
     lowest: float
     highest: float
     longest: float
@@ -70,6 +73,7 @@ class Motion:
             name = trace.rate(name)
         columns = trace.columns(names)
         self.time, *self.values = (column.values for column in columns)
+        self.samples_hold = trace.held(signal, 1.0) == signal  # it goes one way between two samples
         self._compiled = compiled(columns)
 
     @cached_property
@@ -81,9 +85,8 @@ class Motion:
         values = self.values[0]
         with np.errstate(invalid="ignore"):
             steps = np.diff(values)
-        steady = bool(np.all(steps <= 0.0) or np.all(steps >= 0.0))
         longest = float(np.fmax.reduce(np.abs(steps), initial=0.0))
-        return Survey(finite, steady, float(np.min(values)), float(np.max(values)), longest)
+        return Survey(finite, float(np.min(values)), float(np.max(values)), longest)
 
     @property
     def finite(self) -> bool:
@@ -96,13 +99,16 @@ class Motion:
         return self.survey.longest
 
     @property
+    def known(self) -> bool:
+        """Whether the values between the samples are known: by rates, or because samples are the extremes."""
+        return len(self.values) > 1 or self.samples_hold
+
+    @property
     def note(self) -> str:
-        """What a verdict says if the values between the samples are not known."""
+        """The reason why the values between the samples are not known, if so."""
         if not self.finite:
-            return f"{self.signal} or its rate is not finite everywhere"
-        if len(self.values) > 1 or self.survey.steady:
-            return ""
-        return f"{self.signal} is known only at the samples: its rate is not recorded"
+            return Doubt(f"{self.signal} or its rate is not finite everywhere")
+        return "" if self.known else Doubt(f"{self.signal} is known only at the samples")
 
     def points(self, intervals: Integers) -> Floats:
         """Bernstein points of the polynomials on some intervals."""
@@ -128,15 +134,15 @@ class Motion:
         )
 
     def doubt(self, intervals: Integers) -> Floats:
-        """How far the polynomials on some intervals may be off.
+        """How far the polynomials on some intervals may be off, at most in the middle of each.
 
         Values and rates give a cubic. Its second rates at the ends of an interval are compared with the
         recorded ones, or with those that the rates of the neighbouring samples give. A quintic with these is
-        away from the cubic by up to 1/29 of the difference; 1/10 covers also a jump of the second rate within
-        the interval. On a smooth motion the cubic is off by a tenth of that, the quintic by far less.
+        away from the cubic by up to 1/29 of the difference, a line with a corner in the interval by 1/4. On a
+        smooth motion the cubic is off by 1/25 of that, the quintic by far less.
         """
         if len(self.values) == 1:
-            return np.zeros(len(intervals))
+            return np.full(len(intervals), 0.0 if self.samples_hold else np.inf)
         h, ends = self.length(intervals), (intervals, intervals + 1)
         y0, y1 = (self.values[0][end] for end in ends)
         v0, v1 = (self.values[1][end] * h for end in ends)
@@ -145,28 +151,10 @@ class Motion:
         after = np.abs(a1 - (2.0 * v0 + 4.0 * v1 - 6.0 * (y1 - y0)))
         return DOUBT * np.maximum(before, after)
 
-    def doubt_at(self, time: float) -> float:
-        """How far the motion may be off about a time, rounding included."""
-        rounding = ROUNDING * self.survey.largest
-        if len(self.time) == 1:
-            return rounding
-        return rounding + float(self.doubt(self.interval(np.array([time])))[0])
-
-    def gap_at(self, time: float) -> float:
-        """How far a motion that is known only at the samples may go on beyond one of them."""
-        return float(self.gaps[min(int(self.time.searchsorted(time)), len(self.time) - 1)])
-
     @cached_property
-    def gaps(self) -> Floats:
-        """How far the motion may go on beyond each sample; 0 where it is known between them.
-
-        A parabola through three samples has its vertex beyond the middle one by up to an eighth of their
-        second difference, the corner of two straight lines by up to a half.
-        """
-        if not self.finite or not self.note or len(self.time) < 3:
-            return np.zeros(len(self.time))
-        inner = 0.5 * np.abs(np.diff(self.values[0], 2))
-        return np.pad(inner, 1, mode="edge")
+    def doubts(self) -> Floats:
+        """The same for all intervals."""
+        return self.doubt(np.arange(len(self.time) - 1))
 
     @cached_property
     def _bends(self) -> Floats:

@@ -8,23 +8,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import bernstein
-from .curves import BLOCK, ROUNDING, SAME, Floats, Integers, Motion, Stretch, Survey
+from .curves import BLOCK, ROUNDING, SAME, Doubt, Floats, Integers, Motion, Stretch, Survey
 
 COARSE = 0.2  # of a signal's range beyond its samples: fewer than four samples in an oscillation
-COARSE_NOTE = "the samples are too far apart to be sure; take more steps"
+COARSE_NOTE = Doubt("the samples are too far apart to be sure; take more steps")
 
 
 class Extreme(NamedTuple):
     """Lowest or highest value, its time, and whether the samples are too far apart to be sure of it.
 
-    `sure` is what the motion reaches in any case: less extreme by what the curve between the samples may be
-    off (see `Motion.doubt`), but not less than a sample.
+    The motion certainly reaches `sure`, and nowhere goes beyond `possible`: the curve between the samples may
+    be off by `Motion.doubt`. A sample is sure. Of a motion that is known only at the samples, `possible` is
+    infinite.
     """
 
     value: float
     time: float
     coarse: bool = False
     sure: float = math.nan
+    possible: float = math.nan
 
     @property
     def note(self) -> str:
@@ -41,19 +43,21 @@ def lowest(motion: Motion, sign: float = 1.0, within: Sequence[Stretch] | None =
         values = sign * motion.values[0]
         value = sure = float(np.min(values))
         time = float(motion.time[int(np.argmax(values <= value + SAME * survey.largest))])
+        possible = value if motion.samples_hold else -math.inf
     elif found := _lowest_of_pieces(motion, sign, within, survey):
-        value, time, sure = found
+        value, time, sure, possible = found
     else:
         return Extreme(math.nan, math.nan)
     beyond = min(sign * float(motion.values[0][end]) for end in _ends(motion, time)) - value
     coarse = beyond > max(COARSE * (survey.highest - value), SAME * survey.largest)
-    return Extreme(sign * value, time, coarse, sign * (sure + ROUNDING * survey.largest))
+    rounding = ROUNDING * survey.largest
+    return Extreme(sign * value, time, coarse, sign * (sure + rounding), sign * (possible + rounding))
 
 
 def _lowest_of_pieces(
     motion: Motion, sign: float, within: Sequence[Stretch] | None, survey: Survey
-) -> tuple[float, float, float] | None:
-    """The same as value, time, and what is sure but for rounding; None where there is nothing within."""
+) -> tuple[float, float, float, float] | None:
+    """The same as value, time, what is sure and what is possible; None where there is nothing within."""
     values, same = sign * motion.values[0], SAME * survey.largest
     if within is None:
         found, times = [values[:1]], [motion.time[:1]]
@@ -65,21 +69,37 @@ def _lowest_of_pieces(
         best = float(np.min(found[0], initial=math.inf))
         sure = float(np.min(values[inside(motion.time, within)], initial=math.inf))
         pieces = _pieces(motion, within)
+    possible = best
     for intervals, low, high in pieces:
-        points = bernstein.clipped(sign * motion.points(intervals), low, high)
+        curves, doubt = sign * motion.points(intervals), motion.doubts[intervals]
+        points = bernstein.clipped(curves, low, high)
         best = min(best, float(np.min(points[[0, -1]])))
-        near = points.min(axis=0) <= max(best + same, sure)
+        near = points.min(axis=0) <= max(best + same, sure) + doubt
+        intervals, low, high = intervals[near], low[near], high[near]
         least, share = bernstein.lowest(points[:, near])
-        sure = min(sure, float(np.min(least + motion.doubt(intervals[near]), initial=math.inf)))
-        share = np.where(share < 1.0, low[near] + share * (high[near] - low[near]), high[near])
-        before, after = motion.time[intervals[near]], motion.time[intervals[near] + 1]
+        share = np.where(share < 1.0, low + share * (high - low), high)
+        before, after = motion.time[intervals], motion.time[intervals + 1]
+        if len(motion.values) > 1:
+            over, under = (
+                _least(bernstein.clipped(bernstein.raised(curves[:, near], way * doubt[near]), low, high))
+                for way in (1.0, -1.0)
+            )
+            sure, possible = min(sure, over), min(possible, under)
+        else:  # part of an interval may reach either of its ends, or anything if they are not its extremes
+            possible = min(possible, _least(np.minimum(values[intervals], values[intervals + 1])[np.newaxis]))
+            possible = possible if motion.samples_hold else -math.inf
         found.append(least)
         times.append(np.where(share < 1.0, before + share * (after - before), after))
     extremes = np.concatenate(found)
     if not len(extremes):
         return None
     value, time = _first_lowest(extremes, np.concatenate(times), same)
-    return value, time, sure if math.isfinite(sure) else value
+    return value, time, sure, min(possible, value)
+
+
+def _least(points: Floats) -> float:
+    """Lowest value of some pieces."""
+    return float(np.min(bernstein.lowest(points)[0], initial=math.inf))
 
 
 def _lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None) -> Extreme:
@@ -87,17 +107,7 @@ def _lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None
     if not there.any():
         return Extreme(math.nan, math.nan)
     value, time = _first_lowest(sign * motion.values[0][there], motion.time[there])
-    return Extreme(sign * value, time, sure=sign * value)
-
-
-def gap_beyond(motion: Motion, sign: float, found: Extreme, within: Sequence[Stretch] | None) -> float:
-    """How far below its lowest sample `sign` times a motion may be, if it is known only at the samples.
-
-    Where it swings fast it may be lower between samples that are not the lowest ones.
-    """
-    low = sign * motion.values[0] - motion.gaps
-    lowest_of_all = float(np.min(low[inside(motion.time, within)], initial=math.inf))
-    return max(sign * found.value - lowest_of_all, motion.gap_at(found.time))
+    return Extreme(sign * value, time, sure=sign * value, possible=-sign * math.inf)
 
 
 def inside(time: Floats, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
@@ -119,7 +129,7 @@ def _ends(motion: Motion, time: float) -> list[int]:
 def _pieces_below(motion: Motion, sign: float, level: float) -> Iterator[tuple[Integers, Floats, Floats]]:
     """Whole intervals on which `sign` times the motion may be as low as a level, block by block."""
     lowest, highest = motion.reach
-    pieces = np.flatnonzero((lowest if sign > 0.0 else -highest) <= level)
+    pieces = np.flatnonzero((lowest if sign > 0.0 else -highest) <= level + motion.doubts)
     for begin in range(0, len(pieces), BLOCK):
         some = pieces[begin : begin + BLOCK]
         yield some, np.zeros(len(some)), np.ones(len(some))

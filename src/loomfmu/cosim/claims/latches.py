@@ -7,7 +7,7 @@ import numpy as np
 
 from ...traces import Signals
 from .curves import SAME, Floats, Stretch, motion_of
-from .extremes import Extreme, gap_beyond
+from .extremes import Extreme
 
 ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone tell apart; names places only
 
@@ -15,11 +15,10 @@ ALIKE = 1e-8  # of the largest value: latched extremes that coarse steps alone t
 class _Held(NamedTuple):
     """The samples of a stretch of time, and the extremes so far that are held about it.
 
-    They are those at the samples before it, at its first and at its last one, and after it.
+    They are those at its first and at its last sample, and after it.
     """
 
     last: int
-    before: float
     first: float
     inside: float
     after: float
@@ -30,41 +29,20 @@ def latched(
 ) -> tuple[Extreme, str]:
     """The lowest value of `sign` times a signal, and a note: as its component holds it, or as `found`.
 
-    What is held changes where the signal is more extreme than ever before.
+    The held value changes where the signal is more extreme than ever before, and nowhere is the signal more
+    extreme than that.
     """
-    latch = _latch(trace, signal, sign)
-    if latch:
-        lowest = [each for each in _held(trace, latch, sign, within) if each.inside < each.first]
-        best = min(lowest, key=lambda each: each.inside, default=None)
-        sampled, known = sign * found.value, not motion_of(trace, signal).note
-        if best and (best.inside < sampled or (best.inside == sampled and not known)):
-            value, time = sign * best.inside, reached(trace, latch, sign * trace[signal], best.last)
-            return Extreme(value, time, sure=value), f"between the samples by {latch}"
-    return found, motion_of(trace, signal).note
-
-
-def beyond_found(
-    trace: Signals, signal: str, sign: float, found: Extreme, within: Sequence[Stretch] | None
-) -> float:
-    """How far the lowest value of `sign` times a signal may be below the one found.
-
-    Where an extreme is held it is not below that, and may be there if that changes at an edge of a stretch.
-    """
-    latch, worst = _latch(trace, signal, sign), sign * found.value
-    gap = gap_beyond(motion_of(trace, signal), sign, found, within)
-    if not latch:
-        return gap
-    beyond = []
-    for each in _held(trace, latch, sign, within):
-        changes = each.first < each.before or each.after < each.inside
-        beyond.append(worst - (each.after if changes else max(each.after, worst - gap)))
-    return max(0.0, *beyond) if beyond else gap
-
-
-def _latch(trace: Signals, signal: str, sign: float) -> str | None:
-    """What holds the extreme of a signal whose rate is unknown: samples that only rise may pass it, too."""
-    motion = motion_of(trace, signal)
-    return trace.held(signal, sign) if len(motion.values) == 1 or motion.note else None
+    motion, latch = motion_of(trace, signal), trace.held(signal, sign)
+    if motion.known or not latch:
+        return found, motion.note
+    held = list(_held(trace, latch, sign, within))
+    possible = sign * min((each.after for each in held), default=sign * found.possible)
+    lower = [each for each in held if each.inside < each.first]
+    best = min(lower, key=lambda each: each.inside, default=None)
+    if best is None or best.inside > sign * found.value:
+        return found._replace(possible=possible), ""
+    value, time = sign * best.inside, reached(trace, latch, sign * trace[signal], best.last)
+    return Extreme(value, time, sure=value, possible=possible), f"between the samples by {latch}"
 
 
 def _held(trace: Signals, latch: str, sign: float, within: Sequence[Stretch] | None) -> Iterator[_Held]:
@@ -73,8 +51,8 @@ def _held(trace: Signals, latch: str, sign: float, within: Sequence[Stretch] | N
     near, end = SAME * float(time[-1] - time[0]), len(time) - 1
     for start, stop, _ in [Stretch(float(time[0]), float(time[-1]))] if within is None else within:
         first, last = time.searchsorted(start - near), time.searchsorted(stop + near, "right") - 1
-        before, after = time.searchsorted(start + near, "right") - 1, time.searchsorted(stop - near)
-        places = (min(max(int(place), 0), end) for place in (before, first, last, after))
+        after = time.searchsorted(stop - near)
+        places = (min(max(int(place), 0), end) for place in (first, last, after))
         if start < stop or within is None:
             yield _Held(int(last), *(float(held[place]) for place in places))
 

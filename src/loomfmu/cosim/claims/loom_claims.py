@@ -12,7 +12,7 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Edges, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
-from .curves import SAME, Motion, Stretch, motion_of
+from .curves import SAME, Doubt, Motion, Stretch, motion_of
 from .extremes import first_lowest, lowest, nearest
 from .lifted import check_lifted_by, lift_of
 
@@ -198,7 +198,7 @@ class TransferSpeed(_Transfer):
 class NipHolds(Claim):
     """The nip's largest holding force, while fibres are drafted, is 2 to 3 times the largest drafting force.
 
-    Below that the web slips in the nip, above it the top roller is loaded for nothing.
+    Below that the web slips in the nip, above it the top roller is loaded for nothing. Samples are judged.
     """
 
     roller: str = argument(Name(), "roller")
@@ -211,14 +211,15 @@ class NipHolds(Claim):
         drafting = motion_of(trace, f"{self.roller}.drafting_force")
         holding = motion_of(trace, f"{self.roller}.holding_force")
         most = lowest(drafting, -1.0)
-        text, signal = "holding force over drafting force", f"{self.roller}.holding_force / drafting_force"
+        text = "holding force over drafting force at the samples"
+        signal = f"{self.roller}.holding_force / drafting_force"
         if not most.value > 0.0:
             note = "no fibres are drafted in this run"
             return self.verdict(trace, text, signal, self.at_least, math.nan, math.nan, note)
         held = lowest(holding, -1.0, drafting.beyond(0.0, 1.0))
         ratio = held.value / most.value
         high = ratio - self.at_least > self.at_most - ratio
-        notes = (drafting.note, holding.note, most.note, held.note)
+        notes = (most.note, held.note)
         return self.verdict(
             trace, text, signal, self.at_most if high else self.at_least, ratio, most.time, *notes,
             holds=self.at_least - SAME <= ratio <= self.at_most + SAME, sense=AT_MOST if high else AT_LEAST,
@@ -253,7 +254,9 @@ class LocksInTime(Claim):
         margin = np.asarray(trace[signal])
         late = np.flatnonzero(~in_time)
         place = int(late[0]) if len(late) else int(np.argmin(margin))
-        note = f"{self.lock}.in_time is known only at the samples: the lock does not follow shaft.velocity"
+        note = Doubt(
+            f"{self.lock}.in_time is known only at the samples: the lock does not follow shaft.velocity"
+        )
         return self.verdict(
             trace, "torque margin", signal, 0.0, float(margin[place]), float(trace.time[place]), note,
             holds=not len(late), unit=ONE, sense=AT_LEAST,

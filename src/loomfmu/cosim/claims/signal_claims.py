@@ -2,30 +2,32 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import ClassVar
 
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from . import shaft
-from .arguments import Bound, Edges, Name, Window, argument
+from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
 from .curves import Stretch, motion_of
 from .extremes import Extreme, lowest
-from .latches import beyond_found, latched
+from .latches import latched
 from .validity import gaps, known_within
 
 
 class Bounded(Claim, kind=False):
     """A signal stays on one side of a bound: over the whole run, or in a window of shaft angles.
 
-    The bound is a quantity, or the name of a parameter of the run, such as "shaft.speed".
+    The bound is a quantity, or the name of a parameter of the run, such as "shaft.speed". With `at_samples`
+    the samples alone are judged; otherwise a claim that holds at all samples of a signal whose values between
+    them are not known is undecided.
     """
 
     signal: str = argument(Name())
     bound: float | str = argument(Bound())
     window: Window | None = argument(Edges("rad", "deg", usual=1.5), None)
+    at_samples: bool = argument(Flag(), False)
 
     grid = LANDINGS
     text: ClassVar[str]
@@ -38,31 +40,32 @@ class Bounded(Claim, kind=False):
 
     def judge(self, trace: Signals) -> Verdict:
         limit = self._limit(trace)
-        unit = (trace.unit(self.signal), trace.display(self.signal))
-        text, (within, unknown) = self.text, self._known(trace)
-        nowhere = within == []
-        if self.window is not None:
-            text += f" {self.window.words}"
-            if nowhere and not unknown:
-                reason = "the run never enters that window"
-                return self.verdict(trace, text, self.signal, limit, math.nan, math.nan, reason, unit=unit)
-        motion = motion_of(trace, self.signal)
-        worst = Extreme(math.nan, math.nan) if nowhere else lowest(motion, self.sense, within)
-        worst, note = latched(trace, self.signal, self.sense, worst, within)
-        found = self.verdict(
-            trace, text, self.signal, limit, worst.value, worst.time, note, worst.note,
-            holds=nowhere or self.sense * worst.sure >= self.sense * limit, unit=unit, unknown=unknown,
+        (within, unknown), text = self._known(trace), self.text
+        text += " at the samples" * self.at_samples + (f" {self.window.words}" if self.window else "")
+        found, note = self._extreme(trace, within)
+        if within == [] and not unknown:
+            note = "the run never enters that window"
+        worst, floor = self.sense * found.value, self.sense * limit
+        nowhere = within == [] and bool(unknown)
+        verdict = self.verdict(
+            trace, text, self.signal, limit, found.value, found.time, note, found.note,
+            holds=nowhere or self.sense * found.sure >= floor,
+            unit=(trace.unit(self.signal), trace.display(self.signal)), unknown=unknown,
         )  # fmt: skip
-        if found and found.distance < 0.0:
-            doubt = found.displayed(motion.doubt_at(worst.time))
-            label = "" if found.label == "1" else f" {found.label}"
-            note = f"passes the bound only between samples, where the curve may be off by {doubt:.1e}{label}"
-            return replace(found, note="; ".join(filter(None, (found.note, note))))
-        return found
+        if not verdict or self.sense * found.possible >= floor:
+            return verdict
+        # the bound lies within what the curve between the samples may be off
+        off = max(worst - self.sense * found.possible, floor - worst)
+        return verdict.estimated(off, off)
 
-    def between(self, trace: Signals, verdict: Verdict) -> float:
-        found = Extreme(verdict.worst, verdict.time)
-        return beyond_found(trace, self.signal, self.sense, found, self.within(trace))
+    def _extreme(self, trace: Signals, within: list[Stretch] | None) -> tuple[Extreme, str]:
+        """The worst value, and a note on how it is known."""
+        if within == []:
+            return Extreme(math.nan, math.nan), ""
+        found = lowest(motion_of(trace, self.signal), self.sense, within)
+        if self.at_samples:
+            return found._replace(possible=found.sure), ""
+        return latched(trace, self.signal, self.sense, found, within)
 
     def within(self, trace: Signals) -> list[Stretch] | None:
         return self._known(trace)[0]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..scenes.scene import Scene
 
 Floats = NDArray[np.float64]
+SAME = 1e-6  # of a step: what a kink may be away from a communication point
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,26 @@ class Grid:
 
 
 def uniform(scene: Scene) -> Grid:
-    """Equal steps of the scene."""
-    return Grid(scene.steps, scene.step_size, scene.steps_per_period)
+    """Equal steps of the scene, divided where an input that it drives has a kink."""
+    equal = Grid(scene.steps, scene.step_size, scene.steps_per_period)
+    divided = kinks(scene) / scene.step_size
+    divided = divided[np.abs(divided - np.round(divided)) > SAME]
+    if not len(divided):
+        return equal
+    points = np.concatenate([equal.span(0, equal.steps).ends, divided * scene.step_size, [0.0]])
+    return chosen(scene, np.unique(points))
+
+
+def kinks(scene: Scene) -> Floats:
+    """Times within the run at which inputs that the scene drives have their points [s], in order.
+
+    There are none where an FMU takes equal steps alone.
+    """
+    if any(instance.fmu.fixed_step for instance in scene.instances.values()):
+        return np.empty(0)
+    turns = sorted({turn for drive in scene.drives for turn in drive.periods})
+    times = np.array(turns) * period(scene)
+    return times[(times > 0.0) & (times < scene.steps * scene.step_size)]
 
 
 def chosen(scene: Scene, points: Floats, notes: tuple[str, ...] = (), scouted: int = 0) -> Grid:

@@ -17,7 +17,7 @@ from ..master.grid import Grid, uniform
 from ..master.master import Integers, Interrupted, Master, Reals
 from ..scenes.scene import Scene
 from .pruning import Effective, Pruned, prune
-from .requested import output_port
+from .requested import beside_of, output_port
 
 
 class Keeper(Protocol):
@@ -117,7 +117,7 @@ def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Chan
                 column=slot,
                 real=kind == "Real",
                 rate=port.rate,
-                beside=port.beside,
+                beside=beside_of(scene, signal),
                 meanings=meanings,
                 first_flag=port.numbers[0] if port.numbers else 0,
                 boolean=kind == "Boolean",

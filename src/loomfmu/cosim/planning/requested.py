@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from ...errors import LoomfmuError, suggestion
+from ...variables import MOTION, TIME, Beside, variables_of
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, read
 from ..claims.signal_claims import Bounded, check_speed
@@ -29,6 +30,24 @@ def output_port(scene: Scene, signal: str, where: str) -> Port:
         outputs = [*(port.name for port in ports.values() if port.causality == "output"), *driven]
         raise LoomfmuError(f"{where}: {instance} has no output {variable!r}{suggestion(variable, outputs)}")
     return ports[variable]
+
+
+def beside_of(scene: Scene, signal: str) -> Beside:
+    """The outputs that say more of a signal in this scene.
+
+    It goes one way alone between samples where it is driven along a table, or if all inputs that it depends
+    on are constant, or the one that it follows is driven.
+    """
+    instance, _, variable = signal.partition(".")
+    port, component = output_port(scene, signal, "record"), scene.instances[instance].fmu.component
+    wired = {wire.sink[1] for wire in scene.wires if wire.sink[0] == instance}
+    driven = {drive.variable for drive in scene.drives if drive.instance == instance}
+    steady = variable in driven
+    if component is not None and component.keeps != MOTION and variable not in driven:
+        declared = next(each for each in variables_of(component) if each.name == variable)
+        needed = {TIME} if declared.depends is None else {*declared.depends}
+        steady = not needed & {TIME, *wired, *(driven - {declared.follows})}
+    return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
 
 
 def claims_of(scene: Scene) -> list[Claim]:

@@ -20,7 +20,7 @@ from ...errors import LoomfmuError
 from ...traces import Recording
 from ...variables import MOTION, variables_of
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
-from ..master.grid import Grid, chosen, period, uniform
+from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import turns_others
@@ -43,10 +43,11 @@ NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for 
 
 @dataclass
 class Places:
-    """Where claims look: points to land on [s], points around them, and the longest step allowed."""
+    """Where claims look: kinks and points to land on [s], points around them, the longest step allowed."""
 
     period: float
     most: float
+    kinks: Floats
     points: list[float] = field(default_factory=list)
     about: list[float] = field(default_factory=list)
 
@@ -92,16 +93,14 @@ def _scouted(
     scene: Scene, signals: Sequence[str], coarse: float, longest: float, in_memory: Scout
 ) -> tuple[Places, int]:
     """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
-    # an input that the scene drives has kinks
-    kinks = [turn * period(scene) for drive in scene.drives for turn in drive.periods]
-    places, scouted = Places(period(scene), longest, kinks), 0
+    places, scouted = Places(period(scene), longest, kinks(scene)), 0
     for _ in range(SCOUTS):
         points = _merged(_equal(scene, coarse), places)
         recording, plan, steps, _ended, _warnings = in_memory(
             scene, _watched(scene, signals), chosen(scene, points)
         )
         scouted += len(plan.pruned.scene.instances) * steps
-        places = Places(period(scene), longest, list(kinks))
+        places = Places(period(scene), longest, places.kinks)
         for claim in claims_of(scene):
             _land(places, recording, scene, claim)
         for output in _latched(scene, signals):
@@ -210,7 +209,13 @@ def _merged(equal: Floats, places: Places) -> Floats:
     """All points in order. Of two that are too close, the one that a claim looks for stays."""
     apart = min(APART * places.period, NARROW * float(equal[1] - equal[0]))
     kept = np.empty(0)
-    for points in (equal[[0, -1]], _thinned(places.points, apart), _thinned(places.about, apart), equal):
+    for points in (
+        equal[[0, -1]],
+        places.kinks,
+        _thinned(places.points, apart),
+        _thinned(places.about, apart),
+        equal,
+    ):
         points = points[(points >= equal[0]) & (points <= equal[-1])]
         if len(kept):
             after = np.clip(np.searchsorted(kept, points), 1, len(kept) - 1)

@@ -10,6 +10,7 @@ from ...errors import LoomfmuError, shown, suggestion
 from ..importing.fmus import Port, Value
 
 Floats = NDArray[np.float64]
+ROUNDING = 1e-14  # of a number of revolutions
 LATEST = 1e9  # revolutions or seconds: no scene is longer
 
 
@@ -39,7 +40,8 @@ class Drive:
         """
         if not self.held:
             return np.interp(revolutions, self.periods, self.values)
-        last = np.searchsorted(self.periods, revolutions, side="right") - 1
+        # to rounding, a communication point on a point of the table is that point
+        last = np.searchsorted(self.periods, revolutions * (1.0 + ROUNDING), side="right") - 1
         kind = np.float64 if self.kind == "Real" else np.int32
         return np.array(self.values, dtype=kind)[np.maximum(last, 0)]
 

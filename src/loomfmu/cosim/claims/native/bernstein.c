@@ -206,25 +206,22 @@ EXPORT ptrdiff_t passes(const struct motion *motion, double level, double turn, 
     return found.count;
 }
 
-/* Whether all values and rates are finite, and the values one way; lowest, highest, longest step. */
+/* Whether all values and rates are finite; lowest and highest value, longest step. */
 EXPORT void survey(const struct motion *motion, double *facts)
 {
-    bool finite = true, rises = true, falls = true;
+    bool finite = true;
     double before = sample(motion, 1, 0), lowest = before, highest = before, longest = 0.0;
     for (ptrdiff_t place = 0; place < motion->samples; place++) {
         double now = sample(motion, 1, place), step = fabs(now - before);
         for (ptrdiff_t column = 1; column <= motion->known; column++)
             finite = finite && isfinite(sample(motion, column, place));
-        rises = rises && now >= before;
-        falls = falls && now <= before;
         lowest = now < lowest || isnan(now) ? now : lowest;
         highest = now > highest || isnan(now) ? now : highest;
         longest = step > longest ? step : longest;
         before = now;
     }
     facts[0] = finite;
-    facts[1] = rises || falls;
-    facts[2] = lowest;
-    facts[3] = highest;
-    facts[4] = longest;
+    facts[1] = lowest;
+    facts[2] = highest;
+    facts[3] = longest;
 }
