@@ -27,6 +27,7 @@ from .belt_variables import BeltVariables
 
 # Time [s] and shaft angle [rad] below which two samples are one: their squares would underflow
 SHORTEST = 1e-15
+MARGIN, LIMIT, DEFLECTION = 0, 1, 2  # of which an extreme is searched
 
 
 @dataclass(slots=True)
@@ -43,6 +44,7 @@ class BeltMonitor(BeltVariables):
         self.sampled_clearance = -1.0
         self.lowest_margin = 1e300
         self.lowest_speed_limit = NO_LIMIT
+        self.largest_deflection = 0.0
         self.buckled = False
         self.acceleration_rate = 0.0
         self.bend_rate = 0.0
@@ -103,20 +105,21 @@ class BeltMonitor(BeltVariables):
         self.sampled_bend = self.joined_bend
         self.sampled_turning = self.joined_turning
 
-    def either_at(
-        self, limit: bool, start_rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
+    def shape_at(
+        self, which: int, start_rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
         share: float,
     ) -> float:  # fmt: skip
-        """Speed limit or margin at a share of the way from the last sample to this one."""
+        """Margin, speed limit or reversed deflection at a share of the way from the last sample."""
         travel, second = joined_value(self.sampled_travel, start_rate, a0, a1, a2, a3, share)
         second = second / (step * step)
         tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
         tension = weft_load(tension, joined_rate(start_rate, a0, a1, a2, a3, share), self.taker)
         factor = self.sampled_factor + share * (self.length_factor - self.sampled_factor)
         free_length = travel - self.idle_travel - self.head_length
-        if limit:
+        if which == LIMIT:
             return speed_limit(free_length, second, factor, self.bending_stiffness, self.head_mass, tension)
-        return margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
+        here = margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
+        return here if which == MARGIN else -elastica_deflection(1.0 - here, free_length)
 
     def second_between(self, limit: bool, step: float) -> tuple[float, float, float, float]:
         """Second derivative of the travel on the way from the last sample to this one, as from `joined`.
@@ -147,61 +150,105 @@ class BeltMonitor(BeltVariables):
         by_value = above_noise(by_value, expected, value_noise)
         return bent(second, end_second, by_rate, by_value)
 
-    def lowest_between(self, limit: bool, lowest: float, duration: float) -> float:
-        """Lowest speed limit or margin on the way from the last sample to this one, if below `lowest`.
+    def search_between(self, limit: bool, duration: float) -> None:
+        """Bring extremes up to the way from the last sample: of the speed limit, or of margin and deflection.
 
-        The way is known by shaft angle for the limit, by time for the margin. Five values find the
-        neighbourhood, golden sections the place: the value at a minimum is then exact to rounding. What is
-        farther above `lowest` than the five differ is not searched.
+        The way is known by shaft angle for the limit, by time for the others. What is farther above the
+        lowest value so far, and above 0, than five values differ is not searched.
         """
         step = self.joined_angle - self.sampled_angle if limit else duration
         rate = step * (self.sampled_slope if limit else self.sampled_velocity)
         a0, a1, a2, a3 = self.second_between(limit, step)
+        if limit:
+            lowest, _place = self.lowest_of(
+                LIMIT, rate, a0, a1, a2, a3, step, 0.0, 1.0, self.lowest_speed_limit
+            )
+            if lowest < self.lowest_speed_limit:
+                self.lowest_speed_limit = lowest
+            return
+        above = self.lowest_margin if self.lowest_margin > 0.0 else 0.0
+        lowest, place = self.lowest_of(MARGIN, rate, a0, a1, a2, a3, step, 0.0, 1.0, above)
+        if lowest < self.lowest_margin:
+            self.lowest_margin = lowest
+        if lowest < 0.0:
+            # a belt is deflected while its margin is negative, which may be a tiny part of the step
+            start = self.edge(rate, a0, a1, a2, a3, step, place, 0.0)
+            end = self.edge(rate, a0, a1, a2, a3, step, place, 1.0)
+            most, _place = self.lowest_of(DEFLECTION, rate, a0, a1, a2, a3, step, start, end, 0.0)
+            if -most > self.largest_deflection:
+                self.largest_deflection = -most
+
+    def edge(
+        self, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, inside: float, end: float
+    ) -> float:
+        """Share of the way towards an end up to which the margin stays negative."""
+        if self.shape_at(MARGIN, rate, a0, a1, a2, a3, step, end) < 0.0:
+            return end
+        outside = end
+        for _ in range(50):
+            middle = 0.5 * (inside + outside)
+            if self.shape_at(MARGIN, rate, a0, a1, a2, a3, step, middle) < 0.0:
+                inside = middle
+            else:
+                outside = middle
+        return inside
+
+    def lowest_of(
+        self, which: int, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, low: float,
+        high: float, bar: float,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Lowest value between two shares of the way, and its share.
+
+        Five values find the neighbourhood, golden sections the place: the value at a minimum is then exact to
+        rounding. It is not searched where the five values are farther above `bar` than they differ.
+        """
+        quarter = 0.25 * (high - low)
         nearest = 1e300
         farthest = -1e300
-        place = 0
-        for quarter in range(5):
-            value = self.either_at(limit, rate, a0, a1, a2, a3, step, 0.25 * quarter)
+        at = 0
+        for number in range(5):
+            value = self.shape_at(which, rate, a0, a1, a2, a3, step, low + quarter * number)
             if value < nearest:
                 nearest = value
-                place = quarter
+                at = number
             if value > farthest:
                 farthest = value
-        if nearest - (farthest - nearest) >= lowest:
-            return lowest
-        low = 0.25 * (place - 1) if place > 0 else 0.0
-        high = 0.25 * (place + 1) if place < 4 else 1.0
-        nearest = self.lowest_within(limit, rate, a0, a1, a2, a3, step, low, high, nearest)
-        return nearest if nearest < lowest else lowest
+        place = low + quarter * at
+        if nearest - (farthest - nearest) >= bar:
+            return nearest, place
+        left = low + quarter * (at - 1) if at > 0 else low
+        right = low + quarter * (at + 1) if at < 4 else high
+        value, share = self.golden(which, rate, a0, a1, a2, a3, step, left, right)
+        if value < nearest:
+            return value, share
+        return nearest, place
 
-    def lowest_within(
-        self, limit: bool, rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
-        low: float, high: float, nearest: float,
-    ) -> float:  # fmt: skip
-        """Lowest speed limit or margin between two shares of the way, if below `nearest`."""
+    def golden(
+        self, which: int, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, low: float,
+        high: float,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Lowest value between two shares of the way about one minimum, and its share."""
         golden = 0.6180339887498949
         left = high - golden * (high - low)
         right = low + golden * (high - low)
-        at_left = self.either_at(limit, rate, a0, a1, a2, a3, step, left)
-        at_right = self.either_at(limit, rate, a0, a1, a2, a3, step, right)
+        at_left = self.shape_at(which, rate, a0, a1, a2, a3, step, left)
+        at_right = self.shape_at(which, rate, a0, a1, a2, a3, step, right)
         for _ in range(40):
             if at_left < at_right:
                 high = right
                 right = left
                 at_right = at_left
                 left = high - golden * (high - low)
-                at_left = self.either_at(limit, rate, a0, a1, a2, a3, step, left)
+                at_left = self.shape_at(which, rate, a0, a1, a2, a3, step, left)
             else:
                 low = left
                 left = right
                 at_left = at_right
                 right = low + golden * (high - low)
-                at_right = self.either_at(limit, rate, a0, a1, a2, a3, step, right)
-        if at_left < nearest:
-            nearest = at_left
-        if at_right < nearest:
-            nearest = at_right
-        return nearest
+                at_right = self.shape_at(which, rate, a0, a1, a2, a3, step, right)
+        if at_left < at_right:
+            return at_left, left
+        return at_right, right
 
     def judge(self, duration: float) -> None:
         """Bring the lowest margin and speed limit up to the present sample."""
@@ -211,6 +258,9 @@ class BeltMonitor(BeltVariables):
         here = margin(self.travel - guide, force, self.length_factor, self.bending_stiffness)
         if here < self.lowest_margin:
             self.lowest_margin = here
+        deflection = elastica_deflection(1.0 - here, self.travel - guide)
+        if deflection > self.largest_deflection:
+            self.largest_deflection = deflection
         if self.joined_turning:
             limit = speed_limit(
                 self.travel - guide, self.joined_bend, self.length_factor, self.bending_stiffness,
@@ -224,12 +274,12 @@ class BeltMonitor(BeltVariables):
         sampled_weft = weft_load(self.sampled_force, self.sampled_velocity, self.taker)
         sampled_force = self.head_mass * self.sampled_acceleration + sampled_weft
         if near and (force > 0.0 or sampled_force > 0.0):
-            self.lowest_margin = self.lowest_between(False, self.lowest_margin, duration)
+            self.search_between(False, duration)
         elif duration > SHORTEST:
             self.bump_time = 0.0
         pushed = self.joined_bend > 0.0 or self.sampled_bend > 0.0
         if near and pushed and self.joined_turning and self.sampled_turning and turn > SHORTEST:
-            self.lowest_speed_limit = self.lowest_between(True, self.lowest_speed_limit, duration)
+            self.search_between(True, duration)
         elif duration > SHORTEST:
             self.bump_angle = 0.0
         if self.lowest_margin < 0.0:

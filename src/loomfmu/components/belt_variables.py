@@ -98,6 +98,10 @@ class BeltVariables(ShaftDriven):
     at_risk: bool = output(
         "1", "The belt is outside its guide and in compression", start=False, variability="discrete"
     )
+    largest_deflection: float = output(
+        "m", "Largest deflection so far, on the continuous curve", display="mm", nominal=5e-3,
+        highest_of="deflection",
+    )  # fmt: skip
     buckled: bool = output(
         "1", "The belt has buckled at least once", start=False, variability="discrete",
         lowest_of="margin",

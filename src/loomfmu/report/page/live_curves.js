@@ -1,14 +1,13 @@
 /* Signals between their samples, as the claims of loomfmu take them: on each interval the polynomial that a
  * signal and its recorded rates give, by its Bernstein points. See cosim/claims/curves.py and bernstein.py. */
+loomfmu.ONLY_SAMPLES = "is known only at the samples";
 loomfmu.motion = (run, name, rates = 2) => {
   const { time } = run, count = time.length, SAME = 1e-11, COARSE = 0.2, NOISE = 4 * 2 ** -52, HALVINGS = 60;
   const values = [];
   for (let each = name; each && values.length <= rates; each = run.rate(each)) values.push(run.signal(each));
   const own = values[0], finite = values.every(each => each.reduce((sum, value) => sum + 0 * value, 0) === 0);
-  const oneWay = sign => { for (let k = 1; k < count; k++) if (sign * (own[k] - own[k - 1]) < 0) return false; return true; };
-  const steady = values.length > 1 || oneWay(1) || oneWay(-1);
-  const note = !finite ? `${name} or its rate is not finite everywhere`
-    : steady ? "" : `${name} is known only at the samples: its rate is not recorded`;
+  const single = values.length === 1, known = !single || run.beside(name, "lowest") === name; // its samples are its extremes
+  const note = !finite ? `${name} or its rate is not finite everywhere` : known ? "" : `${name} ${loomfmu.ONLY_SAMPLES}`;
   const largest = own.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
 
   const fewer = [2, 4, 6][values.length - 1], [second, third] = values.slice(1);
@@ -165,27 +164,20 @@ loomfmu.motion = (run, name, rates = 2) => {
     return found.sort((one, other) => one.value - other.value)[0];
   }
 
-  /* How far it may go on beyond the first sample from a time on, where it is known only at the samples. */
-  function gapAt(when) {
-    const place = time.findIndex(each => each >= when);
-    return gapOf(place < 0 ? count - 1 : place);
+  /* How far the curve may be off at most: Motion.doubt of curves.py. */
+  const doubt = single ? 0 : time.slice(1).reduce((most, after, i) => {
+    const h = after - time[i], rise = own[i + 1] - own[i], v0 = second[i] * h, v1 = second[i + 1] * h;
+    const from = (bend(i) * h * h) - (6 * rise - 4 * v0 - 2 * v1), to = (bend(i + 1) * h * h) - (2 * v0 + 4 * v1 - 6 * rise);
+    return Math.max(most, 0.25 * Math.abs(from), 0.25 * Math.abs(to));
+  }, 0);
+
+  function bend(k) {
+    if (third) return third[k];
+    const [from, to] = [Math.max(k - 1, 0), Math.min(k + 1, count - 1)];
+    return (second[to] - second[from]) / (time[to] - time[from]);
   }
 
-  function gapOf(place) {
-    const k = Math.min(Math.max(place, 1), count - 2);
-    return finite && note && count > 2 ? 0.5 * Math.abs(own[k - 1] - 2 * own[k] + own[k + 1]) : 0;
-  }
-
-  /* How far below `sign` times an extreme it may be then, about any sample of some stretches of time. */
-  function gapBeyond(sign, extreme, when, within) {
-    let low = Infinity;
-    for (let k = 0; k < count; k++)
-      if (!within || within.some(({ start, end }) => start <= time[k] && time[k] <= end))
-        low = Math.min(low, sign * own[k] - gapOf(k));
-    return Math.max(sign * extreme - low, gapAt(when));
-  }
-
-  return { values: own, single: values.length === 1, note, at, passages, beyond, lowest, nearest, gapAt, gapBeyond };
+  return { values: own, known, note, doubt, at, passages, beyond, lowest, nearest };
 };
 
 /* The same, kept until its samples change. */

@@ -11,7 +11,7 @@ loomfmu.judge = run => {
   // ---- what claims have in common
 
   const motion = (name, rates) => loomfmu.motionOf(run, name, rates);
-  const { reached, latched, beyond, offBy } = loomfmu.latches(run, motion);
+  const { reached, latched, offBy } = loomfmu.latches(run, motion);
   const unknown = note => ({ holds: null, note });
   const never = (bound, ...notes) => ({ holds: false, worst: NaN, bound, notes }); // a claim without a value fails
   const shown = (value, factor, unit) => `${loomfmu.general(value * factor)} ${unit}`;
@@ -63,7 +63,8 @@ loomfmu.judge = run => {
   function extreme(signal, bound, sense, stretches) {
     if (gaps(signal, stretches)) return gap(signal);
     const found = latched(signal, sense, motion(signal).lowest(sense, stretches), stretches);
-    const between = sense * found.value < sense * bound && sense * found.sample >= sense * bound;
+    const over = each => sense * each >= sense * bound, doubt = motion(signal).doubt;
+    const between = over(found.sample) && !(over(found.value - sense * doubt) && over(found.possible));
     if (found.coarse || between) return unknown(`it is decided between the samples; ${NOT_HERE}`);
     return { worst: found.value, bound, time: found.time, notes: [found.note] };
   }
@@ -161,6 +162,7 @@ loomfmu.judge = run => {
   // ---- each kind of claim
 
   const bounded = claim => {
+    if (claim.at_samples) return unknown(`it is judged at the samples of a run; ${NOT_HERE}`);
     const bound = typeof claim.bound === "string" ? run.parameter(claim.bound) : claim.bound;
     const stretches = claim.window ? timesWithin(claim.window) : undefined;
     if (stretches && !stretches.length) return never(bound, "the run never enters that window");
@@ -272,7 +274,7 @@ loomfmu.judge = run => {
       if (most.coarse || held.coarse) return unknown(COARSE);
       const high = worst - claim.at_least > claim.at_most - worst;
       return { worst, bound: high ? claim.at_most : claim.at_least, sense: high ? -1 : 1, time: most.time,
-               notes: [drafting.note, holding.note] };
+               notes: [] };
     },
     locks_in_time: claim => {
       const limit = last(run.signal(`${claim.lock}.speed_limit`)), inTime = run.signal(`${claim.lock}.in_time`);
@@ -294,12 +296,10 @@ loomfmu.judge = run => {
     return distance <= Math.max(FAR_ABOVE * native.error, NEAR * Math.abs(bound), unresolved(claim, verdict));
   }
 
-  /* What runs on other steps may not show. */
-  function unresolved({ kind, window, signal: its, drawn }, verdict) {
+  /* How far the signal may be off whatever the steps. */
+  function unresolved({ window, signal: its, drawn }, verdict) {
     const signal = verdict.signal || its, stretches = window ? timesWithin(window) : undefined;
-    if (!drawn || signal !== its) return 0;
-    const gap = judges[kind] === bounded ? beyond(signal, verdict.sense, verdict, stretches) : motion(signal).gapAt(verdict.time);
-    return Math.max(gap, offBy(signal, verdict, stretches));
+    return drawn && signal === its ? offBy(signal, verdict, stretches) : 0;
   }
 
   const turns = run.has("shaft.angle") ? run.signal("shaft.angle") : [];
@@ -319,6 +319,8 @@ loomfmu.judge = run => {
     const holds = verdict.sense * verdict.worst >= verdict.sense * verdict.bound, signal = verdict.signal || claim.signal;
     // a part of a run that is not known cannot bring a claim back that fails
     if (holds && !claim.window && gaps(signal)) return gap(signal);
+    const doubts = (found.notes || []).filter(each => each?.endsWith(loomfmu.ONLY_SAMPLES));
+    if (holds && doubts.length) return unknown(`${doubts[0]}; ${NOT_HERE}`);
     if (tooNear(claim, verdict)) return unknown(`it is nearer to its bound, ${loomfmu.shownIn(claim, verdict.bound)}, than the page can tell; ${NOT_HERE}`);
     return { ...verdict, holds };
   };

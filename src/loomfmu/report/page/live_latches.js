@@ -18,38 +18,27 @@ loomfmu.latches = (run, motion) => {
     return Math.min(Math.max(turn, time[step - 1]), time[step]);
   }
 
-  const unsure = ({ note, single }) => note || single; // samples that only rise may pass an extreme, too
-  const latchOf = (signal, sense) => unsure(motion(signal)) ? run.beside(signal, sense > 0 ? "lowest" : "highest") : null;
   const counted = test => { const place = time.findIndex(test); return place < 0 ? final + 1 : place; };
 
-  /* Extremes so far, times `sense`, about each stretch of time: before it, at its first and last samples, and after it. */
+  /* Extremes so far, times `sense`, about each stretch of time: at its first and last samples, and after it. */
   function held(latch, sense, stretches = whole) {
     const values = run.signal(latch), near = SAME * (time[final] - time[0]);
     const at = place => sense * values[Math.min(Math.max(place, 0), final)];
     return stretches.filter(({ start, end }) => start < end || stretches === whole).map(({ start, end }) => {
       const last = counted(each => each > end + near) - 1;
-      return { last, before: at(counted(each => each > start + near) - 1), first: at(counted(each => each >= start - near)),
-               inside: at(last), after: at(counted(each => each >= end - near)) };
+      return { last, first: at(counted(each => each >= start - near)), inside: at(last), after: at(counted(each => each >= end - near)) };
     });
   }
 
-  /* The lowest value of `sense` times a signal, with a note: as its component holds it, or as it was found. */
+  /* The lowest value of `sense` times a signal, how low it may be, and a note: as its component holds it, or as found. */
   function latched(signal, sense, found, stretches) {
-    const latch = latchOf(signal, sense);
-    const lower = latch ? held(latch, sense, stretches).filter(each => each.inside < each.first) : [];
-    const [best] = lower.sort((one, other) => one.inside - other.inside);
-    const sampled = sense * found.value, known = !motion(signal).note;
-    if (!best || best.inside > sampled || (best.inside === sampled && known)) return { ...found, note: motion(signal).note };
+    const { known, note } = motion(signal), latch = known ? null : run.beside(signal, sense > 0 ? "lowest" : "highest");
+    if (!latch) return { ...found, possible: known ? found.value : -sense * Infinity, note };
+    const about = held(latch, sense, stretches), possible = sense * Math.min(...about.map(each => each.after));
+    const [best] = about.filter(each => each.inside < each.first).sort((one, other) => one.inside - other.inside);
+    if (!best || best.inside > sense * found.value) return { ...found, possible, note: "" };
     const value = sense * best.inside, followed = Array.from(run.signal(signal), each => sense * each);
-    return { value, sample: value, time: reached(run.signal(latch), followed, best.last), note: `between the samples by ${latch}` };
-  }
-
-  /* How far below the one found it may be. */
-  function beyond(signal, sense, { worst, time: when }, stretches) {
-    const latch = latchOf(signal, sense), gap = motion(signal).gapBeyond(sense, worst, when, stretches);
-    const far = latch ? held(latch, sense, stretches).map(({ before, first, inside, after }) =>
-      sense * worst - (first < before || after < inside ? after : Math.max(after, sense * worst - gap))) : [];
-    return far.length ? Math.max(0, ...far) : gap;
+    return { value, possible, sample: value, time: reached(run.signal(latch), followed, best.last), note: `between the samples by ${latch}` };
   }
 
   /* How far the signal of a verdict may be off whatever the steps, wherever it is that near to the worst value. */
@@ -63,5 +52,5 @@ loomfmu.latches = (run, motion) => {
     }, 0);
   }
 
-  return { reached, latched, beyond, offBy };
+  return { reached, latched, offBy };
 };
