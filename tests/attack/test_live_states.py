@@ -111,7 +111,7 @@ def set_bytes(data):
     instance.log.clear()
     assert instance.call("setFMUState", restored) == OK
     slave.freeFMUState(restored)
-    return "the FMU state is damaged or belongs to another FMU" not in instance.texts
+    return "the FMU state is damaged, or of another FMU or another version of this one" not in instance.texts
 
 
 def damage():

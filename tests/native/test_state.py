@@ -15,6 +15,8 @@ from loomfmu.components import COMPONENTS
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 
+NOT_OURS = "the FMU state is damaged, or of another FMU or another version of this one"
+
 
 def run(instance: Native, name: str, first: int, last: int) -> list[dict[str, object]]:
     """Steps with inputs that belong to their numbers; all variables after each."""
@@ -96,7 +98,7 @@ def test_a_handle_that_is_none(native):
         for handle in (c_void_p(), byref(create_string_buffer(64))):
             instance = native("MainShaft")
             assert instance.call(function, handle, byref(c_size_t()), c_size_t(0)) == ERROR
-            assert instance.texts == ["the FMU state is damaged or belongs to another FMU"]
+            assert instance.texts == [NOT_OURS]
     instance = native("MainShaft")
     assert instance.call("GetFMUstate", None) == ERROR
     instance = native("MainShaft")
@@ -115,8 +117,16 @@ def test_sizes(native):
     for wrong in (b"", content[:-1], content + b"\0", content * 2):
         status, other = instance.unpack(wrong)
         assert status == ERROR and not other
-        assert instance.texts[-1] == "the FMU state is damaged or belongs to another FMU"
+        assert instance.texts[-1] == NOT_OURS
     assert instance.drop(state) == OK
+
+
+def test_a_handle_of_another_fmu_is_refused_as_that_of_another_version(native):
+    one, other = native("HealdFrame"), native("MainShaft")
+    state = one.save()
+    assert other.call("SetFMUstate", state) == ERROR
+    assert other.texts == [NOT_OURS]
+    assert one.drop(state) == OK
 
 
 def test_bytes_of_another_fmu(native):

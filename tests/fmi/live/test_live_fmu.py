@@ -267,7 +267,7 @@ for name in NAMES:
 print("\\n".join(sorted(said)))
 """
     )
-    assert text == "the FMU state is damaged or belongs to another FMU\n"
+    assert text == "the FMU state is damaged, or of another FMU or another version of this one\n"
 
 
 # ---- values that are refused
@@ -635,7 +635,7 @@ def test_a_state_that_cannot_be_is_refused_even_with_a_proper_checksum(live: Ope
         data = forged + zlib.crc32(forged).to_bytes(4, "little")
         state = instance.slave.deSerializeFMUstate(data)
         assert instance.call("setFMUState", state) == OK  # the wrapper can return nothing else
-        refused(instance, "the FMU state is damaged or belongs to another FMU")
+        refused(instance, "the FMU state is damaged, or of another FMU or another version of this one")
         assert instance.call("reset") == OK
         instance.start()
 

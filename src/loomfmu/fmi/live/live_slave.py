@@ -284,7 +284,7 @@ class LiveSlave(Fmi2Slave):
 
     def _set_fmu_state(self, state: Any) -> None:
         if not isinstance(state, State) or state.guid != self.guid:
-            self._fail("the FMU state is damaged or belongs to another FMU")
+            self._fail("the FMU state is damaged, or of another FMU or another version of this one")
             return
         _guid, self.mode, self.time, self.stale, self.failure, values = state
         for row, value in zip(self.rows.values(), values, strict=True):

@@ -150,7 +150,7 @@ static bool fmu_read_state(State *state, const unsigned char *bytes, size_t size
 
 /* A copy of the state in the host's hands. */
 typedef struct {
-    char mark[8];
+    char mark[TOKEN_SIZE]; /* of this build: what another one has saved may be laid out otherwise */
     State state;
 } Saved;
 
@@ -158,10 +158,10 @@ typedef struct {
 static Saved *fmu_saved(Instance *instance, void *handle)
 {
     Saved *saved = handle;
-    if (saved != NULL && memcmp(saved->mark, LAYOUT, sizeof saved->mark) == 0) {
+    if (saved != NULL && memcmp(saved->mark, MODEL_TOKEN, sizeof saved->mark) == 0) {
         return saved;
     }
-    (void)fmu_complain(instance, FAILED, "the FMU state is damaged or belongs to another FMU");
+    (void)fmu_complain(instance, FAILED, "the FMU state is damaged, or of another FMU or another version of this one");
     return NULL;
 }
 
@@ -178,7 +178,7 @@ static Saved *fmu_provide(Instance *instance, void **handle)
             (void)fmu_complain(instance, FAILED, "out of memory for an FMU state");
             return NULL;
         }
-        memcpy(saved->mark, LAYOUT, sizeof saved->mark);
+        memcpy(saved->mark, MODEL_TOKEN, sizeof saved->mark);
         *handle = saved;
     }
     return fmu_saved(instance, *handle);
@@ -274,7 +274,7 @@ static Status fmu_unpack(Instance *instance, const char *function, const void *b
         return FAILED;
     }
     if (bytes == NULL || !fmu_read_state(&read, bytes, size)) {
-        return fmu_complain(instance, FAILED, "the FMU state is damaged or belongs to another FMU");
+        return fmu_complain(instance, FAILED, "the FMU state is damaged, or of another FMU or another version of this one");
     }
     saved = fmu_provide(instance, handle);
     if (saved == NULL) {
