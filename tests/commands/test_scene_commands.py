@@ -23,7 +23,8 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     printed = capsys.readouterr()
     assert printed.err == ""
     lines = printed.out.splitlines()
-    assert lines[0] == "Small: 1 revolution at 400 rev/min, 90 steps"
+    assert lines[0] == "WL680-3600, G6300 left, weave 10/01, 400 rev/min: 1 revolution, 90 steps"
+    assert lines[1] == 'scene "Small"'
     place = lines.index(f"{word}  lowest margin (belt.lowest_margin)")
     assert lines[place + 1].startswith("  0.6558")
     away = {0.1: "+555.8 %", 0.9: "-27.13 %"}[bound]
@@ -62,7 +63,10 @@ def test_set_takes_units_and_may_be_said_again(capsys: pytest.CaptureFixture[str
     ]
     assert main(["run", scene(HEAD + LOOM), *arguments, "--set", "revolutions=0.5"]) == 0
     printed = capsys.readouterr().out
-    assert "0.5 revolutions at 685 rev/min" in printed
+    assert " ".join(printed.split()).startswith(
+        "WL680-3600, G6300 left, weave 10/01, 685 rev/min; belt.guide_clearance = 0.5 mm,"
+        ' heald.stroke = 50mm, revolutions = 0.5: 0.5 revolutions, 45 steps changed from the scene "Small"'
+    )
     with Trace(printed.split()[-1]) as trace:
         assert trace["belt.length_factor"][-1] == 0.9
         assert trace.parameter("heald_2.stroke") == 0.05
@@ -76,9 +80,9 @@ def test_a_run_up_turns_the_shaft_less_than_the_nominal_revolutions(
     ramp = HEAD.replace("revolutions = 1", "revolutions = 2") + '[shaft]\nspeed = "600rpm"\n'
     assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n')]) == 0
     printed = capsys.readouterr().out
-    assert ": 2 nominal revolutions at 600 rev/min, the shaft turned 1.5 revolutions, 180 steps" in printed
+    assert "scene, 600 rev/min: 2 nominal revolutions, the shaft turned 1.5 revolutions, 180 steps" in printed
     assert main(["run", scene(ramp)]) == 0
-    assert ": 2 revolutions at 600 rev/min, 180 steps" in capsys.readouterr().out
+    assert "scene, 600 rev/min: 2 revolutions, 180 steps" in capsys.readouterr().out
     trace = Path("results/scene.h5")
     assert main(["run", scene(ramp + 'ramp_duration = "0.1 s"\n'), "--report"]) == 0
     assert "2.0 nominal; the shaft turned 1.5 revolutions" in trace.with_suffix(".html").read_text()

@@ -112,9 +112,18 @@ def test_a_picture_says_which_revolution_and_what_its_colours_mean(copied: Path)
     output = copied.with_name("picture.svg")
     diagram.write(Trace(copied), output, 2)
     shown = [each.text for each in ElementTree.parse(output).iter("{http://www.w3.org/2000/svg}text")]
-    assert shown[0].endswith("plain weave: timing diagram, revolution 2")
+    assert shown[0].endswith("600 rev/min: timing diagram, revolution 2")
     assert {"in the shed", "outside and compressed", "dwells"} <= {*shown}
     assert "buckled" not in shown and not any(each.startswith("worst value") for each in shown if each)
+
+
+def test_the_revolution_of_the_worst_failure_is_drawn(tmp_path: Path) -> None:
+    changed = {"shaft.speed": "700 rpm", "steps_per_revolution": 360}
+    trace = loomfmu.run(SIMS / "wl680_3600.toml", set=changed, output=tmp_path / "fast.h5").trace
+    failing = [each.revolution for each in trace.verdicts if not each]
+    assert trace.turns and set(failing) == {1}
+    text = diagram.write(trace, tmp_path / "fast.svg").read_text()
+    assert ": timing diagram, revolution 1</title>" in text and '<polygon class="fails"' in text
 
 
 def test_a_legend_names_what_is_drawn_and_nothing_else(tmp_path: Path) -> None:

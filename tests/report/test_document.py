@@ -1,6 +1,7 @@
 """The page as a whole: it opens in silence, asks no host for anything, and follows its cursor."""
 
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,10 @@ from typing import Any
 import pytest
 from browser import NARROW, until
 
+import loomfmu
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.report.document import page
 from loomfmu.report.section import Subject, embedded
 from loomfmu.traces import Trace
@@ -25,7 +28,8 @@ def written(demo: Trace, tmp_path: Path) -> Path:
 
 def test_it_opens_and_tells_the_verdict(written: Path, opened: Open) -> None:
     found = opened(written)
-    assert found.title() == "WL680-3600, G6300 belt without guide hooks, plain weave"
+    assert found.title() == "WL680-3600, G6300 left, weave 10/01/10/01, 600 rev/min"
+    assert found.inner_text("header .about") == 'scene "Belt and healds of a published rapier loom"'
     assert found.inner_text(".outcome").endswith("All 6 claims hold")
     assert found.locator("table.claims tbody tr").count() == 6
 
@@ -79,7 +83,7 @@ def test_foreign_text_is_shown_and_never_run(
     demo: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     nasty = "</title></script><script>console.log('run')</script><img src=x onerror=alert(1)>"
-    attributes = demo.attributes | {"title": nasty, "scene": nasty}
+    attributes = demo.attributes | {"title": nasty, "heading": nasty, "scene": nasty}
     monkeypatch.setattr(Trace, "attributes", attributes)
     path = tmp_path / "nasty.html"
     path.write_text(page(Subject([demo])))
@@ -125,9 +129,22 @@ def test_a_report_of_two_traces_says_what_is_of_the_first(demo: Trace, tmp_path:
     copy = tmp_path / "copy.h5"
     os.link(demo.path, copy)
     found = opened(report.write([demo, copy], tmp_path / "both.html"))
-    for section in ("claims", "diagram", "motion", "provenance"):
+    for section in ("diagram", "motion", "provenance"):
         assert "Of the first trace, demo.h5." in found.inner_text(f"#{section}")
-    assert "Of the first trace" not in found.inner_text("#plots")
+    for section in ("claims", "plots"):
+        assert "Of the first trace" not in found.inner_text(f"#{section}")
+
+
+def test_a_report_of_two_traces_judges_both(demo: Trace, tmp_path: Path) -> None:
+    text = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\n[[claims]]\nkind = "lowest_margin"\n'
+    failing = loomfmu.run(
+        parse(f"revolutions = 1\n{text}bound = 0.9\n"), output=tmp_path / "failing.h5"
+    ).trace
+    for traces in ([demo, failing], [failing, demo]):
+        page = report.write(traces, tmp_path / "both.html").read_text()
+        outcomes = dict(re.findall(r'class="outcome (\w+)"><span [^>]*></span>([^<]*)<', page))
+        assert outcomes == {"holds": "demo.h5: All 6 claims hold", "fails": "failing.h5: 1 of 1 claims fails"}
+        assert page.count(">FAILS</td>") == 1 and page.count('<table class="claims">') == 2
 
 
 def test_without_a_trace_there_is_nothing_to_report() -> None:

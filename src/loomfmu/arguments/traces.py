@@ -26,7 +26,10 @@ def diagram(commands: Any) -> None:
     diagram = commands.add_parser("diagram", help="draw the timing diagram of a trace (SVG, PNG or PDF)")
     diagram.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
     diagram.add_argument(
-        "--revolution", type=int, metavar="N", help="counted from 1; the last whole one by default"
+        "--revolution",
+        type=int,
+        metavar="N",
+        help="counted from 1; that of the worst failure by default, or the last whole one",
     )
     diagram.add_argument("--round", action="store_true", help="as rings around the shaft")
     diagram.add_argument(

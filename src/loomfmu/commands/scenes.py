@@ -8,7 +8,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from .. import units
 from ..errors import LoomfmuError
 from ..printed import complain, say, warn
 from .options import pairs, platforms
@@ -67,16 +66,17 @@ def _run_here(options: argparse.Namespace) -> int:
 
 def _print_title(result: "Result") -> None:
     """What was run, and how far."""
-    scene = result.scene
+    scene, heading = result.scene, result.trace.heading
     if result.ended:
-        say(f"{scene.title}: ended by {result.ended}, {result.steps} steps")
+        say(f"{heading}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
-        turned, speed = result.trace.turned_otherwise(scene.periods), units.show(scene.speed, "rev/min")
+        turned = result.trace.turned_otherwise(scene.periods)
         count = f"{scene.periods:g} nominal" if turned else f"{scene.periods:g}"
-        parts = f"{revolutions(count)} at {speed}", turned, f"{result.steps} steps"
-        say(f"{scene.title}: {', '.join(filter(None, parts))}")
+        parts = revolutions(count), turned, f"{result.steps} steps"
+        say(f"{heading}: {', '.join(filter(None, parts))}")
     else:
-        say(f"{scene.title}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
+        say(f"{heading}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
+    say(result.trace.origin)
 
 
 def _print_trace(path: str) -> None:

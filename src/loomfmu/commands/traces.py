@@ -39,7 +39,7 @@ def _summarise(trace: "Trace") -> None:
     attributes = trace.attributes
     ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
     status = trace.status if trace.status != "running" else "running, or killed"
-    say(f"{attributes['title']} ({attributes['software']}, {status}{ended})")
+    say(f"{trace.heading} ({attributes['software']}, {status}{ended})", trace.origin)
     if "command" in attributes:
         say(f"run by: {attributes['command']}")
     for key, value in json.loads(attributes.get("set", "{}")).items():

@@ -6,6 +6,7 @@ from typing import Any
 
 from .importing.fmus import Fmu
 from .planning.plan import Plan
+from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.scene import Scene
 
@@ -13,13 +14,15 @@ from .scenes.scene import Scene
 def attributes(plan: Plan, flavour: str) -> dict[str, str]:
     """The attributes of a trace's root.
 
-    `files` are the texts of the files that the scene names, `set` the values that differ from the scene, as
-    `--set` takes them; `command` repeats the run.
+    `heading` is made of the values of the run, `title` is the scene's own. `files` are the texts of the files
+    that the scene names, `set` the values that differ from the scene, as `--set` takes them; `command`
+    repeats the run.
     """
     scene = plan.scene
     fmus = _fmus(plan.pruned.scene)
     return {
         "title": scene.title,
+        "heading": heading(scene),
         "scene": scene.text,
         **({"files": json.dumps(scene.texts)} if scene.texts else {}),
         **({"package_sha256": scene.package_sha256} if scene.package else {}),

@@ -6,6 +6,7 @@ from pathlib import Path
 from .. import notebook
 from ..traces import Recording, Trace, Verdict
 from ..traces.verdict import HEADINGS, outcome
+from .scenes.headings import heading
 from .scenes.scene import Scene
 
 
@@ -47,7 +48,7 @@ class Judged:
         notes = [f"ended by {self.ended}"] * bool(self.ended) + [self.chosen] * bool(self.chosen)
         notes += [f"warning: {each}" for each in self.warnings]
         return notebook.block(
-            f"{self.scene.title}: {summary}",
+            f"{heading(self.scene)}: {summary}",
             *([notebook.table(HEADINGS, [each.row for each in self.claims])] if self.claims else []),
             *map(notebook.line, notes),
         )  # fmt: skip

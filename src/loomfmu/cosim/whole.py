@@ -14,6 +14,7 @@ from ..fmi.system.system import Drive, Part, System
 from .planning.pruning import prune
 from .planning.requested import checked_claims, recorded
 from .scenes.graph import step_order
+from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.keys import UNIFORM
 from .scenes.scene import Scene
@@ -62,7 +63,7 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
     )
     return System(
         name=_identifier(scene.name, {part.component.__name__ for part in parts}),
-        title=scene.title,
+        title=heading(scene),
         description=scene.description,
         parts=parts,
         wires={".".join(wire.sink): ".".join(wire.source) for wire in needed.wires},

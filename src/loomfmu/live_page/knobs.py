@@ -107,7 +107,7 @@ def _check_alone(scene: Scene, key: str, targets: Sequence[str], value: Value, w
             replace(part, values={k: v for k, v in part.values.items() if f"{part.name}.{k}" not in targets})
             for part in whole.parts
         )
-        return replace(whole, parts=tuple(parts), experiment=(0.0, 0.0))
+        return replace(whole, title="", parts=tuple(parts), experiment=(0.0, 0.0))
 
     if rest(other) != rest(system(scene)):
         raise LoomfmuError(f"{where}: {key} changes more of the scene than this value; use loomfmu run --set")

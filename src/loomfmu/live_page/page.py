@@ -17,6 +17,7 @@ from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
 from ..cosim.run import run
+from ..cosim.scenes.headings import heading
 from ..cosim.scenes.keys import UNIFORM
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.scene_files import files_of
@@ -84,7 +85,9 @@ def write(
             data["wasm"] = b64encode(wasm).decode()
             controls = template("live.html.j2").render(knobs=varied)
             live = Section("live", "Values", controls, SCRIPTS, data)
-            content = assembled(subject, [live, *sections(subject)], MARK, POLICY)
+            keys = [knob.key for knob in varied]
+            called = f"{heading(loaded, keys)}; varied: {', '.join(keys)}"
+            content = assembled(subject, [live, *sections(subject)], MARK, POLICY, called)
     for warning in dict.fromkeys((*(doubt for knob in varied for doubt in knob.doubts), *started.warnings)):
         warn(warning)
     return write_file(path, content.encode(), PAGE, inputs, overwrite)

@@ -2,33 +2,33 @@
 
 from typing import Any
 
-from ..traces import Verdict
+from ..traces import Trace, Verdict
 from ..traces.verdict import FAILS, UNDECIDED
 from ..traces.verdict import outcome as counted
-from .section import Section, Subject
+from .section import Section, Subject, labels
 from .templates import template
 
 
 def section(subject: Subject) -> Section:
-    """The claims of the first trace."""
-    trace = subject.trace
-    verdicts = trace.verdicts
-    words = {verdict.word for verdict in verdicts} if trace.judged else set()
-    return Section(
-        "claims", "Claims",
-        template("claims.html.j2").render(
-            judged=trace.judged,
-            outcome=_of_first(outcome(verdicts, trace.judged), subject),
-            word="fails" if FAILS in words else "unknown" if UNDECIDED in words or not words else "holds",
-            rows=[_row(subject, verdict) for verdict in verdicts],
-        ),
-        ("claims.js",),
-    )  # fmt: skip
+    """The claims of every trace: first all outcomes, then all tables."""
+    several = len(subject.traces) > 1
+    runs = [
+        {
+            "label": label if several else "",
+            "outcome": outcome(trace.verdicts, trace.judged),
+            "word": _word(trace),
+            "rows": [_row(subject, verdict) for verdict in trace.verdicts],
+        }
+        for label, trace in zip(labels(subject.traces), subject.traces, strict=True)
+    ]
+    html = template("claims.html.j2").render(runs=runs)
+    return Section("claims", "Claims", html, ("claims.js",), of_first=False)
 
 
-def _of_first(text: str, subject: Subject) -> str:
-    """The verdict of the first trace, which says so where there are others."""
-    return f"In the first trace: {text[0].lower()}{text[1:]}" if len(subject.traces) > 1 else text
+def _word(trace: Trace) -> str:
+    """How the outcome of a trace is marked."""
+    words = {verdict.word for verdict in trace.verdicts} if trace.judged else set()
+    return "fails" if FAILS in words else "unknown" if UNDECIDED in words or not words else "holds"
 
 
 def outcome(verdicts: list[Verdict], judged: bool) -> str:

@@ -91,7 +91,9 @@ def _layout(rows: Sequence[Row]) -> dict[str, Any]:
 def write(
     trace: Trace, output: Path, revolution: int | None = None, circular: bool = False, overwrite: bool = False
 ) -> Path:
-    """Write the diagram of one revolution of a trace, its last whole one by default, and return its path.
+    """Write the diagram of one revolution of a trace and return its path.
+
+    By default it is that of the worst failure, or the last whole one where all claims hold.
 
     Raises LoomfmuError where no shaft turns, there is no such revolution, or the file cannot be written.
     """
@@ -101,7 +103,7 @@ def write(
     if reason:
         raise LoomfmuError(f"{trace.given}: there is no timing diagram, as {reason}")
     numbers = occasions.numbers
-    number = max(numbers[0], int(subject.positions[-1] / TURN + 1e-9)) if revolution is None else revolution
+    number = _usual(trace, subject, numbers) if revolution is None else revolution
     if number not in numbers:
         raise LoomfmuError(f"revolution = {number} is outside [{numbers[0]}, {numbers[-1]}] of {trace.given}")
     its, marks = occasions.revolution(number), marks_in(trace.verdicts, number)
@@ -110,10 +112,20 @@ def write(
     else:
         drawing = straight(occasions.rows, its, marks, bool(marks))
         size = straight_size(occasions.rows, bool(marks))
-    title = f"{trace.attributes['title']}: timing diagram, revolution {number}"
+    title = f"{trace.heading}: timing diagram, revolution {number}"
     drawing, size = headed(title, _legend(occasions.rows, [drawing]), drawing, size)
     kind = pictures.kind(output)
     return write_file(output, file(drawing, size, output.suffix, title), kind, [trace.path], overwrite)
+
+
+def _usual(trace: Trace, subject: Subject, numbers: range) -> int:
+    """The revolution of the worst failure; the last whole one where all claims hold."""
+    failures = [each for each in trace.verdicts if not each and each.revolution in numbers]
+    if not failures:
+        return max(numbers[0], int(subject.positions[-1] / TURN + 1e-9))
+    # one that fails comes before one that is undecided, one with a distance before one without
+    worst = min(failures, key=lambda each: (not each.decided, math.isnan(each.away), each.away))
+    return int(worst.revolution or numbers[0])
 
 
 def _not_drawn(subject: Subject, occasions: Occasions) -> str:

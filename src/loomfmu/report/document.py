@@ -79,14 +79,23 @@ def sections(subject: Subject) -> list[Section]:
     return [section for make in SECTIONS if (section := make(subject))]
 
 
-def assembled(subject: Subject, sections: Sequence[Section], mark: str = MARK, policy: str = "") -> str:
-    """A page of some sections; `policy` is what its scripts may do beside running inline."""
-    trace = subject.trace
+def assembled(
+    subject: Subject, sections: Sequence[Section], mark: str = MARK, policy: str = "", heading: str = ""
+) -> str:
+    """A page of some sections below a heading, by default those of the traces.
+
+    `policy` is what its scripts may do beside running inline.
+    """
+    trace, several = subject.trace, len(subject.traces) > 1
+    runs = [
+        {"heading": (f"{label}: " if several else "") + (heading or each.heading), "origin": each.origin}
+        for label, each in zip(labels(subject.traces), subject.traces, strict=True)
+    ]
     body: str = template("page.html.j2").render(
-        title=str(trace.attributes["title"]),
+        runs=runs,
         software=str(trace.attributes["software"]),
         sections=sections,
-        first=labels(subject.traces)[0] if len(subject.traces) > 1 else "",
+        first=labels(subject.traces)[0] if several else "",
         policy=policy,
         style="\n".join([text("style.css"), *(section.style for section in sections)]),
         cursor=text("cursor.js"),

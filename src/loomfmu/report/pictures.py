@@ -81,9 +81,16 @@ def plot(
     over = plotting.checked(traces[0], over, fold)
     for trace in traces[1:]:
         plotting.checked(trace, over, fold)
-    title = str(traces[0].attributes["title"])
+    title = _title(traces)
     named = list(dict.fromkeys(each for name in signals for each in _named(traces[0], name)))
     return save(_figure(traces, named, over, fold, title), path, title, inputs, overwrite)
+
+
+def _title(traces: Sequence[Trace]) -> str:
+    """What was run, a line for each trace."""
+    if len(traces) == 1:
+        return traces[0].heading
+    return "\n".join(f"{label}: {trace.heading}" for label, trace in zip(labels(traces), traces, strict=True))
 
 
 def _named(trace: Trace, name: str) -> list[str]:

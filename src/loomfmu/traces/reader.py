@@ -60,7 +60,7 @@ class Trace(Signals):
             [notebook.table(HEADINGS, [verdict.row for verdict in self.verdicts])] if self.judged else []
         )
         return notebook.block(
-            f"{self.attributes['title']} ({self.given}, {self.status})", *verdicts,
+            f"{self.heading} ({self.given}, {self.status})", *verdicts,
             f"<details><summary>{count}</summary>{signals}</details>",
         )  # fmt: skip
 
@@ -178,6 +178,22 @@ class Trace(Signals):
         """What the file says of the run."""
         with self._file.opened() as file:
             return attributes(file)
+
+    @property
+    def heading(self) -> str:
+        """What was run: machine, head, weave and speed, then all other values that differ from the scene.
+
+        Traces of older versions do not say; then it is the title of the scene in quotes, and what differs.
+        """
+        if known := self.attributes.get("heading"):
+            return str(known)
+        changed = ", ".join(f"{key} = {value}" for key, value in self.overrides.items())
+        return f'"{self.attributes["title"]}"' + (f"; {changed}" if changed else "")
+
+    @property
+    def origin(self) -> str:
+        """The scene by its title, which is its author's words and not about values that were changed."""
+        return ("changed from the scene" if self.overrides else "scene") + f' "{self.attributes["title"]}"'
 
     @property
     def status(self) -> str:

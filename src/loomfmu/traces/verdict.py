@@ -106,6 +106,11 @@ class Verdict:
         return self.distance / abs(self.bound) if self.bound else math.nan
 
     @property
+    def away(self) -> float:
+        """The distance as a number of bounds, or in `unit` for a bound of 0: what orders verdicts."""
+        return self.relative_distance if self.bound else self.distance
+
+    @property
     def word(self) -> str:
         """The outcome in one word."""
         return HOLDS if self.holds else FAILS if self.decided else UNDECIDED

@@ -39,7 +39,7 @@ def test_each_row_is_the_limit_at_a_value_of_the_second_variable() -> None:
 def test_a_boundary_is_shown_as_a_table() -> None:
     found = boundary()
     assert repr(found) == (
-        "<Boundary of WL680-3600, G6300 belt without guide hooks, plain weave: shaft.speed at 3 values of"
+        "<Boundary of WL680-3600, G6300 left, weave 10/01/10/01; revolutions = 1: shaft.speed at 3 values of"
         " belt.guide_clearance>"
     )
     html = found._repr_html_()

@@ -29,7 +29,9 @@ def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr()
     assert printed.err == ""
     lines = printed.out.splitlines()
-    assert lines[0].endswith("plain weave: shaft.speed from 300 to 900 rev/min (given)")
+    assert lines[0].endswith(
+        "weave 10/01/10/01; revolutions = 1: shaft.speed from 300 to 900 rev/min (given)"
+    )
     assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in lines
     assert "  (+125.6 % at 600 rev/min)" in lines
     assert "  (does not depend on shaft.speed; +7.402 % at 600 rev/min)" in lines

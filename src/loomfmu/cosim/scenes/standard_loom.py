@@ -147,6 +147,17 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     return values
 
 
+def pegs(values: Mapping[str, Any]) -> str:
+    """The string of pegs that the parameters of a heald frame stand for: the inverse of `pattern`.
+
+    >>> pegs(pattern("1100", ""))
+    '1100'
+    """
+    words = (int(values[f"pattern_{number + 1}"]) for number in range(weaves.MOST_PICKS // PICKS_IN_A_WORD))
+    every = "".join(f"{word:0{PICKS_IN_A_WORD}b}"[::-1] for word in words)
+    return every[: int(values["pattern_length"])]
+
+
 def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     """Where inputs such as `belt.travel` are usually wired to, by the declarations of all instances.
 

@@ -21,6 +21,7 @@ from ...version import __version__
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value
 from ..importing.ports import Definition
+from ..scenes.headings import heading
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from ..scenes.scene_files import files_of
@@ -164,9 +165,9 @@ def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
     prefixes = ("ssd", "ssc", "osp", "oms", "loomfmu")
     document = root(
         "ssd:SystemStructureDescription", *prefixes, version="1.0", name=scene.name,
-        description=scene.title, generationTool=f"loomfmu {__version__}",
+        description=heading(scene), generationTool=f"loomfmu {__version__}",
     )  # fmt: skip
-    system = SubElement(document, "ssd:System", name=scene.name, description=scene.title)
+    system = SubElement(document, "ssd:System", name=scene.name, description=heading(scene))
     ports = _connectors(scene)
     boxes = layout(
         list(scene.instances), scene.wires,

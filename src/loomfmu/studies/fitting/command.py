@@ -39,7 +39,7 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     if picture is not None:
         from .picture import draw
 
-        pictures.save(draw(found), picture, found.scene.title, inputs, options.force)
+        pictures.save(draw(found), picture, found.title, inputs, options.force)
     warn(found.warnings)
     show(found)
     say(*(f"written: {path}" for path in (output, picture) if path is not None))

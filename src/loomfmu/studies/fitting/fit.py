@@ -12,6 +12,7 @@ import numpy as np
 from ... import notebook
 from ...cosim.reading import checked
 from ...cosim.run import prepare
+from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError, listed, shown, suggestion
 from .. import rewritten
@@ -53,6 +54,11 @@ class Fit:
     warnings: tuple[str, ...] = ()
 
     @property
+    def title(self) -> str:
+        """What was fitted: the loom without the values that were found."""
+        return heading(self.scene, [each.span.key for each in self.parameters])
+
+    @property
     def trusted(self) -> bool:
         """Whether the intervals can be trusted: nothing speaks against independent residuals."""
         return all(each.trusted for each in self.parameters)
@@ -77,7 +83,7 @@ class Fit:
 
     def _repr_html_(self) -> str:
         return notebook.block(
-            f"{self.scene.title}: {self.data.path}",
+            f"{self.title}: {self.data.path}",
             notebook.table(HEADINGS, rows(self)),
             *map(notebook.line, self.notes),
         )

@@ -25,7 +25,7 @@ def draw(found: Fit) -> Any:
     if angle:
         panels[-1].xaxis.set_major_locator(degrees())
     panels[0].legend(frameon=False, ncols=2)
-    drawn.suptitle(found.scene.title, fontsize=11)
+    drawn.suptitle(found.title, fontsize=11)
     return drawn
 
 

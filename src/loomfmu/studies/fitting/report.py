@@ -17,7 +17,7 @@ STRONG = 0.9  # correlation that is worth a word
 
 def show(found: Fit) -> None:
     """Print a fit: the parameters, what they leave of the data, and what to be careful about."""
-    say(f"{found.scene.title}: fitted to {found.data.path}, {found.data.count} measured values")
+    say(f"{found.title}: fitted to {found.data.path}, {found.data.count} measured values")
     table = rows(found)
     entries = [
         (f"{key}:", value, f"interval {interval};", f"scene {own}") for key, value, interval, own in table

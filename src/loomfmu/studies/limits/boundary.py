@@ -8,6 +8,7 @@ from typing import Any, overload
 
 from ...cosim.prepared import Prepared
 from ...cosim.run import prepare
+from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError, shown
 from ...progress import progress as progress_bar
@@ -98,4 +99,4 @@ def _boundary(
             found.append(limits_of(loom, first, points, second.setting(value), advance))
         except LoomfmuError as error:
             raise LoomfmuError(f"at {second.key} = {second.show(value)}: {error}") from None
-    return Boundary(loom.scene.title, first, second, tuple(values), tuple(found))
+    return Boundary(heading(loom.scene, [first.key, second.key]), first, second, tuple(values), tuple(found))

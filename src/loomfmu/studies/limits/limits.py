@@ -9,6 +9,7 @@ from typing import Any
 
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
+from ...cosim.scenes.headings import heading
 from ...errors import LoomfmuError, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
@@ -45,7 +46,8 @@ def limits_of(
     ]
     resolution = (span.high - span.low) / (points - 1)
     ranges, warnings = _common(found, span), warnings_of([span], own.warnings)
-    return Limits(loom.scene.title, span, resolution, tuple(found), ranges, len(runs) + 1, warnings)
+    title = heading(loom.scene, [span.key])
+    return Limits(title, span, resolution, tuple(found), ranges, len(runs) + 1, warnings)
 
 
 class _Runs(Evaluations):

@@ -13,6 +13,7 @@ from ... import notebook
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...cosim.run import prepare
+from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
 from ...errors import LoomfmuError, listed
 from ...progress import progress as progress_bar
@@ -213,7 +214,8 @@ class _Box:
         for number in range(len(self._loom.scene.claims)):
             found.append(self._worst_case(number, points))
             advance(1)
-        title, warnings = self._loom.scene.title, warnings_of(self._spans, self._runs.warnings)
+        title = heading(self._loom.scene, [each.key for each in self._spans])
+        warnings = warnings_of(self._spans, self._runs.warnings)
         return Tolerances(title, self._spans, tuple(found), len(self._runs), warnings)
 
     def _worst_case(self, number: int, points: Sequence[Shares]) -> WorstCase:

@@ -1,0 +1,92 @@
+"""What a run is called: made of the values that it has, so that none that is set makes it untrue."""
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import Any
+
+from ... import machines, units
+from ...errors import LoomfmuError, listed, one_line
+from . import standard_loom
+from .instances import Instance
+from .overrides import WEAVE, components, overridden
+from .scene import Scene
+
+SPEED = "shaft.speed"
+SAID = (*machines.TAKERS, *(f"loom.{kind}" for kind in machines.TAKERS), WEAVE, SPEED)  # by the first words
+LONGEST_WEAVE = 48  # letters
+
+
+def heading(scene: Scene, varied: Collection[str] = ()) -> str:
+    """Machine, head, weave and speed, then what else differs from the scene or from the published machine.
+
+    Values of the keys `varied` are left out: they are those of no single run.
+    """
+    loom = [*_published(scene)] or [scene.name]
+    first = ", ".join(filter(None, (*loom, _weave(scene.instances.values()), _speed(scene, varied))))
+    changed = _own_values(scene) | {
+        key: _shown(scene, key, value) for key, value in scene.overrides.items() if key not in SAID
+    }
+    rest = ", ".join(f"{key} = {text}" for key, text in changed.items() if key not in varied)
+    return one_line(f"{first}; {rest}" if rest else first)
+
+
+def _published(scene: Scene) -> Iterator[str]:
+    """The machines and the heads that instances have."""
+    for kind in machines.TAKERS:
+        instances = scene.instances.values()
+        if names := dict.fromkeys(each.published[kind] for each in instances if kind in each.published):
+            yield listed(names)
+
+
+def _own_values(scene: Scene) -> dict[str, str]:
+    """The values of a published machine or head that instances do not have."""
+    found = {}
+    for name, each in scene.instances.items():
+        published = machines.parameters(each.fmu.name, **each.published) if each.published else {}
+        for variable, value in published.items():
+            own = each.values.get(variable, value)
+            if own != value:
+                found[f"{name}.{variable}"] = _quantity(each, variable)
+    return found
+
+
+def _weave(instances: Iterable[Instance]) -> str:
+    """The pegs of all heald frames, if there are any."""
+    frames = [each for each in instances if each.fmu.ours and "pattern_length" in each.fmu.ports]
+    if not frames:
+        return ""
+    starts = [{name: port.start for name, port in each.fmu.ports.items()} for each in frames]
+    pegs = [standard_loom.pegs(start | each.values) for start, each in zip(starts, frames, strict=True)]
+    text = "/".join(pegs)
+    if len(text) > LONGEST_WEAVE:
+        text = f"of {len(pegs)} frames and {max(map(len, pegs))} picks"
+    return f"weave {text}"
+
+
+def _speed(scene: Scene, varied: Collection[str]) -> str:
+    """The speed of the main shaft; that of a motor without load is nominal."""
+    ports = scene.instances["shaft"].fmu.ports if "shaft" in scene.instances else {}
+    if "speed" not in ports or SPEED in varied:
+        return ""
+    loaded = any(port.causality == "input" for port in ports.values())
+    return "nominally " * loaded + units.show(scene.speed, "rev/min")
+
+
+def _shown(scene: Scene, key: str, value: Any) -> str:
+    """A value that was set, with its unit even if it was given without one."""
+    if isinstance(value, str) and not units.is_plain(value):
+        return value
+    try:
+        name, variable = overridden(scene.instances, key, components(scene.instances))[0]
+        instance = scene.instances[name]
+        return _quantity(instance, instance.fmu.name_of(variable))
+    except (KeyError, LoomfmuError):  # the scene's own, such as its revolutions
+        return f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+def _quantity(instance: Instance, variable: str) -> str:
+    """A value of an instance in the unit that people read it in."""
+    port = instance.fmu.ports[variable]
+    value = instance.values.get(variable, port.start)
+    if port.kind == "Real" and port.display in units.UNITS:
+        return units.show(float(value or 0.0), port.display)
+    return str(value)
