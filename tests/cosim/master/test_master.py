@@ -366,7 +366,7 @@ def test_an_instance_that_ended_fatally_is_neither_reused_nor_freed(
     monkeypatch: pytest.MonkeyPatch, counted: list[str]
 ) -> None:
     # freeing it would be a use after free; the next run takes a new one. Our own outlive it
-    fmu = replace(fmus.of_component("MainShaft"), ours=False)
+    fmu = replace(fmus.of_component("MainShaft"), trusted=False)
     broken = pool.borrow(fmu, "fatal")
     freed: list[str] = []
     monkeypatch.setattr(broken._slave, "freeInstance", lambda: freed.append("freed"))
