@@ -192,7 +192,7 @@ def confirmed(found: Sequence[Found]) -> list[Found]:
     if not doubtful:
         return list(found)
     scene, finest = doubtful[0].scene, CONFIRMED * doubtful[0].scene.fine[-1]
-    traces = fine_runs(scene, [finest // 2, finest])
+    traces = fine_runs(scene, [finest // 2 + 2, finest])  # with points of their own
     better = {id(each.truth): _truth(each.stated, traces) for each in doubtful}  # one for each bound
     return [_with_better(each, better.get(id(each.truth))) for each in found]
 

@@ -29,7 +29,8 @@ def _paragraph(found: Found, path: Path) -> str:
     path.write_text(f"{setting}\n{text}", encoding="utf-8")
     verdict, truth = found.verdict, found.truth
     fault = f"wrong: {found.wrong}" if found.wrong else "error too small"
-    finest = CONFIRMED * found.scene.fine[-1]
+    finest = f"--set steps_per_revolution={CONFIRMED * found.scene.fine[-1]}"
+    finest += " --set grid=uniform" if "grid" in found.setting else ""
     return (
         f"{found.scene.family} {found.scene.number}, {found.claim.label}: {fault}\n"
         f"  with {found.steps:g} steps in a revolution\n"
@@ -37,5 +38,5 @@ def _paragraph(found: Found, path: Path) -> str:
         f"{f' ({verdict.note})' if verdict.note else ''}\n"
         f"  truth {truth.value!r} to {truth.uncertainty:.1g}\n"
         f"  loomfmu run {path} --output build/verdicts/run.h5\n"
-        f"  loomfmu run {path} --output build/verdicts/run.h5 --set steps_per_revolution={finest}"
+        f"  loomfmu run {path} --output build/verdicts/run.h5 {finest}"
     )

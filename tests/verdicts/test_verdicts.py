@@ -1,8 +1,17 @@
 """A few verdicts on random scenes of each family beside the truth; `make verdicts` judges many."""
 
+import math
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 from verdicts.drawing import FAMILIES, MANY, drawn
-from verdicts.judging import confirmed, judged
+from verdicts.figures import statistics
+from verdicts.judging import Found, Truth, confirmed, judged
+from verdicts.listing import listed
+
+from loomfmu import evaluate
+from loomfmu.validation.errors import HEADS
 
 SEED = 5
 SETTINGS = [
@@ -23,3 +32,28 @@ def test_no_verdict_is_wrong_with_usual_steps(family: str) -> None:
 
 def test_the_same_seed_draws_the_same_scenes() -> None:
     assert drawn(1, "ramps", 3) == drawn(1, "ramps", 3) != drawn(2, "ramps", 3)
+
+
+def one_of_a_belt() -> Found:
+    """A verdict that holds, by far."""
+    scene = drawn(SEED, "belt", 0)
+    found = judged(scene._replace(settings=SETTINGS[1:2], fine=[720, MANY]))
+    return next(each for each in found if each.verdict.holds and each.verdict.error < 0.01 * each.truth.scale)
+
+
+def test_a_verdict_on_the_wrong_side_counts_and_is_listed_as_a_scene(tmp_path: Path) -> None:
+    right = replace(one_of_a_belt(), first=True)
+    counts = dict(zip(HEADS[2:], statistics([right]), strict=True))
+    assert (counts["verdicts"], counts["false_holds"], counts["too_small"]) == ("1", "0", "0")
+    away, size = 0.1 * right.truth.scale, right.truth.scale
+    wrong = replace(right, truth=Truth(right.verdict.worst + 2.0 * away, 0.0, -away, size))
+    counts = dict(zip(HEADS[2:], statistics([wrong]), strict=True))
+    assert (counts["false_holds"], counts["wrong_from_1440"], counts["too_small"]) == ("1", "1", "1")
+    unsure = replace(wrong, truth=replace(wrong.truth, uncertainty=3.0 * away))
+    assert unsure.holds is None and not unsure.wrong and not unsure.too_small
+    assert not replace(wrong, verdict=replace(wrong.verdict, decided=False, holds=False)).wrong
+    assert replace(right, verdict=replace(right.verdict, holds=False, worst=math.nan)).wrong == "FAILS"
+    (text,) = listed([wrong], tmp_path)
+    (file,) = tmp_path.iterdir()
+    assert f"loomfmu run {file}" in text and "wrong: holds" in text
+    assert evaluate(file).claims == (wrong.verdict,)
