@@ -317,7 +317,7 @@ def test_export_and_run_by_the_command(
     # its FMUs are files: they run in a child process
     assert main(["run", "deep/belt.ssp", "--set", "shaft.speed=500rpm"]) == 0
     assert "500 rev/min: 2 revolutions, 180 steps" in capfd.readouterr().out
-    with Trace("results/belt.h5") as trace:
+    with Trace("results/belt_shaft.speed=500rpm.h5") as trace:
         assert trace["belt.guide_clearance"][-1] > 0.3e-3
 
 
