@@ -164,7 +164,9 @@ class ClaimItem(pytest.Item):
         outcome = self.parent.outcome
         if isinstance(outcome, Exception):
             raise outcome
-        if outcome.claims and not outcome.claims[self.number]:
+        if not outcome.claims:
+            outcome.check_end()
+        elif not outcome.claims[self.number]:
             raise ClaimFailed(self.parent.failure(outcome.claims[self.number]))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:

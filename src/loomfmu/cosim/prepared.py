@@ -20,7 +20,7 @@ from .importing import pool
 from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted
-from .planning.plan import InMemory, Stepping, build_needed, ended_text, explained, record
+from .planning.plan import InMemory, Stepping, build_needed, early_end, explained, record
 from .planning.requested import check_bounds, claims_of, judged_by, recorded, shaft_angle, with_rates
 from .planning.windows import window_grid
 from .reading import check_set, checked
@@ -96,7 +96,7 @@ class Pattern:
         count = len(self.claims)
         return Evaluation(
             scene, verdicts[:count], (*scene.notes, *found.warnings), explained(found.plan), found.steps,
-            found.recording, verdicts[count:], ended=ended_text(found.ended), chosen=chosen,
+            found.recording, verdicts[count:], early=found.early, chosen=chosen,
         )  # fmt: skip
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
@@ -141,21 +141,21 @@ class Pattern:
                 if master.interrupted.value:
                     raise Interrupted
             # before coarser runs, which may be stepped by the same master
-            steps, ended = master.steps, ended_text(master.ended)
+            steps, early = master.steps, early_end(plan, master.ended)
             warnings = (*scene.notes, *master.warnings())
             # while the instances are still there: one that crashes when it is freed takes nothing with it
             if coarser is not None:
-                verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
+                verdicts, trace = finish(partial(self._estimated, coarser), writer, path, early)
         if coarser is None:
             with kept(writer, path):
                 try:
                     coarser = self._estimates.coarser(scene, plan.grid, everything)
                 except KeyboardInterrupt:
                     raise Interrupted from None
-            verdicts, trace = finish(partial(self._estimated, coarser), writer, path, ended)
+            verdicts, trace = finish(partial(self._estimated, coarser), writer, path, early)
         return Result(
             scene, verdicts, warnings, explained(plan), steps, path, trace,
-            ended=ended, seconds=seconds, chosen=chosen, replaced=replaced,
+            early=early, seconds=seconds, chosen=chosen, replaced=replaced,
         )  # fmt: skip
 
 

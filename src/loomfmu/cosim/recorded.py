@@ -11,7 +11,7 @@ from .. import printed
 from ..errors import LoomfmuError, why
 from ..files import cannot_write, check_target
 from ..progress import progress as progress_bar
-from ..traces import PARTIAL, TRACE, Channel, Trace, TraceWriter, Verdict, partial_of
+from ..traces import PARTIAL, TRACE, Channel, Early, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
 from ..traces.places import abandoned
 from .master.master import Interrupted
@@ -65,15 +65,19 @@ def kept(writer: TraceWriter, path: Path) -> Iterator[None]:
 
 
 def finish(
-    judge: Callable[[Trace], tuple[Verdict, ...]], writer: TraceWriter, path: Path, ended: str
+    judge: Callable[[Trace], tuple[Verdict, ...]], writer: TraceWriter, path: Path, early: Early
 ) -> tuple[tuple[Verdict, ...], Trace]:
-    """Judge the trace, store the verdicts with it and give it its final name."""
+    """Judge the trace, store the verdicts with it and give it its final name.
+
+    `early` is how an FMU ended the run early, if one did.
+    """
     try:
         writer.seal()
         with Trace(writer.partial) as trace:
             trace.rows = writer.rows  # asking every signal of the file takes its time
+            trace.cut_short = early.cut_short
             verdicts = judge(trace)
-        return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], ended)
+        return verdicts, writer.complete([verdict.as_dict() for verdict in verdicts], early)
     except OSError as error:
         raise cannot_write(path, error) from None
     except LoomfmuError as error:

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .. import notebook
-from ..traces import Recording, Trace, Verdict
+from ..errors import LoomfmuError
+from ..traces import Early, Recording, Trace, Verdict
 from ..traces.verdict import HEADINGS, outcome
 from .scenes.headings import heading
 from .scenes.scene import Scene
@@ -14,9 +15,11 @@ from .scenes.scene import Scene
 class Judged:
     """A finished run: its verdicts, its warnings, and what it skipped. It is true if all claims hold.
 
+    No run holds that an FMU cut short, though the scene does not allow that with `may_end`.
+
     `skipped` lists what was not run or not read, and why; `steps` is the number of communication steps.
-    `ended` says which FMU ended the run early, and when; it is empty if none did. `chosen` says which steps
-    were chosen for the scene's `accuracy`; it is empty if it has none.
+    `early` says how an FMU ended the run early. `chosen` says which steps were chosen for the scene's
+    `accuracy`; it is empty if it has none.
     """
 
     scene: Scene
@@ -24,13 +27,23 @@ class Judged:
     warnings: tuple[str, ...]
     skipped: tuple[str, ...]
     steps: int
-    ended: str = field(default="", kw_only=True)
+    early: Early = field(default=Early(), kw_only=True)
     chosen: str = field(default="", kw_only=True)
 
     @property
     def holds(self) -> bool:
-        """Whether every claim holds."""
-        return all(self.claims)
+        """Whether every claim holds, of a run that was not cut short."""
+        return all(self.claims) and not self.early.cut_short
+
+    @property
+    def ended(self) -> str:
+        """Which FMU ended the run early, and when; empty if none did."""
+        return self.early.ended_by
+
+    def check_end(self) -> None:
+        """Raise LoomfmuError if an FMU cut the run short: what is left has no value."""
+        if self.early.cut_short:
+            raise LoomfmuError(f"{self.scene.name}: {self.early.cut_short}")
 
     def __bool__(self) -> bool:
         return self.holds

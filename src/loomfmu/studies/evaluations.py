@@ -42,6 +42,7 @@ class Evaluations:
             settings |= span.setting(value)
         try:
             found = self._loom.evaluate(settings, errors=errors)
+            found.check_end()
         except LoomfmuError as error:
             raise self._named(values, str(error)) from None
         if not self._verdicts:

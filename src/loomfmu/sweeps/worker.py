@@ -157,6 +157,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
     """The result of one row and the verdicts on it."""
     try:
         found = loom.evaluate(settings, errors=job.errors)
+        found.check_end()
         values = [found.trace[signal][-1].item() for signal in job.values]
         values += [_finite(each.worst) for each in found.measured]
     except (OSError, MemoryError):  # of the machine, not of the row

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from .chunks import ROWS
 from .kinds import PARTIAL, TRACE
 from .reader import Trace
-from .signals import Channel, Column, Recording, Signals
+from .signals import Channel, Column, Early, Recording, Signals
 from .verdict import Verdict
 from .writer import TraceWriter, partial_of
 
@@ -20,6 +20,7 @@ __all__ = [
     "Channel",
     "Column",
     "Comparison",
+    "Early",
     "Recording",
     "Signals",
     "Trace",

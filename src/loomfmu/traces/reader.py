@@ -205,6 +205,11 @@ class Trace(Signals):
         """Which FMU ended the run before its time, and when; empty for one that went to its end."""
         return str(self.attributes.get("ended_by", ""))
 
+    @cached_property
+    def cut_short(self) -> str:
+        """How far the run came, if an FMU ended it early though the scene does not allow that."""
+        return str(self.attributes.get("cut_short", ""))
+
     @property
     def judged(self) -> bool:
         """Whether the verdicts on its claims are stored with the run: it went to its end."""

@@ -55,6 +55,15 @@ class Column(NamedTuple):
         return cls(reals, reals.ctypes.data)
 
 
+class Early(NamedTuple):
+    """How an FMU ended a run early: which one and when, and, where the scene does not allow that, how far the
+    run came. Texts are empty where there is nothing to say.
+    """
+
+    ended_by: str = ""
+    cut_short: str = ""
+
+
 class Signals(ABC):
     """Recorded signals of a run: `signals["belt.margin"]` are the signal's values, in SI."""
 
@@ -78,6 +87,11 @@ class Signals(ABC):
     @abstractmethod
     def shaft_angle(self) -> Floats:
         """Shaft angle of the samples, not wrapped [rad]."""
+
+    @cached_property
+    def cut_short(self) -> str:
+        """How far the run came, if an FMU ended it early though the scene does not allow that."""
+        return ""
 
     @abstractmethod
     def unit(self, signal: str) -> str:

@@ -24,11 +24,12 @@ from .edit import edited
 from .layout import BESIDE
 from .places import abandoned, mark, replace
 from .reader import Trace
-from .signals import Channel, Floats, Integers
+from .signals import Channel, Early, Floats, Integers
 
 SOFTWARE = f"loomfmu {__version__}"
 SPARE = 65536  # bytes beyond what is reckoned with, for HDF5's own book-keeping
 PER_ATTRIBUTE = 128  # bytes of a name and of what HDF5 says of an attribute
+WHOLE = Early()  # a run that went to its end
 PER_DATASET = 4096  # bytes of book-keeping for a dataset, in its header or for a block
 
 
@@ -147,13 +148,13 @@ class TraceWriter:
         """Close the file under its provisional name: any reader can open it now."""
         self._file.close()
 
-    def complete(self, verdicts: Sequence[dict[str, Any]], ended_by: str = "") -> Trace:
-        """Give the file its verdicts, who ended the run before its time, and its final name; the trace.
+    def complete(self, verdicts: Sequence[dict[str, Any]], early: Early = WHOLE) -> Trace:
+        """Give the file its verdicts, how an FMU ended the run `early`, and its final name; the trace.
 
         Another run may give its own file that name at any time: each is whole, and the last one stays.
         """
         self.seal()
-        ended = {"ended_by": ended_by} if ended_by else {}
+        ended = {name: text for name, text in early._asdict().items() if text}
         self._annotate(
             {"claims": json.dumps(verdicts), **ended, "status": "complete"}, self._claimed(verdicts)
         )

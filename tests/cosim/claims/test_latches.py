@@ -11,7 +11,7 @@ from loomfmu.cosim.scenes.scene import parse
 from loomfmu.traces import Channel, TraceWriter
 from loomfmu.variables import Beside
 
-TIME = np.linspace(0.0, 1.0, 21)  # with an angle of 36 deg in 1 s, a sample at every 1.8 deg
+TIME = np.linspace(0.0, 1.0, 21)  # one turn in 1 s, a sample at every 18 deg
 TURN = 2.0 * np.pi
 
 
@@ -34,9 +34,9 @@ def recorded(directory: Path, *dips: tuple[float, float], latch: bool = True, er
         Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 4),
     ]
     off = np.where(TIME < 0.5, 0.1 * error, error)
-    reals = np.stack([x, low, off, 0.1 * TURN * TIME, np.full(len(TIME), 0.1 * TURN)], axis=1)
+    reals = np.stack([x, low, off, TURN * TIME, np.full(len(TIME), TURN)], axis=1)
     writer = TraceWriter(directory / "held.h5", {"title": "held", "software": "test"}, channels, {})
-    writer.append(TIME, 0.1 * TURN * TIME, reals, np.empty((len(TIME), 0), dtype="i4"))
+    writer.append(TIME, TURN * TIME, reals, np.empty((len(TIME), 0), dtype="i4"))
     writer.complete([])
     return Trace(directory / "held.h5")
 
@@ -74,12 +74,12 @@ def test_without_it_only_the_samples_are_known(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("window", "worst", "possible"),
     [
-        (["0 deg", "12.6 deg"], 1.0, 1.0),  # before the first dip
-        (["14.4 deg", "20 deg"], 1.0, 0.5),  # between both: no deeper than the first one
-        (["12.6 deg", "14.4 deg"], 0.5, 0.5),  # from the sample before it to the one after
-        (["9 deg", "36 deg"], 0.1, 0.1),  # both
-        (["9 deg", "29 deg"], 0.5, 0.1),  # an edge between the samples about the second one
-        (["30 deg", "36 deg"], 1.0, 0.1),
+        (["0 deg", "126 deg"], 1.0, 1.0),  # before the first dip
+        (["144 deg", "200 deg"], 1.0, 0.5),  # between both: no deeper than the first one
+        (["126 deg", "144 deg"], 0.5, 0.5),  # from the sample before it to the one after
+        (["90 deg", "360 deg"], 0.1, 0.1),  # both
+        (["90 deg", "290 deg"], 0.5, 0.1),  # an edge between the samples about the second one
+        (["300 deg", "360 deg"], 1.0, 0.1),
     ],
 )
 def test_in_a_window_what_is_held_bounds_the_signal(
@@ -98,8 +98,8 @@ def test_what_a_signal_may_be_off_by_is_stated_beside_it(tmp_path: Path) -> None
     trace = recorded(tmp_path, (0.3, 0.5), error=0.01)
     assert trace.error("a.x") == "a.off"
     assert trace.error("a.low") is None
-    assert left(trace, ["0 deg", "14 deg"]) == pytest.approx(0.001)
-    assert left(trace, ["20 deg", "36 deg"]) == pytest.approx(0.01)
+    assert left(trace, ["0 deg", "140 deg"]) == pytest.approx(0.001)
+    assert left(trace, ["200 deg", "360 deg"]) == pytest.approx(0.01)
     assert left(trace) == pytest.approx(0.001)
 
 

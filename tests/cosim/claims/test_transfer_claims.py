@@ -145,8 +145,8 @@ def test_the_relative_speed_is_that_at_the_ends_of_the_hand_over(late: float) ->
 
 def test_heads_that_never_meet_have_no_speed_to_judge() -> None:
     found = judged(met(turns=0.3), "transfer_speed", at_most="100 m/s")
-    assert not found
-    assert found.note == "the heads never overlap by what the hooks need in this run"
+    assert found.word == "undecided"
+    assert found.note.endswith("the heads never overlap by what the hooks need in this run")
 
 
 def test_a_window_is_needed_and_in_degrees() -> None:

@@ -46,7 +46,8 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit.
+    may be off by with any steps, in its unit. `final` says whether it fails once its bound is passed,
+    whatever the rest of a run would show.
     """
 
     name: str = argument(Name(), "")
@@ -58,6 +59,7 @@ class Claim(ABC):
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
+    final: ClassVar[bool] = True
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)
@@ -88,6 +90,13 @@ class Claim(ABC):
     def judge(self, trace: Signals) -> Verdict:
         """Whether it holds."""
 
+    def unseen(self, trace: Signals) -> str:
+        """What the run does not show of all that it must to be judged; an empty text if it shows that.
+
+        A claim on a loom takes a whole revolution.
+        """
+        return shaft.short(trace)
+
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
         """What it may be off by whatever the steps, as a signal beside the one that is judged says."""
         return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0
@@ -107,9 +116,10 @@ class Claim(ABC):
     ) -> Verdict:  # fmt: skip
         """The verdict, with the place on the shaft at its time.
 
-        Unless `holds` says so, the worst value decides; none, NaN, fails. A claim that holds as far as its
-        signal is known is undecided where the signal is `unknown` in some stretches of time, by default those
-        of the whole run, where the samples are too far apart, and where a note is a `Doubt`.
+        Unless `holds` says so, the worst value decides. Without one, NaN, a claim is undecided. So is one
+        that holds as far as its signal is known, where this is `unknown` in some stretches of time, by
+        default those of the whole run, where the samples are too far apart, and where a note is a `Doubt`;
+        and one that does not fail, or may not in the end, where the run was cut short or shows too little.
         """
         turning = shaft.angle(trace)
         if turning is not None and shaft.too_coarse(turning):
@@ -119,8 +129,13 @@ class Claim(ABC):
         unknown = gaps(trace, signal) if unknown is None else unknown
         if unknown:
             notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
-        decided = not (holds and any(isinstance(note, Doubt) for note in notes))
-        if unknown and not decided:
+        short = trace.cut_short or self.unseen(trace)
+        open_ = bool(short) and (holds or not self.final)
+        doubted = holds and any(isinstance(note, Doubt) for note in notes)
+        decided = not (math.isnan(worst) or doubted or open_)
+        if not decided:
+            notes = (short, *notes)
+        if not decided and (unknown or open_) and not math.isnan(worst):
             worst, time = math.nan, math.nan
         angle, revolution = math.nan, None
         if turning is not None and math.isfinite(time):

@@ -53,6 +53,9 @@ class SpeedFluctuation(Claim):
     def signals(self, instances: Iterable[str]) -> list[str]:
         return ["shaft.angle", "shaft.velocity"]
 
+    def unseen(self, trace: Signals) -> str:
+        return ""  # each revolution is judged by itself, as far as there is one
+
     def judge(self, trace: Signals) -> Verdict:
         text, signal = "speed fluctuation", "shaft.velocity"
         velocity, turning = Motion(trace, signal), shaft.needed_angle(trace)
@@ -97,6 +100,9 @@ class EnergyBalance(Claim):
         books = ("velocity", "acceleration", "motor_work", "load_work", "other_work", "kinetic_energy")
         of_loads = (f"*.{each}" for each in (WORK, TORQUE, PASSED))
         return ["shaft.angle", *(f"shaft.{each}" for each in books), *of_loads]
+
+    def unseen(self, trace: Signals) -> str:
+        return ""  # it judges the books of the run, however long that is
 
     def judge(self, trace: Signals) -> Verdict:
         loads = _loads(trace)

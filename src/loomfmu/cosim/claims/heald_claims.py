@@ -51,7 +51,7 @@ class _Span(_Lifted, kind=False):
 
     at_least: float = argument(Quantity("rad", "deg", usual=1.5, low=0.0))
 
-    unit, grid = ANGLE, LANDINGS
+    unit, grid, final = ANGLE, LANDINGS, False  # a carrier may still come to an end of its stroke
     instead: ClassVar[str] = 'lifted_by = "frame" judges the drive alone'
     both_ways: ClassVar[bool] = False  # whether a carrier that swings as far beyond the end is not near it
 
@@ -179,8 +179,6 @@ class DwellContains(_Lifted):
         if times:
             (worst, time), *others = [self._farthest(trace, lift, times) for lift in motions]
             notes += [f"its frame: {100 * away:.7g} %" for away, _time in others]
-        else:
-            notes = ["the run never reaches these angles"]
         text = f"dwell at {angles_text(self.angles)}"
         return self.verdict(trace, text, signals[0], self.tolerance, worst, time, *notes)
 
@@ -190,6 +188,10 @@ class DwellContains(_Lifted):
         there = [lift.at(time) for time in times]
         lowest, time = first_lowest([-min(abs(each), abs(stroke - each)) / stroke for each in there], times)
         return -lowest, time
+
+    def unseen(self, trace: Signals) -> str:
+        missing = [angle for angle in self.angles if not shaft.times_at(trace, angle)]
+        return f"the run never reaches {angles_text(missing)}" if missing else ""
 
     def landings(self, trace: Signals) -> Landings:
         return Landings([time for angle in self.angles for time in shaft.times_at(trace, angle)], [])

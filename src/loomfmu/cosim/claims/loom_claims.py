@@ -31,8 +31,11 @@ class _InShed(Claim, kind=False):
     def _travel(self, trace: Signals) -> Motion:
         return motion_of(trace, f"{self.weft}.travel")
 
-    def _idle(self, trace: Signals) -> float:
-        return trace.parameter(f"{self.belt}.idle_travel")
+    def _in_shed(self, trace: Signals) -> list[Stretch]:
+        return self._travel(trace).beyond(trace.parameter(f"{self.belt}.idle_travel"), 1.0)
+
+    def unseen(self, trace: Signals) -> str:
+        return "" if any(each.whole for each in self._in_shed(trace)) else shaft.short(trace)
 
 
 class RapierInOpenShed(_InShed):
@@ -61,7 +64,7 @@ class RapierInOpenShed(_InShed):
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
         check_lifted_by(self.lifted_by, ())
         text, limit, travel = "smallest shed opening at the head", self.head_height, self._travel(trace)
-        in_shed = travel.beyond(self._idle(trace), 1.0)
+        in_shed = self._in_shed(trace)
         warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}
         if not in_shed:
             signal = _opening(frames[0], warps[frames[0]])
@@ -108,7 +111,7 @@ class ReedClearOfRapier(_InShed):
             f"{self.reed}.front_limit - {self.reed}.position",
         )
         travel, position = self._travel(trace), motion_of(trace, f"{self.reed}.position")
-        in_shed = travel.beyond(self._idle(trace), 1.0)
+        in_shed = self._in_shed(trace)
         if not in_shed:
             return self.verdict(trace, text, signal, self.clearance, math.nan, math.nan, NEVER, travel.note)
         foremost = lowest(position, -1.0, in_shed)
@@ -148,11 +151,14 @@ class TransferInTime(_Transfer):
         overlap, needed = self._overlap(trace)
         found = [lowest(overlap, -1.0, [each]) for each in shaft.passes(trace, self.window)]
         if not found:
-            note = "the run never passes through the whole window"
-            return self.verdict(trace, text, signal, needed, math.nan, math.nan, overlap.note, note)
+            nothing = math.nan, math.nan, overlap.note, shaft.UNPASSED
+            return self.verdict(trace, text, signal, needed, *nothing)
         worst, time = first_lowest([each.value for each in found], [each.time for each in found])
         notes = (overlap.note, *(each.note for each in found), *self._hand_over(trace, overlap, needed, time))
         return self.verdict(trace, text, signal, needed, worst, time, *notes)
+
+    def unseen(self, trace: Signals) -> str:
+        return shaft.unpassed(trace, self.window)
 
     def _hand_over(self, trace: Signals, overlap: Motion, needed: float, time: float) -> list[str]:
         """A note on the shaft angles between which the heads overlap enough about a time."""
@@ -177,6 +183,10 @@ class TransferSpeed(_Transfer):
 
     needs = ("transfer.overlap", "transfer.closing_velocity")
     sense, unit = AT_MOST, VELOCITY
+
+    def unseen(self, trace: Signals) -> str:
+        overlap, needed = self._overlap(trace)
+        return "" if any(each.whole for each in overlap.beyond(needed, 1.0)) else shaft.short(trace)
 
     def judge(self, trace: Signals) -> Verdict:
         text, signal = "highest relative speed of the heads", f"{self.transfer}.closing_velocity"
@@ -206,6 +216,7 @@ class NipHolds(Claim):
     at_most: float = argument(Quantity("1", low=0.0), 3.0)
 
     needs = ("roller.holding_force", "roller.drafting_force")
+    final = False
 
     def judge(self, trace: Signals) -> Verdict:
         drafting = motion_of(trace, f"{self.roller}.drafting_force")

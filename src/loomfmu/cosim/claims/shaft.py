@@ -12,6 +12,7 @@ from .curves import SAME, Motion, Stretch, motion_of
 # Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest
 # margin of the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all.
 FARTHEST = TURN / 20.0
+UNPASSED = "the run never passes through the whole window"
 STANDS = 1e-9  # of a revolution: angles that are closer are one where a run begins or ends
 
 
@@ -23,6 +24,15 @@ def angle(trace: Signals) -> Motion | None:
 def too_coarse(turning: Motion) -> bool:
     """Whether the shaft turns so far between two samples that they do not tell how a loom moves."""
     return turning.longest > FARTHEST * (1.0 + SAME)
+
+
+def short(trace: Signals) -> str:
+    """A note on a run in which the shaft turns less than a revolution; empty for others."""
+    turning = angle(trace)
+    turned = math.inf if turning is None else float(np.ptp(turning.values[0])) / TURN
+    if turned >= 1.0 - STANDS:
+        return ""
+    return f"the shaft turns by only {turned:.3g} revolutions, and the claim takes a whole one"
 
 
 def place(turning: Motion, time: float) -> tuple[float, int]:
@@ -62,6 +72,11 @@ def passes(trace: Signals, window: Window) -> list[Stretch]:
     within = times_within(trace, window)
     edges = {each.start for each in within if each.start == each.end}
     return [each for each in within if each.start < each.end and {each.start, each.end} <= edges]
+
+
+def unpassed(trace: Signals, window: Window) -> str:
+    """A note on a run that shows a window of the revolution only in part; empty for others."""
+    return "" if not short(trace) or passes(trace, window) else UNPASSED
 
 
 def times_within(trace: Signals, window: Window) -> list[Stretch]:

@@ -43,8 +43,6 @@ class Bounded(Claim, kind=False):
         (within, unknown), text = self._known(trace), self.text
         text += " at the samples" * self.at_samples + (f" {self.window.words}" if self.window else "")
         found, note = self._extreme(trace, within)
-        if within == [] and not unknown:
-            note = "the run never enters that window"
         worst, floor = self.sense * found.value, self.sense * limit
         nowhere = within == [] and bool(unknown)
         verdict = self.verdict(
@@ -66,6 +64,9 @@ class Bounded(Claim, kind=False):
         if self.at_samples:
             return found._replace(possible=found.sure), ""
         return latched(trace, self.signal, self.sense, found, within)
+
+    def unseen(self, trace: Signals) -> str:
+        return shaft.short(trace) if self.window is None else shaft.unpassed(trace, self.window)
 
     def within(self, trace: Signals) -> list[Stretch] | None:
         return self._known(trace)[0]

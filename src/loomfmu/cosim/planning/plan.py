@@ -10,11 +10,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ... import printed
-from ...traces import ROWS, Channel, Recording
+from ...traces import ROWS, Channel, Early, Recording
 from ..importing import fmus
 from ..importing.slave import Ended
 from ..master.grid import Grid, uniform
 from ..master.master import Integers, Interrupted, Master, Reals
+from ..scenes.keys import MAY_END
 from ..scenes.scene import Scene
 from .pruning import Effective, Pruned, prune
 from .requested import beside_of, output_port
@@ -86,7 +87,9 @@ class Stepping:
                 record(master, recording, lambda _step: None, grid.steps + 1)
             except Interrupted:
                 raise KeyboardInterrupt("interrupted") from None
-            return InMemory(recording, plan, master.steps, master.ended, master.warnings())
+            early = early_end(plan, master.ended)
+            recording.cut_short = early.cut_short
+            return InMemory(recording, plan, master.steps, early, master.warnings())
 
 
 def build_needed(scene: Scene, *, report: bool = False) -> None:
@@ -141,18 +144,22 @@ def record(master: Master, keeper: Keeper, progress: Callable[[int], None], rows
 
 
 class InMemory(NamedTuple):
-    """A run that is kept in memory: how it was stepped, how far, and the warnings of its FMUs."""
+    """A run that is kept in memory: how it was stepped, how far, how it ended early, warnings of its FMUs."""
 
     recording: Recording
     plan: Plan
     steps: int
-    ended: Ended | None
+    early: Early
     warnings: list[str]
 
 
-def ended_text(ended: Ended | None) -> str:
-    """Which FMU ended the run early, and when."""
-    return f"{ended.name} at {ended.time:.9g} s" if ended else ""
+def early_end(plan: Plan, ended: Ended | None) -> Early:
+    """How an FMU ended a run early, if one did."""
+    if ended is None:
+        return Early()
+    share = f"{100.0 * ended.time / plan.grid.stop_time:.3g} %"
+    short = f"the run ended at {share} of its length, by {ended.name}; set {MAY_END} = true if it may"
+    return Early(f"{ended.name} at {ended.time:.9g} s", "" if plan.scene.may_end else short)
 
 
 def explained(plan: Plan) -> tuple[str, ...]:

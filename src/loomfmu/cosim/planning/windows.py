@@ -96,7 +96,7 @@ def _scouted(
     places, scouted = Places(period(scene), longest, kinks(scene)), 0
     for _ in range(SCOUTS):
         points = _merged(_equal(scene, coarse), places)
-        recording, plan, steps, _ended, _warnings = in_memory(
+        recording, plan, steps, _early, _warnings = in_memory(
             scene, _watched(scene, signals), chosen(scene, points)
         )
         scouted += len(plan.pruned.scene.instances) * steps

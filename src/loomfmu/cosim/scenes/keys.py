@@ -9,9 +9,10 @@ from ...own.declared import ISOLATED
 
 COARSE = "coarse_steps_per_revolution"
 ACCURACY = "accuracy"  # which chooses the steps
+MAY_END = "may_end"  # whether an FMU may end the run early
 TIMES = ("revolutions", "steps_per_revolution", "duration", "step")
 # keys of the scene itself that can be set beside its times
-WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, "step_timeout", "run_timeout")
+WHOLE = (ACCURACY, "grid", COARSE, "coupling", ISOLATED, MAY_END, "step_timeout", "run_timeout")
 KEYS = ("title", "description", *TIMES, *WHOLE, "record", "loom", "wires", "inputs", "claims", "tolerances")
 LAGGED, ITERATED = COUPLINGS = ("lagged", "iterated")
 UNIFORM, WINDOWS = GRIDS = ("uniform", "windows")

@@ -16,7 +16,7 @@ from .drives import Drive
 from .graph import Wire
 from .instance_tables import instance, instance_tables, own_texts
 from .instances import Instance
-from .keys import COARSE, GRIDS, KEYS, LAGGED, UNIFORM, check_kind, replaced
+from .keys import COARSE, GRIDS, KEYS, LAGGED, MAY_END, UNIFORM, check_kind, replaced
 from .overrides import components, overridden, override, override_weave
 from .tables import choice, number, toml, truth
 from .tables import text as text_of
@@ -36,7 +36,8 @@ class Scene:
     differ from it, `notes` what the user is to be warned of. `tolerances` are the ends between which values
     may lie, as the scene states them. `isolated` says whether FMUs run in processes of their own; by default
     third-party ones do.
-    A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s].
+    A call of such an FMU may take `step_timeout`, and a whole run `run_timeout` [s]. Where an FMU `may_end`
+    the run early, claims are judged on what there is.
     """
 
     title: str
@@ -58,6 +59,7 @@ class Scene:
     coarse_steps_per_revolution: int = 24
     accuracy: float | None = None
     isolated: bool | None = None
+    may_end: bool = False
     step_timeout: float = 60.0
     run_timeout: float = 86400.0
     file: Path | None = None
@@ -200,6 +202,7 @@ def assemble(
         ),
         accuracy=settings.accuracy(tables, times),
         isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
+        may_end=truth(tables.get(MAY_END, Scene.may_end), MAY_END),
         step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
         run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
         notes=tuple(notes.of_scene(instances, wires, drives, times.periods)),

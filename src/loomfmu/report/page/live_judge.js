@@ -4,7 +4,9 @@
 loomfmu.judge = run => {
   const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME), EMPTY = 1e-12;
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
+  const UNPASSED = "the run never passes through the whole window";
   const NEVER = "the head never enters the shed in this run";
+  const NOT_FINAL = ["dwell", "clear_shed", "nip_holds"]; // of which the rest of a revolution may mend a failure
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
   const { time } = run, last = values => values[values.length - 1], end = last(time);
 
@@ -13,7 +15,7 @@ loomfmu.judge = run => {
   const motion = (name, rates) => loomfmu.motionOf(run, name, rates);
   const { reached, latched, offBy } = loomfmu.latches(run, motion);
   const unknown = note => ({ holds: null, note });
-  const never = (bound, ...notes) => ({ holds: false, worst: NaN, bound, notes }); // a claim without a value fails
+  const never = (...notes) => unknown(notes.filter(Boolean).join("; ")); // a claim without a value is not decided
   const shown = (value, factor, unit) => `${loomfmu.general(value * factor)} ${unit}`;
   const degrees = angle => shown(angle, 1 / DEGREE, "deg"), mm = length => shown(length, 1e3, "mm");
   const byTime = (one, other) => one.time - other.time;
@@ -51,6 +53,12 @@ loomfmu.judge = run => {
 
   const angleAt = when => { const at = motion("shaft.angle").at(when); return at - TURN * Math.floor(at / TURN); };
   const turned = ({ start, end: stop }) => Math.abs(motion("shaft.angle").at(stop) - motion("shaft.angle").at(start));
+
+  /* The passes of the shaft through a window, without those that the run cuts off. */
+  function passes(window) {
+    const within = timesWithin(window), edges = new Set(within.filter(each => each.start === each.end).map(each => each.start));
+    return within.filter(each => each.start < each.end && edges.has(each.start) && edges.has(each.end));
+  }
 
   /* Whether a signal is not known somewhere, or in some stretches of time: a signal of its own says so. */
   function gaps(signal, stretches = [{ start: time[0], end }]) {
@@ -137,7 +145,7 @@ loomfmu.judge = run => {
     const notes = gone ? [`springs and warp keep the carrier ${gone.off}; ${instead}`, lifts[0].note] : found.notes;
     if (its && Number.isFinite(its.value)) notes.push(`its frame: ${degrees(its.value)}`);
     const { value, time: when } = gone || found;
-    return Number.isNaN(value) ? never(claim.at_least, ...notes) : { worst: value, bound: claim.at_least, time: when, notes };
+    return Number.isNaN(value) ? never(...notes) : { worst: value, bound: claim.at_least, time: when, notes };
   }
 
   // ---- the head in the shed, and the transfer
@@ -165,7 +173,7 @@ loomfmu.judge = run => {
     if (claim.at_samples) return unknown(`it is judged at the samples of a run; ${NOT_HERE}`);
     const bound = typeof claim.bound === "string" ? run.parameter(claim.bound) : claim.bound;
     const stretches = claim.window ? timesWithin(claim.window) : undefined;
-    if (stretches && !stretches.length) return never(bound, "the run never enters that window");
+    if (stretches && !stretches.length) return never(UNPASSED);
     return extreme(claim.signal, bound, claim.sense, stretches);
   };
   const judges = {
@@ -204,7 +212,7 @@ loomfmu.judge = run => {
         const value = (high.value - low.value) * (stop - times[k]) / TURN;
         return { value, time: low.time, coarse: low.coarse || high.coarse };
       });
-      if (!found.length) return never(claim.at_most, velocity.note, "the run has no whole revolution to judge");
+      if (!found.length) return never(velocity.note, "the run has no whole revolution to judge");
       if (found.some(each => each.coarse)) return unknown(COARSE);
       const most = found.reduce((one, other) => other.value > one.value ? other : one);
       return { worst: most.value, bound: claim.at_most, time: most.time, notes: [velocity.note] };
@@ -218,7 +226,8 @@ loomfmu.judge = run => {
     },
     dwell_contains: claim => {
       const times = claim.angles.flatMap(timesAt), stroke = run.parameter(`${claim.heald}.stroke`);
-      if (!times.length) return never(claim.tolerance, "the run never reaches these angles");
+      const missing = claim.angles.filter(angle => !timesAt(angle).length);
+      if (missing.length) return never(`the run never reaches ${missing.map(degrees).join(", ")}`);
       const lifts = [...new Set([claim.lifts[claim.heald], `${claim.heald}.lift`])].map(name => motion(name));
       const [own, ...others] = lifts.map(lift => firstLowest(times.map(when => {
         const value = lift.at(when);
@@ -229,7 +238,7 @@ loomfmu.judge = run => {
     },
     rapier_in_open_shed: claim => {
       const [travel, stretches] = inShed(claim), frames = Object.keys(claim.lifts);
-      if (!stretches.length) return never(claim.head_height, NEVER, travel.note);
+      if (!stretches.length) return never(NEVER, travel.note);
       const found = opening(claim.lifts, stretches), own = Object.fromEntries(frames.map(frame => [frame, `${frame}.lift`]));
       const carried = frames.some(frame => claim.lifts[frame] !== own[frame]);
       const alone = carried ? [`the frames: ${mm(opening(own, stretches).value)}`] : [];
@@ -239,18 +248,15 @@ loomfmu.judge = run => {
     },
     reed_clear_of_rapier: claim => {
       const [travel, stretches] = inShed(claim), position = motion(`${claim.reed}.position`);
-      if (!stretches.length) return never(claim.clearance, NEVER, travel.note);
+      if (!stretches.length) return never(NEVER, travel.note);
       const foremost = position.lowest(-1, stretches);
       if (foremost.coarse) return unknown(COARSE);
       return { worst: last(run.signal(`${claim.reed}.front_limit`)) - foremost.value, bound: claim.clearance,
                time: foremost.time, notes: [travel.note, position.note] };
     },
     transfer_in_time: claim => {
-      const stretches = timesWithin(claim.window), [overlap, bound] = overlapping(claim);
-      const edges = new Set(stretches.filter(each => each.start === each.end).map(each => each.start));
-      const found = stretches.filter(each => each.start < each.end && edges.has(each.start) && edges.has(each.end))
-        .map(each => overlap.lowest(-1, [each]));
-      if (!found.length) return never(bound, overlap.note, "the run never passes through the whole window");
+      const [overlap, bound] = overlapping(claim), found = passes(claim.window).map(each => overlap.lowest(-1, [each]));
+      if (!found.length) return never(overlap.note, UNPASSED);
       if (found.some(each => each.coarse)) return unknown(COARSE);
       const { value, time: when } = firstLowest(found);
       const during = overlap.beyond(bound, 1).filter(each => each.whole && each.start <= when && when <= each.end)
@@ -260,7 +266,7 @@ loomfmu.judge = run => {
     transfer_speed: claim => {
       const [overlap, needed] = overlapping(claim), closing = motion(`${claim.transfer}.closing_velocity`);
       const during = overlap.beyond(needed, 1);
-      if (!during.length) return never(claim.at_most, overlap.note, "the heads never overlap by what the hooks need in this run");
+      if (!during.length) return never(overlap.note, "the heads never overlap by what the hooks need in this run");
       const [low, high] = [1, -1].map(sign => closing.lowest(sign, during));
       if (low.coarse || high.coarse) return unknown(COARSE);
       const found = Math.abs(high.value) > Math.abs(low.value) ? high : low;
@@ -269,7 +275,7 @@ loomfmu.judge = run => {
     nip_holds: claim => {
       const [drafting, holding] = ["drafting_force", "holding_force"].map(name => motion(`${claim.roller}.${name}`));
       const most = drafting.lowest(-1);
-      if (!(most.value > 0)) return never(claim.at_least, "no fibres are drafted in this run");
+      if (!(most.value > 0)) return never("no fibres are drafted in this run");
       const held = holding.lowest(-1, drafting.beyond(0, 1)), worst = held.value / most.value;
       if (most.coarse || held.coarse) return unknown(COARSE);
       const high = worst - claim.at_least > claim.at_most - worst;
@@ -302,6 +308,13 @@ loomfmu.judge = run => {
     return drawn && signal === its ? offBy(signal, verdict, stretches) : 0;
   }
 
+  /* Whether the run does not show all that a claim takes, which is a whole revolution, or a pass through its window. */
+  function unseen({ kind, window }) {
+    const turned = turns.length ? (Math.max(...turns) - Math.min(...turns)) / TURN : Infinity;
+    if (turned >= 1 - 1e-9 || kind === "dwell_contains" || window && passes(window).length) return "";
+    return window ? UNPASSED : `the shaft turns by less than a revolution; ${NOT_HERE}`;
+  }
+
   const turns = run.has("shaft.angle") ? run.signal("shaft.angle") : [];
   const tooCoarse = turns.some((angle, k) => k && Math.abs(angle - turns[k - 1]) > FARTHEST);
 
@@ -314,9 +327,10 @@ loomfmu.judge = run => {
     if (found.holds === null) return found;
     const at = run.has("shaft.angle") && Number.isFinite(found.time) ? motion("shaft.angle").at(found.time) : NaN;
     const verdict = { sense: claim.sense, at, ...found, note: [...new Set(found.notes)].filter(Boolean).join("; ") };
-    if (verdict.holds === false) return verdict;
     if (!Number.isFinite(verdict.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
     const holds = verdict.sense * verdict.worst >= verdict.sense * verdict.bound, signal = verdict.signal || claim.signal;
+    const short = (holds || NOT_FINAL.includes(claim.kind)) && unseen(claim);
+    if (short) return unknown(short);
     // a part of a run that is not known cannot bring a claim back that fails
     if (holds && !claim.window && gaps(signal)) return gap(signal);
     const doubts = (found.notes || []).filter(each => each?.endsWith(loomfmu.ONLY_SAMPLES));

@@ -82,6 +82,7 @@ class Search:
             value for span, value in zip(self._spans, values, strict=True) if not span.varied.targets
         )
         run = self._loom.evaluate(settings(self._spans, values), errors="none")
+        run.check_end()
         return compared(self._data, run.trace, offset)
 
     def _residuals(self, shares: Floats) -> Floats:

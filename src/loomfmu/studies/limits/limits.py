@@ -31,6 +31,7 @@ def limits_of(
     if not loom.scene.claims:
         raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
     own = loom.evaluate(fixed)  # a key may set several values that differ in the scene
+    own.check_end()
     runs = _Runs(loom, [span], fixed)
     grid = span.points(points)
     runs.scan(grid, advance)

@@ -135,7 +135,8 @@ def rows(found: Limits) -> list[tuple[str, str, str, str]]:
 def _own(each: ClaimLimits) -> str:
     """How far a claim is from its bound at the scene's own value."""
     distance = each.verdict.shown_distance
-    return f"fails: {each.verdict.note or 'no value'}" if distance == "-" else distance
+    word = "fails" if each.verdict.decided else each.verdict.word
+    return f"{word}: {each.verdict.note or 'no value'}" if distance == "-" else distance
 
 
 def _holds(each: ClaimLimits, span: Span) -> str:

@@ -62,10 +62,11 @@ def optimize(
         own = own_point(study)
         try:  # what could not be run or written is refused now, not after the search
             files.check(study, own)
-            loom = Prepared(study.scene, None, study.flavour, (), study.measures)
-            verdicts = loom.evaluate(errors="none").claims
+            tried = Prepared(study.scene, None, study.flavour, (), study.measures).evaluate(errors="none")
+            tried.check_end()
         except LoomfmuError as error:
             raise LoomfmuError(f"{path}: {error}") from None
+        verdicts = tried.claims
         limits = limits_of(study, verdicts, path)
         inputs = [path, *files_of(study.scene)]
         stack.enter_context(owned(files, "study", study.title, fingerprint, restart, inputs))
