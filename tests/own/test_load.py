@@ -251,3 +251,33 @@ def test_units_of_heat_and_electricity_reach_the_model_description(
     (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more.replace("K/s", "W/K"), 1))
     with pytest.raises(LoomfmuError, match="warmth is in K, but its rate warming in W/K"):
         load.component("bell.py", tmp_path)
+
+
+HEARD = '    load: float = input_("N", 0.0, "Load", unbounded=True, source="{}")\n    sound: float'
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "said"),
+    [
+        ("bell", "warp_#.frame_load", "its source is warp_#.frame_load, but bell has no number;"),
+        ("bell_1", "wrap_#.frame_load", "but there is no instance 'wrap_1'; did you mean 'warp_1'?;"),
+        ("bell", "yarn.tension", "but there is no instance 'yarn'"),
+    ],
+)
+def test_an_input_whose_source_is_absent_is_named(tmp_path: Path, name: str, source: str, said: str) -> None:
+    """A wire vanished: the claim held on the start of the input."""
+    (tmp_path / "bell.py").write_text(GOOD.replace("    sound: float", HEARD.format(source), 1))
+    text = f'[loom]\nweave = "10/01"\nwarps = true\n[{name}]\ncomponent = "bell.py:Bell"\n'
+    with pytest.raises(LoomfmuError) as raised:
+        scene.parse(text, directory=tmp_path)
+    assert str(raised.value).startswith(f"{name}.load: ") and said in str(raised.value)
+    assert str(raised.value).endswith(f"name it in [wires], or set {name}.load")
+    for more in ("load = 2.0\n", f'[wires]\n"{name}.load" = "warp_1.frame_load"\n'):
+        assert scene.parse(text + more, directory=tmp_path)
+
+
+def test_a_mechanism_without_the_number_of_its_source_is_named_too() -> None:
+    text = '[loom]\nweave = "10/01"\nwarps = true\n[blows]\ncomponent = "HealdPlay"\n'
+    with pytest.raises(LoomfmuError, match=r"^blows.warp_load: .* but blows has no number"):
+        scene.parse(text)
+    assert scene.parse(text.replace("warps = true", ""))  # a standard loom leaves it out

@@ -1,7 +1,7 @@
 """The loom that a scene need not spell out: its instances, their components and their wiring."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Container, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -185,6 +185,32 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
             pairs = zip(terminal.variables, outputs, strict=False)
             found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
     return found
+
+
+def check_sources(components: Mapping[str, type[Component]], given: Container[str]) -> None:
+    """Refuse an input whose declared source is absent: it would keep its start. `given` have another one.
+
+    Our own mechanisms do without what a standard loom leaves out, but not without the number of a source.
+    """
+    for name, component in components.items():
+        ours = COMPONENTS.get(component.__name__) is component
+        for v in variables_of(component):
+            if v.causality != "input" or not v.source or v.source_for or v.source.startswith(ALL):
+                continue
+            sink, (owner, *_) = f"{name}.{v.name}", v.source.split(".")
+            unnumbered = "_#" in owner and not is_numbered(name)
+            owner = owner.replace("_#", name.removeprefix(stem(name)))
+            if (
+                sink in given
+                or owner in components
+                or (ours and not (unnumbered and members(owner, components)))
+            ):
+                continue
+            missing = f"{name} has no number" if unnumbered else f"there is no instance {owner!r}"
+            hint = "" if unnumbered else suggestion(owner, components)
+            raise LoomfmuError(
+                f"{sink}: its source is {v.source}, but {missing}{hint}; name it in [wires], or set {sink}"
+            )
 
 
 def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) -> dict[str, str]:
