@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
-from ..cosim.claims.lifted import lift_of
+from ..cosim.claims.lifted import frames_of, lift_of
 from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
@@ -156,7 +156,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
         arguments = {name: getattr(claim, name) for name in type(claim).declared() if name != "name"}
         frames = arguments.get("healds") or [arguments[key] for key in ("heald",) if key in arguments]
         if arguments.get("healds") == ():  # all of them
-            frames = sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
+            frames = frames_of(trace)
         unit = "" if verdict.label == "1" else verdict.label
         lifts = {frame: lift_of(frame, str(arguments.get("lifted_by", "")), trace) for frame in frames}
         estimated = math.isfinite(verdict.error)

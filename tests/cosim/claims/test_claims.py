@@ -1066,3 +1066,20 @@ def test_a_window_in_plain_degrees_is_refused(loom: Any, window: list[Any]) -> N
 
 def test_the_type_of_kinds_names_all_kinds() -> None:
     assert sorted(get_args(Kind)) == sorted(Claim.kinds)
+
+
+def test_a_frame_counts_whatever_it_is_called() -> None:
+    """One that was not called heald_3 dropped out of the shed, and the claim held on the others."""
+    text = (
+        '[loom]\nweave = "10/01"\n[{0}]\ncomponent = "HealdFrame"\npattern = "10"\nstroke = "20 mm"\n'
+        '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "1 mm"\n'
+        '[wires]\n"{0}.rotor_ratio" = "dobby.rotor_ratio"\n"{0}.lift_slope" = "dobby.lift_slope"\n'
+    )
+    named, other = (
+        evaluate(scenes.parse(text.format(name), name, {"steps_per_revolution": 180}), errors="none").claims[
+            0
+        ]
+        for name in ("heald_3", "extra_1")
+    )
+    assert other.worst == named.worst
+    assert "extra_1" in other.signal and "heald_3" in named.signal

@@ -34,6 +34,12 @@ def lift_of(frame: str, lifted_by: str, names: Iterable[str]) -> str:
     return f"{damper}.carrier_lift" if damper not in ("", FRAME) else f"{frame}.lift"
 
 
+def frames_of(trace: Signals) -> list[str]:
+    """The heald frames of a run, whatever they are called: what has a lift and the height of its warp."""
+    owners = sorted({name.partition(".")[0] for name in trace})
+    return [each for each in owners if f"{each}.lift" in trace and f"{each}.warp_height" in trace]
+
+
 def lifts(frame: str, lifted_by: str, trace: Signals) -> list[str]:
     """The lift that the warp has, and, if the carrier gives it, that of the frame."""
     return list(dict.fromkeys((lift_of(frame, lifted_by, trace), f"{frame}.lift")))

@@ -14,7 +14,7 @@ from .arguments import Edges, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
 from .curves import SAME, Doubt, Motion, Stretch, motion_of
 from .extremes import first_lowest, lowest, nearest
-from .lifted import check_lifted_by, lift_of
+from .lifted import check_lifted_by, frames_of, lift_of
 
 NEVER = "the head never enters the shed in this run"
 
@@ -53,13 +53,14 @@ class RapierInOpenShed(_InShed):
 
     def signals(self, instances: Iterable[str]) -> list[str]:
         check_lifted_by(self.lifted_by, ())  # it judges several frames, and a damper belongs to one
-        frames = self.healds or [name for name in instances if name.startswith("heald_")]
+        frames = self.healds or ["*"]
         wanted = [f"{frame}.{variable}" for frame in frames for variable in ("lift", "warp_height")]
-        carriers = [lift_of(frame, self.lifted_by, instances) for frame in frames]
+        carriers = [lift_of(frame, self.lifted_by, instances) for frame in self.healds]
+        carriers += ["*.carrier_lift"] * (not self.healds and not self.lifted_by)
         return list(dict.fromkeys([f"{self.weft}.travel", *wanted, *carriers]))
 
     def judge(self, trace: Signals) -> Verdict:
-        frames = self.healds or sorted({name.split(".")[0] for name in trace if name.startswith("heald_")})
+        frames = self.healds or frames_of(trace)
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
         check_lifted_by(self.lifted_by, ())
