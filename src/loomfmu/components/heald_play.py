@@ -75,8 +75,13 @@ class HealdPlay(Component):
     )
     blow_velocity: float = output("m/s", "Velocity of the last blow", variability="discrete", nominal=0.1)
     hardest_blow: float = output(
-        "m/s", "Largest velocity of a blow so far", variability="discrete", nominal=0.1, so_far=True
-    )
+        "m/s", "Largest velocity of a blow so far", variability="discrete", nominal=0.1, so_far=True,
+        error="unseen_blow",
+    )  # fmt: skip
+    unseen_blow: float = output(
+        "m/s", "Largest velocity that a blow may have had so far without being counted: least_speed until"
+        " a blow is counted", variability="discrete", nominal=0.001, so_far=True,
+    )  # fmt: skip
     largest_impulse: float = output(
         "N.s", "Largest impulse of a blow so far", variability="discrete", nominal=0.001, so_far=True
     )
@@ -99,6 +104,7 @@ class HealdPlay(Component):
         self.blows = 0
         self.blow_velocity = 0.0
         self.hardest_blow = 0.0
+        self.unseen_blow = self.least_speed
         self.largest_impulse = 0.0
         self.total_impulse = 0.0
         self.remember()
@@ -186,4 +192,5 @@ class HealdPlay(Component):
         self.total_impulse = self.total_impulse + impulse
         if speed > self.hardest_blow:
             self.hardest_blow = speed
+            self.unseen_blow = 0.0
             self.largest_impulse = impulse

@@ -1,7 +1,8 @@
-"""The number of steps that an accuracy takes: few at first, then twice as many until all errors are below."""
+"""The number of steps that an accuracy takes: few at first, then more until all errors are below."""
 
 import math
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import NamedTuple
 
 from ..errors import LoomfmuError
@@ -12,7 +13,8 @@ from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.times import ROUNDING
 
-FEWEST, DOUBLED = 24, 9  # steps in a revolution, each 15 deg, and how often they may be doubled
+FEWEST, RAISED = 24, 13  # steps in a revolution, each 15 deg, and how often there may be more
+GROWTH = 0.5 * (1.0 + math.sqrt(5.0))  # so that the runs before are those of `estimates.SHARES`
 MOST_STEPS = 10_000_000  # in a run
 
 
@@ -35,15 +37,15 @@ def chosen(
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
     before: list[tuple[float, ...]] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
-    for steps in (FEWEST << doubled for doubled in range(DOUBLED + 1)):
+    whole = Fraction(scene.periods).limit_denominator(MOST_STEPS).denominator  # fits any number of periods
+    for steps in (whole * round(FEWEST * GROWTH**raised / whole) for raised in range(RAISED + 1)):
         total = scene.periods * steps
-        if total > MOST_STEPS or abs(total - round(total)) > ROUNDING * total:
+        if not 0.0 < total <= MOST_STEPS or abs(total - round(total)) > ROUNDING * total:
             continue
         tried = altered(scene, steps_per_period=steps)
         trace, verdicts = judge(tried)
         if before:
-            quarter = before[1] if len(before) > 1 else (math.nan,) * len(verdicts)
-            coarser = Coarser(everything, before[0], quarter)
+            coarser = Coarser(everything, tuple(before))
             estimated = estimates.of(trace, verdicts, coarser)
             errors = [
                 _share(verdict, claim.noise)

@@ -1,8 +1,9 @@
-"""How far the numbers of verdicts may be off: the run is judged again on half and on a quarter of its steps.
+"""Numerical errors of verdicts: the run is judged again on coarser steps.
 
-All that the steps do to a number shrinks with them: what is missed between samples, what is lost in the
-coupling, what a component makes of inputs that it knows only at the samples. So the numbers of coarser runs
-tell how far the finest one may be off.
+Discretisation errors shrink with the steps: what is missed between samples, the coupling, inputs that a
+component knows only at the samples. So the change from coarser runs tells how far the finest one may be off.
+The coarser steps are no multiples of the finer ones: an event at a fixed angle, such as a jump of a cam's
+velocity, would lie at the same share of a step in all of them, and equal errors would look like none.
 """
 
 import math
@@ -18,51 +19,51 @@ from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
-from .master.grid import Grid, chosen, kinks
+from .master.grid import Grid, chosen, kinks, uniform
 from .planning.requested import signals_of
 from .scenes.graph import step_order
-from .scenes.keys import ITERATED
+from .scenes.keys import ITERATED, WINDOWS
 from .scenes.scene import Scene
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
 
-class Method(NamedTuple):
-    """What the differences between resolutions say about the error of the finest one.
+SHARES = (0.62, 0.38)  # of the steps: the golden ratio and its square are farthest from fractions
 
-    The estimate is `halved` times the change from all steps to half of them, or `quartered` times the further
-    change to a quarter if that is more: it counts where the first one is small by chance. `floor` is a share
-    of the value, below which rounding, and what iterations leave, hide the order. Numbers farther from
-    their bound than the share `near` of it are not estimated where only near ones are: it is far above what
-    errors are with a few dozen steps in a revolution.
+
+class Method(NamedTuple):
+    """Factors by which the changes from coarser runs give the error of the finest one.
+
+    The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: one of
+    them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
+    leave, hide the order. Numbers farther from their bound than the share `near` of it are not estimated
+    where only near ones are: it is far above what errors are with a few dozen steps in a revolution.
     """
 
-    halved: float
-    quartered: float
+    factors: tuple[float, float]
     floor: float
     near: float
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
-# and two where they are not: differences are 3 times the error or more.
-PRESENT = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-12, near=0.01)
+# and two at a kink: the changes are 6 and 47, or 1.6 and 6 times the error.
+PRESENT = Method((2.0, 1.0 / 6.0), floor=1e-12, near=0.01)
 # An extreme that a component holds is found beyond what it takes for noise of its samples.
-HELD = Method(halved=1.0, quartered=1.0 / 16.0, floor=1e-9, near=0.01)
+HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack, and to one where a
-# loop carries values of the step before.
-MEMORY = Method(halved=2.0, quartered=1.0 / 4.0, floor=1e-9, near=0.1)
+# loop carries values of the step before: then the changes are 0.6 and 1.6 times the error.
+MEMORY = Method((4.0, 1.5), floor=1e-9, near=0.1)
 
 
 @dataclass(frozen=True)
 class Coarser:
-    """The worst value of each claim on half and on a quarter of the steps, NaN where there is none.
+    """The worst values of the claims in each coarser run, NaN where there is none.
 
     `wanted` are the claims, counted from 0, that were judged. Without values `why` says why.
     """
 
     wanted: Collection[int]
-    half: tuple[float, ...] = ()
-    quarter: tuple[float, ...] = ()
+    values: tuple[tuple[float, ...], ...] = ()
     why: str = ""
 
 
@@ -101,21 +102,18 @@ class Estimates:
             if not (instance.fmu.trusted or scene.isolates(name)):
                 return Coarser(wanted, why=f"{name} runs in this process; set isolated = true")
         values = []
-        for part in ("half", "a quarter"):
-            found = _thinned(scene, grid)
-            if found is None:
-                break
-            grid = found
-            if grid.steps * self._signals > MOST_VALUES:
+        for share in SHARES:
+            coarse = _coarser(scene, grid, share)
+            if coarse is None:
+                return Coarser(wanted, why="it takes too few steps for coarser runs")
+            if coarse.steps * self._signals > MOST_VALUES:
                 return Coarser(wanted, why="the run is too long")
             try:
-                values.append(self.worst(self._run(scene, grid), wanted))
+                values.append(self.worst(self._run(scene, coarse), wanted))
             except LoomfmuError as error:
                 if not values:
-                    return Coarser(wanted, why=f"with {part} of the steps, {error}")
-        if not values:
-            return Coarser(wanted, why="its steps cannot be halved")
-        return Coarser(wanted, values[0], values[1] if len(values) > 1 else (math.nan,) * len(self.claims))
+                    return Coarser(wanted, why=f"with {share:.0%} of the steps, {error}")
+        return Coarser(wanted, tuple(values))
 
     def near(self, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
@@ -141,39 +139,43 @@ class Estimates:
                 continue
             found[number] = _estimated(
                 found[number], self.claims[number], trace, self._methods[number],
-                coarser.half[number], coarser.quarter[number],
+                [run[number] for run in coarser.values],
             )  # fmt: skip
         return tuple(found)
 
 
 def _estimated(
-    verdict: Verdict, claim: Claim, trace: Signals, method: Method, half: float, quarter: float
+    verdict: Verdict, claim: Claim, trace: Signals, method: Method, coarser: Sequence[float]
 ) -> Verdict:
     worst = verdict.worst
     if not math.isfinite(worst):
         return verdict
-    if not math.isfinite(half):
+    changes = [
+        factor * abs(worst - value)
+        for factor, value in zip(method.factors, coarser, strict=False)
+        if math.isfinite(value)
+    ]
+    if not math.isfinite(coarser[0]):
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
-        note = "half of the steps give no value: take more steps"
+        note = "coarser steps give no value: take more steps"
         return replace(_noted(verdict, note), decided=False, holds=False)
-    changes = [method.halved * abs(worst - half), method.quartered * abs(half - quarter)]
-    spread = max(change for change in changes if math.isfinite(change))
+    spread = max(changes)
+    if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
+        spread = math.ceil(spread)  # a count is off by whole numbers
     floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
-    return verdict.estimated(max(spread, claim.left_by_model(trace, verdict), floor), spread)
+    return verdict.estimated(max(spread, claim.unresolved(trace, verdict), floor), spread)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
     return replace(verdict, note="; ".join(filter(None, (verdict.note, note))))
 
 
-def _thinned(scene: Scene, grid: Grid) -> Grid | None:
-    """Every other point of a grid, its last one and its kinks; None where there are none between, or steps
-    must be equal and would not be."""
-    if grid.points is None and grid.steps % 2 == 0:
-        return replace(grid, steps=grid.steps // 2, step_size=2.0 * grid.step_size, rate=0.5 * grid.rate)
-    if grid.steps < 2 or any(instance.fmu.fixed_step for instance in scene.instances.values()):
-        return None
-    points = np.arange(grid.steps + 1) * grid.step_size if grid.points is None else grid.points
-    kept = np.append(points[:-2:2], points[-1])  # of an odd number the last step has three
-    return chosen(scene, np.union1d(kept, kinks(scene)))
+def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:
+    """About a share of the steps; None where that would be as many."""
+    if scene.grid != WINDOWS or grid.points is None:
+        coarse = uniform(scene, share)
+        return coarse if coarse.steps < grid.steps else None
+    points = grid.points
+    kept = np.round(np.linspace(0, grid.steps, round(share * grid.steps) + 1)).astype(int)
+    return chosen(scene, np.union1d(points[kept], kinks(scene))) if len(kept) > 2 else None

@@ -149,7 +149,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
     about, and `native` is the verdict on the run that the page holds, whether its bound is met exactly, and
     its numerical error: the script leaves out a claim that it would judge otherwise, that is too near to its
-    bound for that error, or whose error half of the steps could not tell (`coarse`).
+    bound for that error, or whose error coarser steps could not tell (`coarse`).
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):

@@ -316,14 +316,16 @@ def test_a_grid_of_another_name_is_refused() -> None:
 
 
 def test_points_are_merged_in_order_of_their_weight() -> None:
-    places = windows.Places(period=1.0, most=0.25, points=[0.3, 0.30001, 0.5, 2.0], about=[0.29999, 0.4])
+    places = windows.Places(
+        period=1.0, most=0.25, kinks=np.empty(0), points=[0.3, 0.30001, 0.5, 2.0], about=[0.29999, 0.4]
+    )
     merged = windows._merged(np.linspace(0.0, 1.0, 5), places)
     assert list(merged) == [0.0, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0]
 
 
 def test_points_are_kept_apart_from_the_last_one_that_stays() -> None:
     close = [0.5 + 0.8e-4 * place for place in range(4)]  # 1/7200 is 1.4e-4
-    places = windows.Places(period=1.0, most=0.5, points=close)
+    places = windows.Places(period=1.0, most=0.5, kinks=np.empty(0), points=close)
     assert list(windows._merged(np.linspace(0.0, 1.0, 3), places)) == [0.0, close[0], close[2], 1.0]
 
 

@@ -97,6 +97,10 @@ class Claim(ABC):
         """
         return shaft.short(trace)
 
+    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
+        """What a verdict on a trace may be off by and runs on other steps may not show."""
+        return self.left_by_model(trace, verdict)
+
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
         """What it may be off by whatever the steps, as a signal beside the one that is judged says."""
         return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0

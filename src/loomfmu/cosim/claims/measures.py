@@ -115,5 +115,7 @@ def measure(text: str, where: str = "") -> Claim:
         except units.UnitError as error:
             raise LoomfmuError(f"{where}{text!r}: {error}") from None
     if way in ("highest", "lowest"):
-        return (Highest if way == "highest" else Lowest)(signal=signal, bound=0.0, window=None)
+        return (Highest if way == "highest" else Lowest)(
+            signal=signal, bound=0.0, window=None, at_samples=False
+        )
     return Mean(signal=signal) if way else Held(signal=signal)

@@ -56,14 +56,18 @@ class Grid:
         return Span(times[:-1], np.diff(times), times[1:], times[1:] / self.rate)
 
 
-def uniform(scene: Scene) -> Grid:
-    """Equal steps of the scene, divided where an input that it drives has a kink."""
+def uniform(scene: Scene, share: float = 1.0) -> Grid:
+    """Equal steps of the scene, or a share of them, divided where an input that it drives has a kink."""
     equal = Grid(scene.steps, scene.step_size, scene.steps_per_period)
-    divided = kinks(scene) / scene.step_size
+    if share < 1.0:
+        steps = max(1, round(share * scene.steps))
+        longer = scene.steps / steps
+        equal = Grid(steps, longer * scene.step_size, scene.steps_per_period / longer)
+    divided = kinks(scene) / equal.step_size
     divided = divided[np.abs(divided - np.round(divided)) > SAME]
     if not len(divided):
         return equal
-    points = np.concatenate([equal.span(0, equal.steps).ends, divided * scene.step_size, [0.0]])
+    points = np.concatenate([equal.span(0, equal.steps).ends, divided * equal.step_size, [0.0]])
     return chosen(scene, np.unique(points))
 
 
