@@ -41,7 +41,7 @@ class BeltMonitor(BeltVariables):
 
     def initialize(self, time: float) -> int:
         """Take the first sample and forget all extremes."""
-        self.sampled_clearance = -1.0
+        self.factor_clearance = -1.0
         self.lowest_margin = 1e300
         self.lowest_speed_limit = NO_LIMIT
         self.largest_deflection = 0.0
@@ -77,9 +77,9 @@ class BeltMonitor(BeltVariables):
         """Find the length factor if the clearance has changed."""
         if self.prescribe_length_factor:
             self.length_factor = self.prescribed_length_factor
-        elif self.guide_clearance != self.sampled_clearance:
+        elif self.guide_clearance != self.factor_clearance:
             self.length_factor = length_factor(self.guide_clearance)
-            self.sampled_clearance = self.guide_clearance
+            self.factor_clearance = self.guide_clearance
 
     def take_sample(self, time: float, lead: float) -> None:
         """Derivatives of the travel by the shaft angle, from its rates and the shaft's."""
@@ -99,7 +99,7 @@ class BeltMonitor(BeltVariables):
         self.sampled_velocity = self.velocity
         self.sampled_acceleration = self.acceleration
         self.sampled_force = self.yarn_tension
-        self.sampled_factor = self.length_factor
+        self.sampled_clearance = self.guide_clearance
         self.sampled_angle = self.joined_angle
         self.sampled_slope = self.joined_slope
         self.sampled_bend = self.joined_bend
@@ -114,7 +114,10 @@ class BeltMonitor(BeltVariables):
         second = second / (step * step)
         tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
         tension = weft_load(tension, joined_rate(start_rate, a0, a1, a2, a3, share), self.taker)
-        factor = self.sampled_factor + share * (self.length_factor - self.sampled_factor)
+        factor = self.length_factor
+        if self.sampled_clearance != self.guide_clearance and not self.prescribe_length_factor:
+            clearance = self.sampled_clearance + share * (self.guide_clearance - self.sampled_clearance)
+            factor = length_factor(clearance)
         free_length = travel - self.idle_travel - self.head_length
         if which == LIMIT:
             return speed_limit(free_length, second, factor, self.bending_stiffness, self.head_mass, tension)
