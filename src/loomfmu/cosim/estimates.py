@@ -12,14 +12,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-import numpy as np
-
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
-from .master.grid import Grid, chosen, kinks, uniform
+from .master.grid import Grid, uniform
 from .planning.requested import signals_of
 from .scenes.graph import step_order
 from .scenes.keys import ITERATED, WINDOWS
@@ -164,7 +162,10 @@ def _estimated(
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
     floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
-    return verdict.estimated(max(spread, claim.unresolved(trace, verdict), floor), spread)
+    left = claim.unresolved(trace, verdict)
+    if left == math.inf:  # a sample may fail the claim, but does not say by how much the signal does
+        return replace(verdict.estimated(max(spread, floor), spread), error=math.inf)
+    return verdict.estimated(max(spread, left, floor), spread)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
@@ -172,10 +173,6 @@ def _noted(verdict: Verdict, note: str) -> Verdict:
 
 
 def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:
-    """About a share of the steps; None where that would be as many."""
-    if scene.grid != WINDOWS or grid.points is None:
-        coarse = uniform(scene, share)
-        return coarse if coarse.steps < grid.steps else None
-    points = grid.points
-    kept = np.round(np.linspace(0, grid.steps, round(share * grid.steps) + 1)).astype(int)
-    return chosen(scene, np.union1d(points[kept], kinks(scene))) if len(kept) > 2 else None
+    """Equal steps, about a share of the scene's; None where a grid of equal steps has no more."""
+    coarse = uniform(scene, share)
+    return coarse if scene.grid == WINDOWS or coarse.steps < grid.steps else None

@@ -174,7 +174,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
                 "holds": verdict.holds or verdict.distance >= 0.0,
                 "worst": verdict.worst,
                 "error": verdict.error if estimated else 0.0,
-                "coarse": math.isfinite(verdict.worst) and not verdict.decided and not estimated,
+                "coarse": math.isfinite(verdict.worst) and not verdict.decided and math.isnan(verdict.error),
                 "met": verdict.decided and verdict.distance == 0.0,
             },
         })  # fmt: skip

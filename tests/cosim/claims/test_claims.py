@@ -1025,6 +1025,7 @@ speed = "300 rev/min"
 component = "DetachingRoller"
 [[claims]]
 kind = "nip_holds"
+at_samples = true
 """
 
 
@@ -1050,6 +1051,13 @@ def test_by_its_own_drafting_force_the_nip_holds_twice_as_much(tmp_path):
     assert 2.0 <= roller_verdict(tmp_path).worst < 2.1
     steady = {"roller.use_table": False, "roller.acceleration": 0.0, "roller.fibre_share": 1.0}
     assert roller_verdict(tmp_path, **steady).worst == 2.0
+
+
+def test_a_nip_is_undecided_unless_the_samples_alone_are_judged(tmp_path):
+    text = ROLLER.replace("at_samples = true", "at_least = {}")
+    for at_least in (1.0, 2.5):
+        found = run(scenes.parse(text.format(at_least), "roller"), output=tmp_path / "roller.h5").claims[0]
+        assert (found.word, "known only at the samples" in found.note) == ("undecided", True)
 
 
 def test_a_nip_without_fibres_is_not_judged(tmp_path):

@@ -135,7 +135,8 @@ class Claim(ABC):
             notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
         short = trace.cut_short or self.unseen(trace)
         open_ = bool(short) and (holds or not self.final)
-        doubted = holds and any(isinstance(note, Doubt) for note in notes)
+        doubts = {note for note in notes if isinstance(note, Doubt)}
+        doubted = bool(doubts) and (holds or not (self.final or doubts == {COARSE_NOTE}))
         decided = not (math.isnan(worst) or doubted or open_)
         if not decided:
             notes = (short, *notes)

@@ -10,7 +10,7 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from . import shaft
-from .arguments import Edges, Name, Names, Quantity, Window, argument
+from .arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
 from .curves import SAME, Doubt, Motion, Stretch, motion_of
 from .extremes import first_lowest, lowest, nearest
@@ -209,12 +209,14 @@ class TransferSpeed(_Transfer):
 class NipHolds(Claim):
     """The nip's largest holding force, while fibres are drafted, is 2 to 3 times the largest drafting force.
 
-    Below that the web slips in the nip, above it the top roller is loaded for nothing. Samples are judged.
+    Below that the web slips in the nip, above it the top roller is loaded for nothing. The forces of a roller
+    are known only at the samples: with `at_samples` these are judged.
     """
 
     roller: str = argument(Name(), "roller")
     at_least: float = argument(Quantity("1", low=0.0), 2.0)
     at_most: float = argument(Quantity("1", low=0.0), 3.0)
+    at_samples: bool = argument(Flag(), False)
 
     needs = ("roller.holding_force", "roller.drafting_force")
     final = False
@@ -223,7 +225,7 @@ class NipHolds(Claim):
         drafting = motion_of(trace, f"{self.roller}.drafting_force")
         holding = motion_of(trace, f"{self.roller}.holding_force")
         most = lowest(drafting, -1.0)
-        text = "holding force over drafting force at the samples"
+        text = "holding force over drafting force" + " at the samples" * self.at_samples
         signal = f"{self.roller}.holding_force / drafting_force"
         if not most.value > 0.0:
             note = "no fibres are drafted in this run"
@@ -231,7 +233,7 @@ class NipHolds(Claim):
         held = lowest(holding, -1.0, drafting.beyond(0.0, 1.0))
         ratio = held.value / most.value
         high = ratio - self.at_least > self.at_most - ratio
-        notes = (most.note, held.note)
+        notes = (most.note, held.note, *((drafting.note, holding.note) if not self.at_samples else ()))
         return self.verdict(
             trace, text, signal, self.at_most if high else self.at_least, ratio, most.time, *notes,
             holds=self.at_least - SAME <= ratio <= self.at_most + SAME, sense=AT_MOST if high else AT_LEAST,

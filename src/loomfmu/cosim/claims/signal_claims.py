@@ -58,8 +58,9 @@ class Bounded(Claim, kind=False):
 
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
         found, _note = self._extreme(trace, self.within(trace))
-        curve = max(abs(found.value - found.possible), abs(found.value - found.sure))
-        return max(curve if math.isfinite(curve) else 0.0, self.left_by_model(trace, verdict))
+        sure = found.sure if math.isfinite(found.sure) else found.value
+        curve = max(abs(found.value - found.possible), abs(found.value - sure))
+        return max(curve, self.left_by_model(trace, verdict))
 
     def _extreme(self, trace: Signals, within: list[Stretch] | None) -> tuple[Extreme, str]:
         """The worst value, and a note on how it is known."""

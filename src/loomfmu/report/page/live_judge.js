@@ -273,6 +273,7 @@ loomfmu.judge = run => {
       return { worst: Math.abs(found.value), bound: claim.at_most, time: found.time, notes: [overlap.note, closing.note] };
     },
     nip_holds: claim => {
+      if (!claim.at_samples) return unknown(`the forces of the nip are known only at the samples; ${NOT_HERE}`);
       const [drafting, holding] = ["drafting_force", "holding_force"].map(name => motion(`${claim.roller}.${name}`));
       const most = drafting.lowest(-1);
       if (!(most.value > 0)) return never("no fibres are drafted in this run");
