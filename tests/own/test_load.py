@@ -281,3 +281,37 @@ def test_a_mechanism_without_the_number_of_its_source_is_named_too() -> None:
     with pytest.raises(LoomfmuError, match=r"^blows.warp_load: .* but blows has no number"):
         scene.parse(text)
     assert scene.parse(text.replace("warps = true", ""))  # a standard loom leaves it out
+
+
+@pytest.mark.parametrize(
+    ("text", "sink", "source", "name", "wires"),
+    [
+        (
+            '[my_dobby]\ncomponent = "DobbyDrive"\n[heald_1]\n',
+            "heald_1.rotor_ratio",
+            "dobby.rotor_ratio",
+            "my_dobby",
+            ("rotor_ratio", "lift_slope", "rotor_angle"),
+        ),
+        (
+            '[dobby]\n[left]\ncomponent = "HealdFrame"\n[damper_1]\n',
+            "damper_1.lift",
+            "heald_1.lift",
+            "left",
+            ("lift", "velocity"),
+        ),
+    ],
+)
+def test_a_source_of_another_name_is_named(
+    text: str, sink: str, source: str, name: str, wires: tuple[str, ...]
+) -> None:
+    """A mechanism of the standard loom under another name left what follows it without wires."""
+    with pytest.raises(LoomfmuError) as raised:
+        scene.parse(text)
+    assert str(raised.value) == (
+        f"{sink}: its source is {source}, but there is no instance {source.split('.')[0]!r};"
+        f" did you mean {name!r}?; name it in [wires], or set {sink}"
+    )
+    owner = sink.split(".")[0]
+    spelt = "".join(f'"{owner}.{each}" = "{name}.{each}"\n' for each in wires)
+    assert scene.parse(f"{text}[wires]\n{spelt}")

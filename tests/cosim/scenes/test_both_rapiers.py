@@ -80,6 +80,19 @@ def test_heads_differ_between_the_rapiers_without_a_warning_but_not_within_one()
     assert note.startswith("the loom mixes machines: weft has WL680-3600, belt has WL680-3600, weft_2 has")
 
 
+@pytest.mark.parametrize(("head", "notes"), [("GS900 right", 0), ("G6300 left", 1)])
+def test_a_rapier_is_what_is_wired_together_whatever_it_is_called(head: str, notes: int) -> None:
+    published = 'machine = "WL680-3600"\nhead = '
+    found = scenes.parse(
+        f'[loom]\n{published}"G6300 left"\n'
+        f'[second]\ncomponent = "WeftInsertion"\n{published}"GS900 right"\n'
+        f'[its_belt]\ncomponent = "BeltMonitor"\n{published}"{head}"\n'
+        '[wires]\n"its_belt.travel" = "second.travel"\n"its_belt.acceleration" = "second.acceleration"\n'
+    ).notes
+    start = "the loom mixes heads: second has GS900 right and its_belt has G6300 left;"
+    assert [note.startswith(start) for note in found] == [True] * notes
+
+
 def test_machine_and_head_set_both_rapiers() -> None:
     scene = parsed(machine="WL450-5400", head="GS900 left")
     assert scene.notes == ()

@@ -1,6 +1,6 @@
 """What the user of a scene is to be warned of."""
 
-from collections.abc import Collection, Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from ... import machines
 from ...errors import LoomfmuError, listed
@@ -21,7 +21,7 @@ def of_scene(
         if drive.periods[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
             yield f"{name} begins at {start:g}, after the end at {end:g}: its first value holds throughout"
-    yield from _mixed(instances)
+    yield from _mixed(instances, wires)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
         inputs = standard_loom.shaft_inputs(each.fmu.component, each.fmu.ports)
@@ -35,22 +35,17 @@ def of_scene(
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
 
 
-def _mixed(instances: dict[str, Instance]) -> list[str]:
+def _mixed(instances: dict[str, Instance], wires: list[Wire]) -> list[str]:
     """Warnings where the instances of a loom are not all of one machine, or those of a rapier of one head."""
-    notes = []
+    notes, moved_by = [], {wire.sink: wire.source[0] for wire in wires}
     for kind, takers in machines.TAKERS.items():
         groups: dict[str, list[Instance]] = {}
         for name, each in instances.items():
             if each.fmu.ours and each.fmu.name in takers:
-                groups.setdefault(_rapier(name, instances) if kind == "head" else "", []).append(each)
+                rapier = moved_by.get((name, "travel"), name) if kind == "head" else ""
+                groups.setdefault(rapier, []).append(each)
         notes += [note for fitted in groups.values() if (note := _mixture(kind, fitted))]
     return notes
-
-
-def _rapier(name: str, instances: Collection[str]) -> str:
-    """The number of the rapier that an instance belongs to; none where there is one."""
-    number = name.removeprefix(standard_loom.stem(name))
-    return number if f"weft{number}" in instances else ""
 
 
 def _mixture(kind: str, fitted: list[Instance]) -> str:

@@ -187,30 +187,46 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     return found
 
 
-def check_sources(components: Mapping[str, type[Component]], given: Container[str]) -> None:
-    """Refuse an input whose declared source is absent: it would keep its start. `given` have another one.
+def check_sources(
+    components: Mapping[str, type[Component]], usual: Mapping[str, str], given: Container[str]
+) -> None:
+    """Refuse an input whose source is absent: it would keep its start. `given` have another one.
 
-    Our own mechanisms do without what a standard loom leaves out, but not without the number of a source.
+    `usual` are the wires of a standard loom. Our own mechanisms, and all terminals, do without what such a
+    loom leaves out, but not without the number of a source, nor without one that has another name here. A
+    terminal is left to the scene that gives one of its inputs.
     """
-    for name, component in components.items():
-        ours = COMPONENTS.get(component.__name__) is component
-        for v in variables_of(component):
-            if v.causality != "input" or not v.source or v.source_for or v.source.startswith(ALL):
-                continue
-            sink, (owner, *_) = f"{name}.{v.name}", v.source.split(".")
-            unnumbered = "_#" in owner and not is_numbered(name)
-            owner = owner.replace("_#", name.removeprefix(stem(name)))
-            if (
-                sink in given
-                or owner in components
-                or (ours and not (unnumbered and members(owner, components)))
-            ):
-                continue
+    absent = {sink: source for sink, source in usual.items() if source.partition(".")[0] not in components}
+    declared = {f"{name}.{v.name}": v.source for name, c in components.items() for v in variables_of(c)}
+    spelt = {_owners(sink, source) for sink, source in absent.items() if sink in given and not declared[sink]}
+    for sink, source in absent.items():
+        name, owner = _owners(sink, source)
+        of_terminal = not declared[sink]
+        if sink in given or (of_terminal and (name, owner) in spelt):
+            continue
+        unnumbered = not is_numbered(name) and "_#" in (declared[sink] or "")
+        others = members(owner, components) if unnumbered else _renamed(name, owner, components)
+        ours = COMPONENTS.get(components[name].__name__) is components[name]
+        if others or not (ours or of_terminal):
             missing = f"{name} has no number" if unnumbered else f"there is no instance {owner!r}"
-            hint = "" if unnumbered else suggestion(owner, components)
+            like = "" if unnumbered else suggestion(owner, components)
+            hint = f"; did you mean {others[0]!r}?" if others and not unnumbered else like
             raise LoomfmuError(
-                f"{sink}: its source is {v.source}, but {missing}{hint}; name it in [wires], or set {sink}"
+                f"{sink}: its source is {declared[sink] or source}, but {missing}{hint};"
+                f" name it in [wires], or set {sink}"
             )
+
+
+def _owners(sink: str, source: str) -> tuple[str, str]:
+    """The instances at both ends of a wire."""
+    return sink.partition(".")[0], source.partition(".")[0]
+
+
+def _renamed(name: str, owner: str, components: Mapping[str, type[Component]]) -> list[str]:
+    """What may stand for an absent instance of the standard loom: its component under a name of its own."""
+    wanted = COMPONENT_OF.get(stem(owner))
+    found = (each for each, component in components.items() if component.__name__ == wanted)
+    return [each for each in found if each != name and stem(each) not in COMPONENT_OF]
 
 
 def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) -> dict[str, str]:

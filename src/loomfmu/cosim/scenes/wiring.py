@@ -26,7 +26,7 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
         f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
     }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | spelt
-    standard_loom.check_sources(components, tables)
+    standard_loom.check_sources(components, usual, tables)
     for name in components:
         sources |= standard_loom.gathered(name, components, ChainMap(tables, sources))
     taken = {str(each) for each in (*sources.values(), *spelt.values())}
