@@ -15,6 +15,7 @@ import loomfmu
 from loomfmu import report
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.weft_insertion import WeftInsertion
+from loomfmu.cosim.scenes import scene
 from loomfmu.physics.belt import complete_elliptic, elastica_deflection
 from loomfmu.report.drawings import section
 from loomfmu.report.drawings.belt import elastica, half_slope
@@ -239,6 +240,29 @@ def test_only_what_the_trace_records_is_drawn(demo: Trace, tmp_path: Path) -> No
     trace = loomfmu.run(SIMS / "spline_cam.toml", output=tmp_path / "cam.h5").trace
     figures = re.findall(r'<figure id="motion-([^"]+)"', made(trace).html)
     assert figures == ["shed", "frames"]
+
+
+def test_drawings_do_not_hang_on_names(tmp_path: Path) -> None:
+    """A carrier was drawn in its frame only if they were called heald_1 and damper_1."""
+
+    def drawn(frame: str, damper: str) -> tuple[str, Trace]:
+        text = (
+            '[loom]\nmachine = "WL680-3600"\n[dobby]\n[{0}]\ncomponent = "HealdFrame"\npattern = "10"\n'
+            '[{1}]\ncomponent = "HealdDamper"\n[wires]\n'
+            + "".join(f'"{{1}}.{each}" = "{{0}}.{each}"\n' for each in ("lift", "velocity", "acceleration"))
+            + '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "17 mm"\n'
+        )
+        loom = scene.parse(text.format(frame, damper), "loom", {"steps_per_revolution": 180})
+        trace = loomfmu.run(loom, output=tmp_path / f"{frame}.h5").trace
+        return made(trace).html.replace(frame, "heald_1").replace(damper, "damper_1"), trace
+
+    usual, _trace = drawn("heald_1", "damper_1")
+    assert "Heald frames with their carriers" in usual
+    assert "The rapier head has the 17 mm that its claim gives it." in usual
+    renamed, trace = drawn("left_1", "swing_1")
+    assert renamed == usual
+    trace.wires = {}  # as traces of older versions have them
+    assert "The trace does not say which carrier is in which frame: none is drawn." in made(trace).html
 
 
 def test_the_belt_in_motion_has_a_drawing_of_its_own(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from ..errors import shown
 
 HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "error", "at", "note")
 HOLDS, FAILS, UNDECIDED = "holds", "FAILS", "undecided"
+SHED_OPENING = "smallest shed opening at the head"  # a claim whose bound is the height of the head
 MET = 1e-12  # of worst value or bound: a bound met by construction is met to rounding
 
 # what JSON makes of the types of the fields

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from loomfmu import LoomfmuError, evaluate, prepare
+from loomfmu import LoomfmuError, evaluate, judge, prepare
 from loomfmu.cosim.claims.lifted import lift_of
+from loomfmu.cosim.scenes import scene as scenes
 
 LOOM = """
 revolutions = 4
@@ -24,12 +25,68 @@ DWELL = '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "40 deg"\n'
 AT = '[[claims]]\nkind = "dwell_contains"\nheald = "heald_1"\nangles = ["180 deg"]\n'
 
 
-def test_the_lift_is_the_carriers_where_there_is_one() -> None:
-    assert lift_of("heald_1", "", ["heald_1"]) == "heald_1.lift"
-    assert lift_of("heald_1", "", ["heald_1.lift", "damper_1.rate"]) == "damper_1.carrier_lift"
-    assert lift_of("heald_1", "", ["heald_1", "damper_2"]) == "heald_1.lift"
-    assert lift_of("left", "damper_left", ["left"]) == "damper_left.carrier_lift"
-    assert lift_of("left", "", ["left"]) == "left.lift"
+NAMED = """
+revolutions = 2
+steps_per_revolution = 90
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[dobby]
+[{0}]
+component = "HealdFrame"
+pattern = "10"
+[{1}]
+component = "HealdDamper"
+[wires]
+"{1}.lift" = "{0}.lift"
+"{1}.velocity" = "{0}.velocity"
+"{1}.acceleration" = "{0}.acceleration"
+"""
+
+
+class Run(list[str]):
+    """Signals, and the wires of a frame to what takes its lift."""
+
+    def __init__(self, frame: str, *fed: str) -> None:
+        super().__init__([f"{frame}.lift", "damper_1.carrier_lift", "damper_2.carrier_lift", "warp_1.load"])
+        self.wires = {f"{each}.lift": f"{frame}.lift" for each in fed} | {"heald_9.angle": "dobby.angle"}
+
+
+def test_the_lift_is_that_of_the_carrier_which_is_wired_to_the_frame() -> None:
+    assert lift_of("heald_1", "", Run("heald_1", "warp_1")) == "heald_1.lift"
+    assert lift_of("heald_1", "", Run("heald_1", "warp_1", "damper_2")) == "damper_2.carrier_lift"
+    assert lift_of("left", "", Run("left", "damper_1")) == "damper_1.carrier_lift"
+    assert lift_of("left", "frame", Run("left", "damper_1")) == "left.lift"
+    assert lift_of("left", "damper_2", Run("left", "damper_1")) == "damper_2.carrier_lift"
+    with pytest.raises(LoomfmuError, match="left has more than one damper, damper_1 and damper_2; set lift"):
+        lift_of("left", "", Run("left", "damper_1", "damper_2"))
+
+
+@pytest.mark.usefixtures("fmu_cache")
+@pytest.mark.parametrize("names", [("left", "swing"), ("heald_1", "damper_2")])
+def test_verdicts_do_not_hang_on_names(names: tuple[str, str]) -> None:
+    """A frame was judged by its own lift unless its damper had its number."""
+
+    def judged(*called: str) -> list[tuple[str, str, float, str]]:
+        claims = NAMED.format(*called) + (ROOM + DWELL + AT).replace("heald_1", called[0])
+        found = evaluate(scenes.parse(claims), errors="none").claims
+        plain = [each.signal.replace(called[1], "damper_1") for each in found]
+        return [(each.word, signal, each.worst, each.note) for each, signal in zip(found, plain, strict=True)]
+
+    usual = judged("heald_1", "damper_1")
+    assert all("damper_1.carrier_lift" in signal for _word, signal, _worst, _note in usual)
+    assert judged(*names) == usual
+
+
+@pytest.mark.usefixtures("fmu_cache")
+def test_a_run_that_does_not_say_which_damper_is_in_a_frame_is_not_judged() -> None:
+    """Traces of older versions have no wires."""
+    trace = evaluate(scenes.parse(NAMED.format("left", "swing") + ROOM), errors="none").trace
+    dwell = {"kind": "dwell", "heald": "left", "at_least": "1 deg"}
+    trace._wires = {}
+    with pytest.raises(LoomfmuError, match=r"^the run does not say which damper is in left; set lifted_by$"):
+        judge(trace, **dwell)
+    assert judge(trace, **dwell, lifted_by="swing").signal == "swing.carrier_lift"
 
 
 @pytest.mark.usefixtures("fmu_cache")

@@ -3,7 +3,7 @@
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple, dataclass_transform
 
@@ -12,6 +12,7 @@ from . import shaft
 from .arguments import Argument, Name, argument, argument_of
 from .curves import Doubt, Stretch
 from .extremes import COARSE_NOTE
+from .lifted import Wired
 from .validity import gaps, off_by, unknown_note
 
 AT_LEAST, AT_MOST = 1, -1
@@ -71,11 +72,8 @@ class Claim(ABC):
         """Its arguments as they were declared."""
         return {each.name: argument_of(each) for each in fields(cls)}
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
-        """The signals that must be recorded for it, in a scene with these instances.
-
-        With * for the instance they are those of all instances that have such an output.
-        """
+    def signals(self, scene: Wired) -> list[str]:
+        """The signals that must be recorded for it, in a scene with these outputs and wires."""
         needed = [need.partition(".") for need in self.needs]
         return [f"{getattr(self, owner)}.{variable}" for owner, _, variable in needed]
 

@@ -15,6 +15,7 @@ from .arguments import TURN, Name, Quantity, argument
 from .claim import AT_MOST, ONE, PERCENT, POWER, Claim
 from .curves import Floats, Motion, Stretch
 from .extremes import lowest
+from .lifted import Wired
 
 # what a mechanism calls the work that it has taken from the shaft, its torque, and the part of it whose work
 # it does not know
@@ -50,7 +51,7 @@ class SpeedFluctuation(Claim):
 
     sense, unit = AT_MOST, PERCENT
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
+    def signals(self, scene: Wired) -> list[str]:
         return ["shaft.angle", "shaft.velocity"]
 
     def unseen(self, trace: Signals) -> str:
@@ -96,9 +97,9 @@ class EnergyBalance(Claim):
     sense, unit = AT_MOST, ONE
     noise = 1e-12  # of the work that the shaft exchanges: rounding of sums
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
+    def signals(self, scene: Wired) -> list[str]:
         books = ("velocity", "acceleration", "motor_work", "load_work", "other_work", "kinetic_energy")
-        of_loads = (f"*.{each}" for each in (WORK, TORQUE, PASSED))
+        of_loads = (name for name in scene if name.partition(".")[2] in (WORK, TORQUE, PASSED))
         return ["shaft.angle", *(f"shaft.{each}" for each in books), *of_loads]
 
     def unseen(self, trace: Signals) -> str:

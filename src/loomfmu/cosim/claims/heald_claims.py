@@ -4,7 +4,7 @@ What lifts the warp is judged: the carrier where a frame has a damper. The note 
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -17,7 +17,7 @@ from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
 from .curves import Floats, Motion, Stretch, motion_of
 from .extremes import first_lowest
-from .lifted import check_lifted_by, lift_of, lifts
+from .lifted import Wired, check_lifted_by, dampers_of, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
@@ -31,11 +31,9 @@ class _Lifted(Claim, kind=False):
     heald: str = argument(Name())
     lifted_by: str = argument(Name(), "")
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
-        check_lifted_by(self.lifted_by, list(instances))
-        return list(
-            dict.fromkeys((lift_of(self.heald, self.lifted_by, instances), *super().signals(instances)))
-        )
+    def signals(self, scene: Wired) -> list[str]:
+        check_lifted_by(self.lifted_by, dampers_of(scene))
+        return list(dict.fromkeys((lift_of(self.heald, self.lifted_by, scene), *super().signals(scene))))
 
     def _lift(self, trace: Signals) -> Motion:
         """The lift that the warp has."""

@@ -1,11 +1,22 @@
 """What lifts the warp of a heald frame: the carrier on springs in it, or the frame itself."""
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterator, Mapping
+from typing import Protocol
 
-from ...errors import LoomfmuError, shown
-from ...traces import Signals
+from ...errors import LoomfmuError, listed, shown
 
 FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
+
+
+class Wired(Protocol):
+    """The signals of a run and its wires, from input to output; those of a scene before it runs, too."""
+
+    @property
+    def wires(self) -> Mapping[str, str]: ...
+
+    def __contains__(self, signal: object) -> bool: ...
+
+    def __iter__(self) -> Iterator[str]: ...
 
 
 def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:
@@ -18,28 +29,42 @@ def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:
         )
 
 
-def lift_of(frame: str, lifted_by: str, names: Iterable[str]) -> str:
+def frames_of(run: Wired) -> list[str]:
+    """The heald frames of a run, whatever they are called: what has a lift and the height of its warp."""
+    return [each for each in _owners(run) if f"{each}.lift" in run and f"{each}.warp_height" in run]
+
+
+def dampers_of(run: Wired) -> list[str]:
+    """The dampers of a run, whatever they are called: what has a carrier with a lift."""
+    return [each for each in _owners(run) if f"{each}.carrier_lift" in run]
+
+
+def _owners(run: Wired) -> list[str]:
+    return sorted({name.partition(".")[0] for name in run})
+
+
+def lift_of(frame: str, lifted_by: str, run: Wired) -> str:
     """The signal of the lift that the warp of a frame has.
 
-    That is the lift of the carrier if the run has the damper of the frame, which has its number, or if
-    `lifted_by` names a damper; `names` are instances or signals of the run.
-
-    >>> lift_of("heald_2", "", ["heald_2", "damper_2"]), lift_of("heald_2", "frame", ["heald_2", "damper_2"])
-    ('damper_2.carrier_lift', 'heald_2.lift')
+    That is the lift of the carrier if a damper takes the lift of the frame, or if `lifted_by` names a damper.
+    Raises LoomfmuError where the wires do not tell.
     """
-    usual = frame.replace("heald", "damper", 1)
-    damper = lifted_by
-    if not damper and usual != frame and any(name.partition(".")[0] == usual for name in names):
-        damper = usual
+    damper = lifted_by or _damper_in(frame, run)
     return f"{damper}.carrier_lift" if damper not in ("", FRAME) else f"{frame}.lift"
 
 
-def frames_of(trace: Signals) -> list[str]:
-    """The heald frames of a run, whatever they are called: what has a lift and the height of its warp."""
-    owners = sorted({name.partition(".")[0] for name in trace})
-    return [each for each in owners if f"{each}.lift" in trace and f"{each}.warp_height" in trace]
+def _damper_in(frame: str, run: Wired) -> str:
+    """The damper in a frame; empty if it has none."""
+    dampers = dampers_of(run)
+    if dampers and not run.wires:  # as in traces of older versions
+        raise LoomfmuError(f"the run does not say which damper is in {frame}; set lifted_by")
+    fed = {sink.partition(".")[0] for sink, source in run.wires.items() if source == f"{frame}.lift"}
+    found = [each for each in dampers if each in fed]
+    if len(found) > 1:
+        raise LoomfmuError(f"{frame} has more than one damper, {listed(found)}; set lifted_by")
+    return next(iter(found), "")
 
 
-def lifts(frame: str, lifted_by: str, trace: Signals) -> list[str]:
+def lifts(frame: str, lifted_by: str, run: Wired) -> list[str]:
     """The lift that the warp has, and, if the carrier gives it, that of the frame."""
-    return list(dict.fromkeys((lift_of(frame, lifted_by, trace), f"{frame}.lift")))
+    return list(dict.fromkeys((lift_of(frame, lifted_by, run), f"{frame}.lift")))

@@ -1,7 +1,7 @@
 """Claims on the whole loom: its mechanisms keep out of each other's way."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
+from ...traces.verdict import SHED_OPENING
 from . import shaft
 from .arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
 from .curves import SAME, Doubt, Motion, Stretch, motion_of
 from .extremes import first_lowest, lowest, nearest
-from .lifted import check_lifted_by, frames_of, lift_of
+from .lifted import Wired, check_lifted_by, frames_of, lift_of
 
 NEVER = "the head never enters the shed in this run"
 
@@ -51,12 +52,11 @@ class RapierInOpenShed(_InShed):
     healds: Sequence[str] = argument(Names(), ())
     lifted_by: str = argument(Name(), "")
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
+    def signals(self, scene: Wired) -> list[str]:
         check_lifted_by(self.lifted_by, ())  # it judges several frames, and a damper belongs to one
-        frames = self.healds or ["*"]
+        frames = self.healds or frames_of(scene)
         wanted = [f"{frame}.{variable}" for frame in frames for variable in ("lift", "warp_height")]
-        carriers = [lift_of(frame, self.lifted_by, instances) for frame in self.healds]
-        carriers += ["*.carrier_lift"] * (not self.healds and not self.lifted_by)
+        carriers = [lift_of(frame, self.lifted_by, scene) for frame in frames]
         return list(dict.fromkeys([f"{self.weft}.travel", *wanted, *carriers]))
 
     def judge(self, trace: Signals) -> Verdict:
@@ -64,7 +64,7 @@ class RapierInOpenShed(_InShed):
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
         check_lifted_by(self.lifted_by, ())
-        text, limit, travel = "smallest shed opening at the head", self.head_height, self._travel(trace)
+        text, limit, travel = SHED_OPENING, self.head_height, self._travel(trace)
         in_shed = self._in_shed(trace)
         warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}
         if not in_shed:

@@ -5,7 +5,6 @@ Each is a claim without a bound: its verdict has the number as the worst value, 
 
 import math
 import re
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +16,7 @@ from . import shaft
 from .arguments import Name, Quantity, argument
 from .claim import Claim
 from .curves import motion_of
+from .lifted import Wired
 from .signal_claims import Above, Below
 from .validity import gaps
 
@@ -29,7 +29,7 @@ class Measure(Claim, kind=False):
 
     signal: str = argument(Name())
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
+    def signals(self, scene: Wired) -> list[str]:
         return [self.signal]
 
     def judge(self, trace: Signals) -> Verdict:

@@ -1,7 +1,6 @@
 """Claims on any signal: it stays on one side of a bound."""
 
 import math
-from collections.abc import Iterable
 from typing import ClassVar
 
 from ... import units
@@ -13,6 +12,7 @@ from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
 from .curves import Stretch, motion_of
 from .extremes import Extreme, lowest
 from .latches import latched
+from .lifted import Wired
 from .validity import gaps, known_within
 
 
@@ -32,7 +32,7 @@ class Bounded(Claim, kind=False):
     grid = LANDINGS
     text: ClassVar[str]
 
-    def signals(self, instances: Iterable[str]) -> list[str]:
+    def signals(self, scene: Wired) -> list[str]:
         return [self.signal]
 
     def parameter_owners(self) -> list[str]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 
 from ...errors import LoomfmuError, suggestion
 from ...variables import MOTION, TIME, Beside, variables_of
@@ -132,7 +132,7 @@ def judged_by(scene: Scene, claims: Iterable[Claim] | None = None) -> list[str]:
     """The signals that claims, by default the scene's, need, what holds extremes of these, and all rates."""
     wanted = []
     for claim in claims_of(scene) if claims is None else claims:
-        signals = list(signals_of(scene, claim))
+        signals = signals_of(scene, claim)
         held = (output_port(scene, each, "claim").beside for each in signals)
         names = [each.lowest if claim.sense > 0 else each.highest for each in held]
         owners = [each.partition(".")[0] for each in signals]
@@ -140,17 +140,34 @@ def judged_by(scene: Scene, claims: Iterable[Claim] | None = None) -> list[str]:
     return with_rates(scene, wanted)
 
 
-def signals_of(scene: Scene, claim: Claim) -> Iterator[str]:
+class Outputs:
+    """The outputs of a scene and its wires: what a claim sees of it before the run."""
+
+    def __init__(self, scene: Scene):
+        self._scene = scene
+
+    @cached_property
+    def wires(self) -> dict[str, str]:
+        """The output that each wired input takes its values from."""
+        return {".".join(wire.sink): ".".join(wire.source) for wire in self._scene.wires}
+
+    @cached_property
+    def _names(self) -> dict[str, None]:
+        """The outputs, in the order of the scene."""
+        instances = self._scene.instances.items()
+        ports = ((name, port) for name, each in instances for port in each.fmu.ports.values())
+        return {f"{name}.{port.name}": None for name, port in ports if port.causality == "output"}
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+
+def signals_of(scene: Scene, claim: Claim) -> list[str]:
     """The signals that a claim needs."""
-    for signal in claim.signals(scene.instances):
-        instance, _, variable = signal.partition(".")
-        if instance != "*":
-            yield signal
-            continue
-        for name, each in scene.instances.items():
-            port = each.fmu.ports.get(variable)
-            if port is not None and port.causality == "output":
-                yield f"{name}.{variable}"
+    return claim.signals(Outputs(scene))
 
 
 def shaft_angle(scene: Scene) -> list[str]:

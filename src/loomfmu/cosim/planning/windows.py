@@ -193,7 +193,7 @@ def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
     """The signals that show where the claims look, and where the extremes held by the kept signals occur."""
     wanted, owners = list(shaft_angle(scene)), list[str]()
     for claim in claims_of(scene):
-        signals = list(signals_of(scene, claim))
+        signals = signals_of(scene, claim)
         wanted += signals if claim.grid == LANDINGS else []
         owners += [signal.split(".")[0] for signal in signals]
     owners += [signal.split(".")[0] for signal in _latched(scene, kept)]

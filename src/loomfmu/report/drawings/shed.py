@@ -1,8 +1,7 @@
 """Heald frames with their carriers, and the shed that they form, with reed and rapier head in it."""
 
-import re
-
 from ...components.warp_tension import WarpTension
+from ...traces.verdict import SHED_OPENING
 from ..rules import Rule, mm
 from .recorded import instances
 from .sketch import Figure, Sketch, Value
@@ -21,9 +20,10 @@ def frames(tracks: Tracks) -> Figure | None:
         return None
     column = max(340.0 / max(len(names), 4), NARROWEST)
     stroke = max(1000.0 * tracks.parameter(f"{name}.stroke") for name in names)
-    dampers = {name: f"damper_{name.rpartition('_')[2]}" for name in names}
     known = instances(trace, "HealdDamper", "displacement")
-    half = max([20.0, *(_room(tracks, damper) for damper in dampers.values() if damper in known)])
+    carried = {trace.wires.get(f"{damper}.lift"): damper for damper in known}
+    dampers = {name: carried.get(f"{name}.lift", "") for name in names}
+    half = max([20.0, *(_room(tracks, damper) for damper in dampers.values() if damper)])
     sketch = Sketch(tracks, -75.0, -half - 34.0, column * max(len(names), 4) + 5.0, stroke + half + 12.0)
     for level, label in ((0.0, "lowered"), (stroke, "raised")):
         sketch.line((sketch.left, level), (sketch.right, level), role="path")
@@ -31,9 +31,10 @@ def frames(tracks: Tracks) -> Figure | None:
     for place, name in enumerate(names):
         x = column * (place + 0.5)
         with sketch.group(shift=(x, tracks.mm(f"{name}.lift"))):
-            _frame(sketch, dampers[name] if dampers[name] in known else "", 0.42 * column, half)
+            _frame(sketch, dampers[name], 0.42 * column, half)
         sketch.label(x, -half, name.rpartition("_")[2], shift=(0.0, 22.0))
-    carriers = any(damper in known for damper in dampers.values())
+    carriers = any(dampers.values())
+    unknown = known and not trace.wires  # in traces of older versions
     return sketch.figure(
         "frames", "Heald frames" + " with their carriers" * carriers,
         f"{len(names)} heald frames at their lifts"
@@ -43,6 +44,7 @@ def frames(tracks: Tracks) -> Figure | None:
             " the stops."
             if carriers
             else "Lifts are to scale; the frames are schematic."
+            + " The trace does not say which carrier is in which frame: none is drawn." * bool(unknown)
         ),
     )  # fmt: skip
 
@@ -138,7 +140,7 @@ def _head(sketch: Sketch, tip: str, station: float, low: float) -> str:
     heights = [
         1000.0 * verdict.bound
         for verdict in sketch.tracks.trace.verdicts
-        if re.fullmatch(r"2 \|\w+\.warp_height\|", verdict.signal)
+        if verdict.claim.endswith(SHED_OPENING)
     ]
     height = heights[0] if heights else 8.0
     with sketch.group(shown=tip):
