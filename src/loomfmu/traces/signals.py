@@ -154,6 +154,11 @@ class Signals(ABC):
         return {}
 
     @property
+    def fmus(self) -> Mapping[str, str]:
+        """The name of each instance's FMU, as far as it is known."""
+        return {}
+
+    @property
     def shared(self) -> dict[Any, Any]:
         """What the claims on a run have in common, where it is kept: of a file it may be too large."""
         return {}
@@ -192,7 +197,7 @@ class Recording(Signals):
     """A run that is kept in memory.
 
     It takes blocks as a `TraceWriter` does, and keeps their arrays. `parameter` gives a parameter of an
-    instance as it was set, or None; `wires` the source of each wired input.
+    instance as it was set, or None; `wires` the source of each wired input; `fmus` the FMU of each instance.
     """
 
     def __init__(
@@ -201,11 +206,13 @@ class Recording(Signals):
         channels: Sequence[Channel],
         parameter: Callable[[str, str], float | int | bool | None],
         wires: Mapping[str, str] = MappingProxyType({}),
+        fmus: Mapping[str, str] = MappingProxyType({}),
     ):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
         self._wires = dict(wires)
+        self._fmus = dict(fmus)
         self._parameters: dict[str, float] = {}
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
@@ -229,6 +236,11 @@ class Recording(Signals):
     def wires(self) -> Mapping[str, str]:
         """The output that each wired input took its values from."""
         return self._wires
+
+    @property
+    def fmus(self) -> Mapping[str, str]:
+        """The name of each instance's FMU."""
+        return self._fmus
 
     @property
     def shared(self) -> dict[Any, Any]:

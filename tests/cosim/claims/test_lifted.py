@@ -50,6 +50,7 @@ class Run(list[str]):
     def __init__(self, frame: str, *fed: str) -> None:
         super().__init__([f"{frame}.lift", "damper_1.carrier_lift", "damper_2.carrier_lift", "warp_1.load"])
         self.wires = {f"{each}.lift": f"{frame}.lift" for each in fed} | {"heald_9.angle": "dobby.angle"}
+        self.fmus: dict[str, str] = {}
 
 
 def test_the_lift_is_that_of_the_carrier_which_is_wired_to_the_frame() -> None:
@@ -76,6 +77,14 @@ def test_verdicts_do_not_hang_on_names(names: tuple[str, str]) -> None:
     usual = judged("heald_1", "damper_1")
     assert all("damper_1.carrier_lift" in signal for _word, signal, _worst, _note in usual)
     assert judged(*names) == usual
+
+
+@pytest.mark.usefixtures("fmu_cache")
+def test_a_carrier_that_is_not_recorded_is_not_left_out() -> None:
+    peak = '[[claims]]\nkind = "peak_load"\ndamper = "swing"\nat_most = "1000 kN"\n'
+    trace = evaluate(scenes.parse(NAMED.format("left", "swing") + peak), errors="none").trace
+    with pytest.raises(LoomfmuError, match=r"signal .swing\.carrier_lift. is not recorded"):
+        judge(trace, kind="dwell", heald="left", at_least="1 deg")
 
 
 @pytest.mark.usefixtures("fmu_cache")

@@ -9,10 +9,13 @@ FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
 
 
 class Wired(Protocol):
-    """The signals of a run and its wires, from input to output; those of a scene before it runs, too."""
+    """The signals of a run, its wires, from input to output, and its FMUs; those of a scene, too."""
 
     @property
     def wires(self) -> Mapping[str, str]: ...
+
+    @property
+    def fmus(self) -> Mapping[str, str]: ...
 
     def __contains__(self, signal: object) -> bool: ...
 
@@ -31,16 +34,22 @@ def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:
 
 def frames_of(run: Wired) -> list[str]:
     """The heald frames of a run, whatever they are called: what has a lift and the height of its warp."""
-    return [each for each in _owners(run) if f"{each}.lift" in run and f"{each}.warp_height" in run]
+    return _giving(run, "HealdFrame", "lift", "warp_height")
 
 
 def dampers_of(run: Wired) -> list[str]:
     """The dampers of a run, whatever they are called: what has a carrier with a lift."""
-    return [each for each in _owners(run) if f"{each}.carrier_lift" in run]
+    return _giving(run, "HealdDamper", "carrier_lift")
 
 
-def _owners(run: Wired) -> list[str]:
-    return sorted({name.partition(".")[0] for name in run})
+def _giving(run: Wired, fmu: str, *outputs: str) -> list[str]:
+    """The instances of an FMU, whatever is recorded of them, and all others with these outputs."""
+    owners = sorted({name.partition(".")[0] for name in run})
+    return [
+        each
+        for each in owners
+        if run.fmus.get(each) == fmu or all(f"{each}.{name}" in run for name in outputs)
+    ]
 
 
 def lift_of(frame: str, lifted_by: str, run: Wired) -> str:

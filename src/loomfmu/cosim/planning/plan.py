@@ -47,6 +47,11 @@ class Plan:
         """The output that each wired input takes its values from."""
         return {".".join(each.sink): ".".join(each.source) for each in self.pruned.scene.wires}
 
+    @property
+    def fmus(self) -> dict[str, str]:
+        """The name of each instance's FMU."""
+        return {name: each.fmu.name for name, each in self.pruned.scene.instances.items()}
+
 
 class Stepping:
     """Runs a scene with only what some signals need, as often as wanted.
@@ -82,7 +87,7 @@ class Stepping:
         """Run a scene, which differs in values alone, and keep the signals in memory."""
         plan = self.plan(scene, grid)
         with self.stepped(plan) as master:
-            recording = Recording(scene.name, self.channels, plan.effective.value, plan.wires)
+            recording = Recording(scene.name, self.channels, plan.effective.value, plan.wires, plan.fmus)
             try:
                 record(master, recording, lambda _step: None, grid.steps + 1)
             except Interrupted:

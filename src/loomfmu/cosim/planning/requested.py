@@ -152,6 +152,11 @@ class Outputs:
         return {".".join(wire.sink): ".".join(wire.source) for wire in self._scene.wires}
 
     @cached_property
+    def fmus(self) -> dict[str, str]:
+        """The name of each instance's FMU."""
+        return {name: each.fmu.name for name, each in self._scene.instances.items()}
+
+    @cached_property
     def _names(self) -> dict[str, None]:
         """The outputs, in the order of the scene."""
         instances = self._scene.instances.items()
