@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple, dataclass_transform
 from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import Doubt, Stretch
+from .curves import Doubt, Stretch, Unknown
 from .extremes import COARSE_NOTE
 from .lifted import Wired
 from .validity import gaps, off_by, unknown_note
@@ -133,8 +133,8 @@ class Claim(ABC):
             notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
         short = trace.cut_short or self.unseen(trace)
         open_ = bool(short) and (holds or not self.final)
-        doubts = {note for note in notes if isinstance(note, Doubt)}
-        doubted = bool(doubts) and (holds or not (self.final or doubts == {COARSE_NOTE}))
+        kind = Doubt if holds or self.final else Unknown
+        doubted = any(isinstance(note, kind) for note in notes) and (holds or not self.final)
         decided = not (math.isnan(worst) or doubted or open_)
         if not decided:
             notes = (short, *notes)

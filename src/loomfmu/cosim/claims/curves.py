@@ -30,6 +30,10 @@ class Doubt(str):
     """A note that leaves a claim undecided which would hold otherwise."""
 
 
+class Unknown(Doubt):
+    """A note that a signal is not known between the samples: only a sample may fail a claim."""
+
+
 class Survey(NamedTuple):
     """Facts about the samples of a motion: whether all are `finite`, their range.
 
@@ -107,8 +111,8 @@ class Motion:
     def note(self) -> str:
         """The reason why the values between the samples are not known, if so."""
         if not self.finite:
-            return Doubt(f"{self.signal} or its rate is not finite everywhere")
-        return "" if self.known else Doubt(f"{self.signal} is known only at the samples")
+            return Unknown(f"{self.signal} or its rate is not finite everywhere")
+        return "" if self.known else Unknown(f"{self.signal} is known only at the samples")
 
     def points(self, intervals: Integers) -> Floats:
         """Bernstein points of the polynomials on some intervals."""

@@ -15,12 +15,14 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
-from .curves import Floats, Motion, Stretch, motion_of
+from .curves import Doubt, Floats, Motion, Stretch, motion_of
 from .extremes import first_lowest
 from .lifted import Wired, check_lifted_by, dampers_of, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")
+
+CUT_OFF = Doubt("one is cut off by an end of the run and may be shorter; run longer or start elsewhere")
 
 Ends = tuple[list[Stretch], list[Stretch]]  # when a motion is at the lower end, and at the upper one
 
@@ -106,7 +108,8 @@ class _Span(_Lifted, kind=False):
         """The least turn of the shaft during one of these spans of a motion, its time, and notes."""
         turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
         judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
-        note = ""
+        shown = [turn for turn, span in zip(turned, spans, strict=True) if not span.whole]
+        note = CUT_OFF if any(turn < self.at_least for turn in shown) else ""
         if not judged:
             judged, note = _cut_off(spans, turned, self.at_least, _repeats(lift, stroke, turning), lift.time)
         worst, time = math.nan, math.nan
@@ -236,7 +239,7 @@ def _cut_off(
         note = "joined from its parts at the end and the start of the run"
         return [(joined, spans[1].start)], f"{note}: it lasts at least this long" if held else note
     if enough:
-        return enough, "the other one is cut off by an end of the run and not judged"
+        return enough, CUT_OFF
     return [], "none begins and ends within the run"
 
 

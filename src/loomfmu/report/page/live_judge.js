@@ -5,6 +5,7 @@ loomfmu.judge = run => {
   const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME), EMPTY = 1e-12;
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
   const UNPASSED = "the run never passes through the whole window";
+  const CUT_OFF = "one is cut off by an end of the run and may be shorter; run longer or start elsewhere";
   const NEVER = "the head never enters the shed in this run";
   const NOT_FINAL = ["dwell", "clear_shed", "nip_holds"]; // of which the rest of a revolution may mend a failure
   const FAR_ABOVE = 10, NEAR = 1e-4; // of the error at the scene's own values, and of the bound
@@ -123,7 +124,7 @@ loomfmu.judge = run => {
     if (spans.length === 2 && repeats && (joined >= limit || !held))
       return [[{ value: joined, time: spans[1].start }],
               `joined from its parts at the end and the start of the run${held ? ": it lasts at least this long" : ""}`];
-    if (enough.length) return [enough, "the other one is cut off by an end of the run and not judged"];
+    if (enough.length) return [enough, CUT_OFF];
     return [[], "none begins and ends within the run"];
   }
 
@@ -131,6 +132,7 @@ loomfmu.judge = run => {
   function shortest(lift, [lower, upper], limit, stroke) {
     const spans = [...lower, ...upper].map(each => ({ ...each, time: each.start, value: turned(each) })).sort(byTime);
     let [judged, note] = [spans.filter(each => each.whole), ""];
+    if (spans.some(each => !each.whole && each.value < limit)) note = CUT_OFF;
     if (!judged.length) [judged, note] = cutOff(spans, limit, lift, stroke);
     return { ...(judged.length ? firstLowest(judged) : { value: NaN, time: NaN }), notes: [note, lift.note] };
   }
@@ -334,7 +336,7 @@ loomfmu.judge = run => {
     if (short) return unknown(short);
     // a part of a run that is not known cannot bring a claim back that fails
     if (holds && !claim.window && gaps(signal)) return gap(signal);
-    const doubts = (found.notes || []).filter(each => each?.endsWith(loomfmu.ONLY_SAMPLES));
+    const doubts = (found.notes || []).filter(each => each === CUT_OFF || each?.endsWith(loomfmu.ONLY_SAMPLES));
     if (holds && doubts.length) return unknown(`${doubts[0]}; ${NOT_HERE}`);
     if (tooNear(claim, verdict)) return unknown(`it is nearer to its bound, ${loomfmu.shownIn(claim, verdict.bound)}, than the page can tell; ${NOT_HERE}`);
     return { ...verdict, holds };
