@@ -66,17 +66,21 @@ def _run_here(options: argparse.Namespace) -> int:
 
 def _print_title(result: "Result") -> None:
     """What was run, and how far."""
-    scene, heading = result.scene, result.trace.heading
+    scene = result.scene
+    try:
+        heading, origin = result.trace.heading, result.trace.origin
+        turned = result.trace.turned_otherwise(scene.periods)
+    except LoomfmuError:  # the run is whole, whatever has become of its file
+        heading, origin, turned = scene.title, "another run has replaced its trace meanwhile", ""
     if result.ended:
         say(f"{heading}: ended by {result.ended}, {result.steps} steps")
     elif scene.step is None:
-        turned = result.trace.turned_otherwise(scene.periods)
         count = f"{scene.periods:g} nominal" if turned else f"{scene.periods:g}"
         parts = revolutions(count), turned, f"{result.steps} steps"
         say(f"{heading}: {', '.join(filter(None, parts))}")
     else:
         say(f"{heading}: {scene.periods:g} s in {scene.steps} steps of {scene.step:g} s")
-    say(result.trace.origin)
+    say(origin)
 
 
 def _print_trace(path: str) -> None:

@@ -26,6 +26,7 @@ from .scenes.scene import Scene
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
 
+NO_VALUE = "coarser steps give no value: take more steps"
 SHARES = (0.62, 0.38)  # of the steps: the golden ratio and its square are farthest from fractions
 
 
@@ -45,12 +46,12 @@ class Method(NamedTuple):
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
 # and two at a kink: the changes are 6 and 47, or 1.6 and 6 times the error.
-PRESENT = Method((2.0, 1.0 / 6.0), floor=1e-12, near=0.01)
+PRESENT = Method((3.0, 0.5), floor=1e-12, near=0.01)
 # An extreme that a component holds is found beyond what it takes for noise of its samples.
 HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack, and to one where a
 # loop carries values of the step before: then the changes are 0.6 and 1.6 times the error.
-MEMORY = Method((4.0, 1.5), floor=1e-9, near=0.1)
+MEMORY = Method((6.0, 2.0), floor=1e-9, near=0.1)
 
 
 @dataclass(frozen=True)
@@ -156,8 +157,7 @@ def _estimated(
     if not math.isfinite(coarser[0]):
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
-        note = "coarser steps give no value: take more steps"
-        return replace(_noted(verdict, note), decided=False, holds=False)
+        return replace(_noted(verdict, NO_VALUE), error=math.inf, decided=False, holds=False)
     spread = max(changes)
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers

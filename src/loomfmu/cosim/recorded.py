@@ -33,8 +33,8 @@ def usual_path(scene: Scene, ending: str = ".h5") -> Path:
     Such as `results/wl680_3600_shaft.speed=700rpm.h5`. Values that do not fit into a name end with a digest.
     """
     given = ",".join(f"{key}={value}" for key, value in sorted(texts(scene.overrides).items()))
-    plain = re.sub(r"\s", "", given)
-    shown = UNSAFE.sub("-", plain)[:LONGEST]
+    plain = re.sub(r"(?<=\d)\s+(?=[^\s\d])", "", given)  # between a number and its unit
+    shown = UNSAFE.sub("-", re.sub(r"\s", "", plain))[:LONGEST]
     if shown != plain:
         shown += f"-{hashlib.sha256(given.encode()).hexdigest()[:8]}"
     return Path("results") / f"{scene.name}{shown and '_'}{shown}{ending}"

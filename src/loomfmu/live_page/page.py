@@ -13,6 +13,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.claims.lifted import frames_of, lift_of
+from ..cosim.estimates import NO_VALUE
 from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
@@ -174,7 +175,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
                 "holds": verdict.holds or verdict.distance >= 0.0,
                 "worst": verdict.worst,
                 "error": verdict.error if estimated else 0.0,
-                "coarse": math.isfinite(verdict.worst) and not verdict.decided and math.isnan(verdict.error),
+                "coarse": NO_VALUE in verdict.note,
                 "met": verdict.decided and verdict.distance == 0.0,
             },
         })  # fmt: skip

@@ -192,6 +192,8 @@ class Verdict:
         for name in ("bound", "worst", "time", "angle", "error"):
             if name in known:  # a trace of an earlier version has no errors
                 known[name] = math.nan if known[name] is None else float(known[name])
+        if not known.get("decided", True) and math.isnan(known.get("error", 0.0)):
+            known["error"] = math.inf
         if "display" in stored:
             return cls(**known, display_unit=stored["display"]["unit"])
         # as version 0.1.0 stored them: SI values beside the unit that people read them in

@@ -165,6 +165,8 @@ class Motion:
         """Second rates at the samples."""
         if len(self.values) > 2:
             return self.values[2]
+        if len(self.time) < 2:
+            return np.zeros(len(self.time))
         return np.asarray(np.gradient(self.values[1], self.time, edge_order=2 if len(self.time) > 2 else 1))
 
     def length(self, intervals: Integers) -> Floats:

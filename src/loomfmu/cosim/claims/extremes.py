@@ -37,7 +37,7 @@ class Extreme(NamedTuple):
 def lowest(motion: Motion, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
     """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
     if not motion.finite:
-        return _lowest_sample(motion, sign, within)
+        return lowest_sample(motion, sign, within)
     survey = motion.survey if sign > 0.0 else motion.survey.reversed
     if within is None and len(motion.values) == 1:  # straight lines are lowest at a sample
         values = sign * motion.values[0]
@@ -102,7 +102,8 @@ def _least(points: Floats) -> float:
     return float(np.min(bernstein.lowest(points)[0], initial=math.inf))
 
 
-def _lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None) -> Extreme:
+def lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None) -> Extreme:
+    """The sample at which `sign` times the motion is lowest, NaN where there is none within."""
     there = inside(motion.time, within)
     if not there.any():
         return Extreme(math.nan, math.nan)

@@ -10,10 +10,12 @@ from . import shaft
 from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
 from .curves import Stretch, motion_of
-from .extremes import Extreme, lowest
+from .extremes import Extreme, lowest, lowest_sample
 from .latches import latched
 from .lifted import Wired
 from .validity import gaps, known_within
+
+NO_SAMPLE = "no sample lies in that window; take more steps"
 
 
 class Bounded(Claim, kind=False):
@@ -66,9 +68,11 @@ class Bounded(Claim, kind=False):
         """The worst value, and a note on how it is known."""
         if within == []:
             return Extreme(math.nan, math.nan), ""
-        found = lowest(motion_of(trace, self.signal), self.sense, within)
+        motion = motion_of(trace, self.signal)
         if self.at_samples:
-            return found._replace(possible=found.sure), ""
+            found = lowest_sample(motion, self.sense, within)
+            return found._replace(possible=found.sure), "" if math.isfinite(found.time) else NO_SAMPLE
+        found = lowest(motion, self.sense, within)
         return latched(trace, self.signal, self.sense, found, within)
 
     def unseen(self, trace: Signals) -> str:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cached_property, partial
 
 from ...errors import LoomfmuError, suggestion
+from ...upstream import sources_of, upstream
 from ...variables import MOTION, TIME, Beside, variables_of
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, read
@@ -15,6 +16,7 @@ from ..scenes.scene import Scene
 from ..scenes.standard_loom import left_out
 
 SHAFT_ANGLE = "shaft.angle"
+PICKS = "pattern_length"  # of a heald frame
 MOST = 5  # names that a warning lists
 
 
@@ -82,8 +84,22 @@ def checked_claims(scene: Scene) -> Scene:
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
         check_bounds(scene, [claim])
-        notes += doubts(table)
+        notes += [*doubts(table), _unwoven(scene, claim, where)]
     return replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
+
+
+def _unwoven(scene: Scene, claim: Claim, where: str) -> str:
+    """A warning where a run is shorter than the repeat of the weave that a claim depends on."""
+    owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
+    feeding = upstream(owners, sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires))
+    frames = [each for name, each in scene.instances.items() if name in feeding and PICKS in each.fmu.ports]
+    picks = max((int(each.effect(PICKS) or 0) for each in frames), default=0)
+    if scene.step is not None or scene.periods >= picks:
+        return ""
+    return (
+        f"{where}: the weave repeats after {picks} picks, but the run shows {scene.periods:g}; set"
+        f" revolutions = {picks}"
+    )
 
 
 def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:

@@ -81,8 +81,8 @@ class _Runs(Evaluations):
         verdicts = [self.at(value)[number] for value in grid]
         distances = [_distance(each) for each in verdicts]
         known = [each for each in distances if math.isfinite(each)]
-        if len(known) < len(distances):
-            return bool(known)
+        if len(known) < len(distances):  # where none is known, nothing is known of this either
+            return True
         return max(known) - min(known) > SAME * max(map(_scale, verdicts))
 
 
