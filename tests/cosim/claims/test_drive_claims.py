@@ -180,7 +180,7 @@ def test_a_start_from_rest_that_fails_names_its_steps():
     (claim,) = loomfmu.evaluate(scenes.parse(scene)).claims
     assert not claim
     assert claim.note == "the steps may be too coarse for the start from rest: take more"
-    (claim,) = loomfmu.evaluate(scenes.parse(scene, overrides={"steps_per_revolution": 720})).claims
+    (claim,) = loomfmu.evaluate(scenes.parse(scene, overrides={"steps_per_revolution": 1440})).claims
     assert claim
     assert claim.note == ""
 

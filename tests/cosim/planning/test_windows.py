@@ -169,7 +169,7 @@ def test_steps_as_fine_as_points_are_kept_apart_stay(steps: int) -> None:
 
 
 def test_a_quick_start_is_not_overlooked() -> None:
-    at = {"shaft.ramp_duration": "5 ms", "revolutions": 1}
+    at = {"shaft.ramp_duration": "5 ms", "revolutions": 2}  # a whole one after the ramp
     found = loomfmu.evaluate(BELT, set={"grid": "windows", **at})
     fine = loomfmu.evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 5760, **at})
     assert found.claims[0].worst == pytest.approx(fine.claims[0].worst, abs=1e-9)
