@@ -258,8 +258,8 @@ def test_drawing(tmp_path):
 
 
 def test_drawing_without_its_package(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "ezdxf.filemanagement", None)  # as if it were not installed
-    with pytest.raises(LoomfmuError, match="needs the package ezdxf"):
+    monkeypatch.setitem(sys.modules, "ezdxf", None)  # as if it were not installed
+    with pytest.raises(LoomfmuError, match='needs the extra "cam"'):
         write_dxf(design_cam(points=36), tmp_path / "cam.dxf")
 
 

@@ -162,7 +162,10 @@ def test_run_says_how_long(place: Path, tmp_path: Path, capsys: pytest.CaptureFi
     (place / "plain.toml").write_text('title = "A motor"\n' + MOTOR)
     trace = tmp_path / "x.h5"
     assert main(["run", str(place / "plain.toml"), "--output", str(trace), "--set", "step=2ms"]) == 0
-    assert capsys.readouterr().out.splitlines()[0] == "A motor: 0.2 s in 100 steps of 0.002 s"
+    assert capsys.readouterr().out.splitlines()[:2] == [
+        "plain; step = 2ms: 0.2 s in 100 steps of 0.002 s",
+        'changed from the scene "A motor"',
+    ]
     assert Trace(trace).attributes["step"] == "0.002 s"
 
 

@@ -387,8 +387,8 @@ def test_what_xml_cannot_hold_is_refused_and_nothing_is_written(tmp_path: Path) 
     scene = scenes.load(DEMO, SHORT)
     for changed, said in (
         (
-            replace(scene, title="a\0b"),
-            "SystemStructureDescription description contains the control character U+0000",
+            replace(scene, name="a\0b"),
+            "SystemStructureDescription name contains the control character U+0000",
         ),
         (replace(scene, text="# \uffff"), "Scene text contains the control character U+FFFF"),
     ):
