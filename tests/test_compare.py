@@ -310,7 +310,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert (
         "1 of 2 signals" in first and "first to differ: belt.x" in first and ">largest difference<" in first
     )
-    assert "In the first trace: the claim holds" in rest
+    assert "a.h5: The claim holds" in rest and "b.h5: The claim holds" in rest
 
 
 def test_memory_holds_a_few_columns_whatever_the_number_of_signals(tmp_path: Path) -> None:

@@ -105,18 +105,22 @@ def test_the_example_runs_with_the_installed_command(python: Path, tmp_path: Pat
     assert "4320 steps with native FMUs, " in said
 
 
-@pytest.mark.parametrize("words", [("page",), ("export", "--fmu", "loom.fmu")], ids=" ".join)
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("page", 'a page that runs its scene needs the extra "native"'),
+        ("export --fmu loom.fmu", "this needs a compiler, which is not installed"),
+    ],
+)
 def test_what_needs_a_compiler_says_so_in_one_line(
-    python: Path, tmp_path: Path, words: tuple[str, ...]
+    python: Path, tmp_path: Path, words: str, said: str
 ) -> None:
     (tmp_path / "my_loom.toml").write_text(SCENE)
-    call = [str(python), "-c", COMMAND, *words, "my_loom.toml"]
+    call = [str(python), "-c", COMMAND, *words.split(), "my_loom.toml"]
     environment = os.environ | {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
     done = subprocess.run(call, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == (
-        'loomfmu: this needs a compiler, which is not installed: pip install "loomfmu[native]"\n'
-    )
+    assert done.stderr == f'loomfmu: {said}: pip install "loomfmu[native]"\n'
     assert not list(tmp_path.glob("**/loom.fmu*")) and not list(tmp_path.glob("**/*.html*"))
 
 

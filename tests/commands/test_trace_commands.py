@@ -19,8 +19,11 @@ def test_show_summarises_and_tells_again_whether_all_claims_held(
     lines = capsys.readouterr().out.splitlines()
     heading = "WL680-3600, G6300 left, weave 10/01, 400 rev/min (loomfmu "
     assert lines[0].startswith(heading) and lines[0].endswith(", complete)")
-    assert lines[1] == 'scene "Small"'
-    assert lines[1:3] == ["run by: loomfmu run scene.toml", "91 samples over 0.15 s, 1 revolution"]
+    assert lines[1:4] == [
+        'scene "Small"',
+        "run by: loomfmu run scene.toml",
+        "91 samples over 0.15 s, 1 revolution",
+    ]
     row = next(line.split() for line in lines if line.startswith("shaft.angle"))
     assert row == ["shaft.angle", "0", "360", "360", "deg"]
     row = next(line.split() for line in lines if line.startswith("weft.stroke"))
