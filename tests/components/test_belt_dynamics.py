@@ -475,7 +475,8 @@ def test_each_claim_on_a_deflection_has_that_share(claim, ends, pushed, later):
     (far,) = evaluate(parse(f"{text} = {-9.0 if of_margin else 1.0}", "far", values)).claims
     deflection = 1.0 - far.worst if of_margin else far.worst
     assert far.holds
-    assert share * deflection * (1.0 - 1e-9) <= far.error <= 2.0 * share * deflection
+    # an edge of the window is no communication point of the coarser runs, where the belt bends by 1e-3 more
+    assert share * deflection * (1.0 - 1e-9) <= far.error <= 2.0 * share * deflection + 2e-3 * deflection
     for side in (-0.9, 0.9):
         bound = far.worst + side * share * deflection
         assert evaluate(parse(f"{text} = {bound!r}", "near", values)).claims[0].word == "undecided"

@@ -227,7 +227,7 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
     scene = parse(SPRUNG + claims({"name": "margin", "kind": "lowest_margin", "bound": 0.1}))
     found = limit(scene, vary="shaft.speed=300rpm..400rpm", set={"steps_per_revolution": 15}, points=3)
     assert not found and math.isnan(found.claims[0].verdict.distance)
-    assert "fails: the samples are too far apart to be sure; take more steps" in found._repr_html_()
+    assert "undecided: the samples are too far apart to be sure; take more steps" in found._repr_html_()
 
 
 @pytest.mark.parametrize(
