@@ -25,7 +25,7 @@ SETTINGS = [
 def test_no_verdict_is_wrong(family: str) -> None:
     scene = drawn(SEED, family, 0)._replace(settings=SETTINGS, fine=[5760, 11520])
     found = confirmed(list(judged(scene)))
-    assert len(found) > 100
+    assert len(found) > 60
     wrong = [each for each in found if each.wrong]
     assert not wrong, [(each.claim.label, each.setting, each.stated.bound) for each in wrong]
 
