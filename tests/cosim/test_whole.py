@@ -288,13 +288,12 @@ def test_mechanisms_of_ones_own_and_tables_of_all_types(tmp_path: Path) -> None:
     scene = gates(tmp_path)
     one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")
     assert one.description.modelName == "double_scene"  # which C keeps for itself
-    expected = traced(scene, tmp_path)
-    same(one.instance().along(scene.steps, scene.step_size), expected)
+    # a run at 10 ms has a sample at 0.105 s, too, which the FMU passes over: one at 5 ms has the same times
+    expected = traced(scenes.parse(scene.text, "fine", {"step": "5 ms"}, tmp_path), tmp_path)
+    same(one.instance().along(scene.steps, scene.step_size), expected, every=2)
     assert set(expected["one.entry"]) == {3.0, 7.0, 2.0}
-    steps = 2 * scene.steps  # at 5 ms: on straight lines the value is half way between
-    fine = one.instance(step=scene.step_size / 2).along(steps, scene.step_size / 2)
-    between = traced(scenes.parse(scene.text, "fine", {"step": "5 ms"}, tmp_path), tmp_path)
-    same(fine, between)
+    steps = 2 * scene.steps  # on straight lines the value is half way between
+    same(one.instance(step=scene.step_size / 2).along(steps, scene.step_size / 2), expected)
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
