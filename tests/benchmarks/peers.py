@@ -91,15 +91,18 @@ class Ecos(Peer):
         return Timing(set_up, duration / turns)
 
     def signals(self, names: tuple[str, ...], steps: int) -> Signals:
-        """Signals along their times, in one revolution; its CSV files have too few digits."""
+        """Signals along their times, over one revolution from the end of the first step on.
+
+        Its CSV files have too few digits.
+        """
         rows: dict[str, list[float]] = {name: [] for name in names}
         with self._open(steps) as simulation:
-            for _ in range(steps):
+            for _ in range(steps + 1):
                 simulation.step(1)
                 for name, values in rows.items():
                     values.append(simulation.get_real(name.replace(".", "::")))
             simulation.terminate()
-        times = np.arange(1, steps + 1) * self.step_size(steps)
+        times = np.arange(1, steps + 2) * self.step_size(steps)
         return {"time": times, **{name: np.array(values) for name, values in rows.items()}}
 
 
@@ -168,17 +171,17 @@ class Libcosim(Peer):
         return Timing(set_up, duration / turns)
 
     def signals(self, names: tuple[str, ...], steps: int) -> Signals:
-        """Signals along their times, in one revolution."""
+        """Signals along their times, over one revolution from the end of the first step on."""
         execution, observer = self._open(steps)
-        if not execution.step(steps):
+        if not execution.step(steps + 1):
             raise RuntimeError("libcosim does not step the package")
         indices = {info.name.decode(): info.index for info in execution.slave_infos()}
-        found = {"time": np.arange(1, steps + 1) * self.step_size(steps)}
+        found = {"time": np.arange(1, steps + 2) * self.step_size(steps)}
         for signal in names:
             name, variable = signal.split(".")
             reference = self.scene.instances[name].fmu.ports[variable].reference
-            _times, _numbers, values = observer.time_series_real_samples(indices[name], reference, 1, steps)
-            found[signal] = np.array(values)
+            series = observer.time_series_real_samples(indices[name], reference, 1, steps + 1)
+            found[signal] = np.array(series[2])
         return found
 
 
@@ -227,7 +230,10 @@ class Fmpy(Peer):
         return Timing(begun - start, (ended - begun) / turns)
 
     def signals(self, names: tuple[str, ...], steps: int) -> Signals:
-        """Signals along the times at the end of the steps; it stamps them with those at the start."""
-        rows = self._run(steps, steps)
+        """Signals over one revolution from the end of the first step on.
+
+        It stamps them with the times at the start of the steps.
+        """
+        rows = self._run(steps, steps + 1)
         times = rows["time"] + self.step_size(steps)
         return {"time": times, **{name: rows[name] for name in names}}

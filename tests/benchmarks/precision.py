@@ -113,7 +113,8 @@ def errors(signals: Signals, loom: Loom, share: float) -> list[float]:
     """Errors of the results and of the signals, and by how many steps two of them come too late.
 
     Args:
-        signals: samples of `NAMES` along their times
+        signals: samples of `NAMES` along their times, over a whole revolution, which the dwell is judged on;
+            the others are compared in the first one
         share: share of a revolution that a step takes
     """
     time = signals["time"]
@@ -121,9 +122,9 @@ def errors(signals: Signals, loom: Loom, share: float) -> list[float]:
     wanted = np.arange(1, PLACES + 1) * turn / PLACES
     places = np.unique(np.abs(time[:, np.newaxis] - wanted).argmin(axis=0))
     found = [
-        abs(signals["belt.lowest_margin"][-1] - loom.lowest_margin),
+        abs(signals["belt.lowest_margin"][places[-1]] - loom.lowest_margin),
         abs(dwell(signals) - loom.dwell),
-        abs(signals["damper_1.peak_load"][-1] / loom.peak_load - 1.0),
+        abs(signals["damper_1.peak_load"][places[-1]] / loom.peak_load - 1.0),
     ]
     delays = []
     for signal in SIGNALS:

@@ -19,7 +19,8 @@ import writing
 from records import Row, read
 from texts import Draw, Figures, Find, items, parts, table
 
-from loomfmu.validation import plot_style, plots
+from loomfmu.extras import installed
+from loomfmu.validation import plot_style
 
 REPORT = "benchmarks.md"
 FOLDER = "benchmarks"
@@ -72,7 +73,7 @@ def write(results: Path) -> list[Path]:
     temporary.write_text(text(results), encoding="utf-8")
     temporary.replace(report)
     written = [report]
-    if not plots.available():
+    if not installed("plot"):
         return written
     for module in (summary, *(module for _title, module in BENCHMARKS.values())):
         for name, (_caption, height, draw) in _figures(module, results).items():
