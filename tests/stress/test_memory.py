@@ -11,11 +11,11 @@ import psutil
 import loomfmu
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.standard_loom import COMPONENT_OF
 
 runs, warm_up = int(sys.argv[1]), int(sys.argv[2])
-stems = {"shaft", "weft", "belt", "dobby", "heald", "damper"}
 text = '''
-revolutions = 0.4
+revolutions = 1
 steps_per_revolution = 45
 record = ["belt.lowest_margin"]
 [loom]
@@ -26,7 +26,9 @@ kind = "lowest_margin"
 bound = 0.1
 '''
 used = {instance.fmu.name for instance in scenes.parse(text).instances.values()}
-text += "".join(f'[other_{n}]\\ncomponent = "{name}"\\n' for n, name in enumerate(set(COMPONENTS) - used))
+stems = {name: stem for stem, name in COMPONENT_OF.items()}  # a source under another name is refused
+for name in sorted(set(COMPONENTS) - used):
+    text += f'[{stems.get(name, "other")}]\\ncomponent = "{name}"\\n'
 used = {instance.fmu.name for instance in scenes.parse(text).instances.values()}
 assert used == set(COMPONENTS)
 process = psutil.Process()
