@@ -22,8 +22,8 @@ def pair(directory: Path, revolutions: int) -> None:
         started(directory, "run", "scene.toml", "--output", OUTPUT, "--set", f"shaft.speed={speed} rpm")
         for speed in SPEEDS
     ]
-    for each in running:
-        printed, errors = each.communicate(timeout=300)
+    said = [each.communicate(timeout=300) for each in running]  # both have ended before one is judged
+    for each, (printed, errors) in zip(running, said, strict=True):
         assert (each.returncode, errors) == (0, ""), errors
         assert f"trace: {OUTPUT}" in printed
     assert os.listdir(directory / "results") == ["scene.h5"]
