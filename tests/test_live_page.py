@@ -29,10 +29,12 @@ DEMO, WHOLE = SIMS / "wl680_3600.toml", SIMS / "full_loom.toml"
 # of the largest value: sin and its kin differ in the last bit between the page's module and this machine
 ALIKE = 1e-12
 # rounding grows with what grows without bound, where the free length vanishes and near buckling (1.5e-12
-# measured), at each blow of a frame in its play (2.6e-11 after eight revolutions), in belts in motion,
-# whose deflection grows under the push (8.8e-11), and in the head's speed between two samples, from travels
-# that differ by little (1.1e-12); what belts in motion leave of the energy is rounding itself
+# measured, divided by the margin in the largest deflection: 1.2e-11), at each blow of a frame in its play
+# (2.6e-11 after eight revolutions), in belts in motion, whose deflection grows under the push (8.8e-11), and
+# in the head's speed between two samples, from travels that differ by little (1.1e-12); what belts in motion
+# leave of the energy is rounding itself
 LESS_ALIKE = {
+    "belt.largest_deflection": 1e-10, "belt_2.largest_deflection": 1e-10,
     "belt.": 1e-11, "belt_2.": 1e-11, "play_": 1e-9, "yarn.strain": 1e-10, "yarn.highest_snatch": 1e-11,
     "belt_motion.energy_residual": 1e-5, "belt_motion_2.energy_residual": 1e-5, "belt_motion": 1e-9,
 }  # fmt: skip
@@ -228,11 +230,11 @@ def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_pat
 
 def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Open, tmp_path: Path) -> None:
     """Six modes cannot follow the belt in mid-shed: what the run calls undecided, the page leaves to it."""
-    margin = '[[claims]]\nkind = "above"\nsignal = "belt_motion.margin"\nbound = 0\n'
+    margin = '[[claims]]\nkind = "above"\nsignal = "belt_motion.margin"\nbound = '
     scene = tmp_path / "margin.toml"
     scene.write_text(
         "revolutions = 1\nsteps_per_revolution = 360\n[loom]\nbelt_motion = true\n"
-        '[shaft]\nspeed = "600 rpm"\n' + margin + margin + 'window = ["80 deg", "125 deg"]\n'
+        '[shaft]\nspeed = "600 rpm"\n' + f'{margin}-5\n{margin}0\nwindow = ["80 deg", "125 deg"]\n'
         '[[claims]]\nkind = "belt_deflection"\nat_most = "20 mm"\n'
     )
     page = running(opened(live_page.write(scene, [], tmp_path / "page.html")))
@@ -245,7 +247,7 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
 
 
 def test_what_the_belt_leaves_undecided_with_other_ends_is_not_judged(opened: Open, tmp_path: Path) -> None:
-    """With play, modes leave 1 % of a deflection; the page has the error at the scene's own values, less."""
+    """Modes leave 1 % of a deflection; the page leaves ten times that at the scene's own values to a run."""
     text = (
         "revolutions = 1\nsteps_per_revolution = 360\n[loom]\nbelt_motion = true\n"
         "[shaft]\nspeed = '600 rpm'\n"
@@ -253,7 +255,7 @@ def test_what_the_belt_leaves_undecided_with_other_ends_is_not_judged(opened: Op
     claim = '[[claims]]\nkind = "below"\nsignal = "belt_motion.largest_deflection"\nbound = '
     scene, play = tmp_path / "ends.toml", {"belt_motion.guide_end": "play"}
     scene.write_text(f"{text}{claim}1\n")
-    bounds = [share * loomfmu.evaluate(scene, set=play).claims[0].worst for share in (1.005, 1.1)]
+    bounds = [share * loomfmu.evaluate(scene, set=play).claims[0].worst for share in (1.005, 1.2)]
     scene.write_text(text + "".join(f"{claim}{bound!r}\n" for bound in bounds))
     page = running(opened(live_page.write(scene, ["belt_motion.guide_end"], tmp_path / "page.html")))
     page.evaluate("loomfmu.live.verdicts = null")

@@ -16,7 +16,8 @@ loomfmu.judge = run => {
   const motion = (name, rates) => loomfmu.motionOf(run, name, rates);
   const { reached, latched, offBy } = loomfmu.latches(run, motion);
   const unknown = note => ({ holds: null, note });
-  const never = (...notes) => unknown(notes.filter(Boolean).join("; ")); // a claim without a value is not decided
+  const joined = notes => [...new Set(notes)].filter(Boolean).join("; ");
+  const never = (...notes) => unknown(joined(notes)); // a claim without a value is not decided
   const shown = (value, factor, unit) => `${loomfmu.general(value * factor)} ${unit}`;
   const degrees = angle => shown(angle, 1 / DEGREE, "deg"), mm = length => shown(length, 1e3, "mm");
   const byTime = (one, other) => one.time - other.time;
@@ -120,9 +121,9 @@ loomfmu.judge = run => {
     const angles = motion("shaft.angle").values, turns = Math.abs(last(angles) - angles[0]) / TURN;
     const [from, to] = [values[0], last(values)].map(each => Math.min(Math.abs(each), Math.abs(stroke - each)));
     const repeats = Math.round(turns) > 0 && Math.abs(turns - Math.round(turns)) < 1e-9 && Math.abs(to - from) <= 1e-9 * stroke;
-    const joined = all % TURN, held = joined < all;
-    if (spans.length === 2 && repeats && (joined >= limit || !held))
-      return [[{ value: joined, time: spans[1].start }],
+    const turn = all % TURN, held = turn < all;
+    if (spans.length === 2 && repeats && (turn >= limit || !held))
+      return [[{ value: turn, time: spans[1].start }],
               `joined from its parts at the end and the start of the run${held ? ": it lasts at least this long" : ""}`];
     if (enough.length) return [enough, CUT_OFF];
     return [[], "none begins and ends within the run"];
@@ -315,7 +316,7 @@ loomfmu.judge = run => {
   function unseen({ kind, window }) {
     const turned = turns.length ? (Math.max(...turns) - Math.min(...turns)) / TURN : Infinity;
     if (turned >= 1 - 1e-9 || kind === "dwell_contains" || window && passes(window).length) return "";
-    return window ? UNPASSED : `the shaft turns by less than a revolution; ${NOT_HERE}`;
+    return window ? UNPASSED : `the shaft turns by only ${loomfmu.general(turned, 3)} revolutions, and the claim takes a whole one`;
   }
 
   const turns = run.has("shaft.angle") ? run.signal("shaft.angle") : [];
@@ -327,13 +328,13 @@ loomfmu.judge = run => {
     if (claim.left) return unknown(`the page would judge it unlike the native run; ${NOT_HERE}`);
     if (tooCoarse || claim.native.coarse) return unknown(COARSE);
     const found = judge(claim);
-    if (found.holds === null) return found;
+    if (found.holds === null) return never(unseen(claim), found.note);
     const at = run.has("shaft.angle") && Number.isFinite(found.time) ? motion("shaft.angle").at(found.time) : NaN;
-    const verdict = { sense: claim.sense, at, ...found, note: [...new Set(found.notes)].filter(Boolean).join("; ") };
+    const verdict = { sense: claim.sense, at, ...found, note: joined(found.notes || []) };
     if (!Number.isFinite(verdict.worst)) return unknown(`there is no value to judge; ${NOT_HERE}`);
     const holds = verdict.sense * verdict.worst >= verdict.sense * verdict.bound, signal = verdict.signal || claim.signal;
     const short = (holds || NOT_FINAL.includes(claim.kind)) && unseen(claim);
-    if (short) return unknown(short);
+    if (short) return never(short, verdict.note);
     // a part of a run that is not known cannot bring a claim back that fails
     if (holds && !claim.window && gaps(signal)) return gap(signal);
     const doubts = (found.notes || []).filter(each => each === CUT_OFF || each?.endsWith(loomfmu.ONLY_SAMPLES));
