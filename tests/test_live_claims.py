@@ -74,7 +74,7 @@ ON_A_MOTOR = [
     {"kind": "nip_holds", "at_least": 3.5, "at_most": 5.0, "at_samples": True},
     {"kind": "belt_deflection", "at_most": "2 mm"},
     {"kind": "belt_deflection", "at_most": "10 mm"},
-    {"kind": "above", "signal": "belt_motion.margin", "bound": -5.0, "window": ["80 deg", "120 deg"]},
+    {"kind": "above", "signal": "belt_motion.margin", "bound": -20.0, "window": ["80 deg", "120 deg"]},
     {"kind": "below", "signal": "belt_motion.deflection", "bound": "2 mm", "window": ["240 deg", "275 deg"]},
     {"kind": "below", "signal": "belt_motion.largest_deflection", "bound": "10 mm"},
     {"kind": "above", "signal": "belt.margin", "bound": 0.4},
