@@ -107,7 +107,7 @@ def test_a_scene_is_read_with_tolerances_that_can_be_set(table: str, said: str, 
 
 
 def test_warnings_of_the_scene_are_those_of_a_run(capsys: pytest.CaptureFixture[str]) -> None:
-    options = ["--set", "revolutions=1", "--set", "weft.speed=400rpm"]
+    options = ["--set", "revolutions=2", "--set", "weft.speed=400rpm"]
     assert main(["tolerances", str(DEMO), "--vary", "belt.guide_clearance=0.2mm..0.35mm", *options]) == 0
     assert (
         capsys.readouterr().err.strip() == "warning: weft.speed has no effect: set weft.follow_shaft = false"
