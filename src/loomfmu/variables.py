@@ -83,7 +83,7 @@ class Variable:
 
     @property
     def one_way(self) -> bool:
-        """Whether it goes one way alone between two samples, so that these are its extremes."""
+        """True if it goes one way alone between two samples, so that these are its extremes."""
         held = self.so_far or self.lowest_of or self.highest_of
         return bool(held) or self.depends == () or self.variability == "fixed"
 

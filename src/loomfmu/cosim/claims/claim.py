@@ -133,7 +133,7 @@ class Claim(ABC):
             notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
         short = trace.cut_short or self.unseen(trace)
         open_ = bool(short) and (holds or not self.final)
-        kind = Doubt if holds or self.final else Unknown
+        kind = Doubt if holds else Unknown
         doubted = any(isinstance(note, kind) for note in notes) and (holds or not self.final)
         decided = not (math.isnan(worst) or doubted or open_)
         if not decided:

@@ -104,7 +104,7 @@ class Motion:
 
     @property
     def known(self) -> bool:
-        """Whether the values between the samples are known: by rates, or because samples are the extremes."""
+        """True if the values between the samples are known: by rates, or because samples are the extremes."""
         return len(self.values) > 1 or self.samples_hold
 
     @property
