@@ -85,10 +85,17 @@ class FiniteElements:
         # w_tt, w_xt, w_xx, w_x at a place in space, by the rates on the stretching elements
         mesh, grows = (0.0, 0.0) if self.stands else (s, a / length)
         by_rate = self.rho * (-2 * x * mesh * self.n1 + 2 * s * self.n1) + self.drag * self.n
-        by_value = self.rho * (
-            (-x * grows + 2 * x * mesh**2) * self.n1 + x**2 * mesh**2 * self.n2
-            - 2 * s * mesh * (self.n1 + x * self.n2) + s**2 * self.n2 + a / length * self.n1
-        ) + self.drag * (s - mesh * x) * self.n1  # fmt: skip
+        by_value = (
+            self.rho
+            * (
+                (-x * grows + 2 * x * mesh**2) * self.n1
+                + x**2 * mesh**2 * self.n2
+                - 2 * s * mesh * (self.n1 + x * self.n2)
+                + s**2 * self.n2
+                + a / length * self.n1
+            )
+            + self.drag * (s - mesh * x) * self.n1
+        )
         push = self.rho * a * length * (1 - x) + (0.0 if self.bent else self.mass * a + self.tension)
         stiff = -self.n1.T @ (w * push * self.n1) / length**2
         if not self.bent:
@@ -145,8 +152,9 @@ class FiniteElements:
         # second rate of the shortening L int(1 - cos), without the accelerations
         rest = (
             length * np.sum(self.w * (turning**2 / cosine**3 - tilt * (2 * s * turning + a / length * slope)))
-            + 2 * speed * np.sum(self.w * tilt * turning) + a * np.sum(self.w * (1 - cosine))
-        )  # fmt: skip
+            + 2 * speed * np.sum(self.w * tilt * turning)
+            + a * np.sum(self.w * (1 - cosine))
+        )
         return force / (self.rho * length), push / (self.rho * length), push, rest
 
     def accelerations(self, time, d, v, side=0.0):
@@ -194,10 +202,16 @@ class FiniteElements:
         while True:
             found = solve_ivp(
                 lambda t, y, side: np.concatenate([y[n:], self.accelerations(t, y[:n], y[n:], side)[0]]),
-                (time, times[-1]), np.concatenate([d, v]), method="Radau", t_eval=times[columns.shape[1] :],
-                rtol=rtol, atol=atol * np.repeat([1.0, RATES], n), jac=self.jacobian, args=(side,),
+                (time, times[-1]),
+                np.concatenate([d, v]),
+                method="Radau",
+                t_eval=times[columns.shape[1] :],
+                rtol=rtol,
+                atol=atol * np.repeat([1.0, RATES], n),
+                jac=self.jacobian,
+                args=(side,),
                 events=self.released if side else self.reached,
-            )  # fmt: skip
+            )
             if len(found.t):
                 columns = np.hstack([columns, found.y[:n]])
             if found.status == 0:

@@ -144,9 +144,16 @@ class Carrier:
 
                 # a step of 0.2 ms keeps the interpolation between scipy's steps as exact as the steps
                 run = solve_ivp(
-                    motion, (begin, stop), state, method="DOP853", rtol=1e-12, atol=1e-14, max_step=2e-4,
-                    dense_output=True, events=self.events(contact, side),
-                )  # fmt: skip
+                    motion,
+                    (begin, stop),
+                    state,
+                    method="DOP853",
+                    rtol=1e-12,
+                    atol=1e-14,
+                    max_step=2e-4,
+                    dense_output=True,
+                    events=self.events(contact, side),
+                )
                 until = run.t[-1]
                 inside = (times >= begin) & (times <= until)
                 if inside.any():
@@ -195,9 +202,13 @@ class Row:
 
 
 def convergence(
-    speed: float, turns: int = 1, steps: tuple[int, ...] = STEPS, law: int = SLOPED_SINE,
-    load: Load = unloaded, **parameters: float,
-) -> list[Row]:  # fmt: skip
+    speed: float,
+    turns: int = 1,
+    steps: tuple[int, ...] = STEPS,
+    law: int = SLOPED_SINE,
+    load: Load = unloaded,
+    **parameters: float,
+) -> list[Row]:
     """Errors against the integration for each number of steps, with the order seen from one to the next.
 
     The order is that of the displacement's error, by the number of steps.

@@ -112,10 +112,21 @@ def gcc() -> str:
 def library(source: str, target: Path, *options: str) -> bytes:
     """A shared library of one of the sources."""
     subprocess.run(
-        [gcc(), "-shared", "-fPIC", "-O2", *options, f"-I{HEADERS}", f"-I{SOURCES}", "-o", target,
-         SOURCES / source, "-lm"],
+        [
+            gcc(),
+            "-shared",
+            "-fPIC",
+            "-O2",
+            *options,
+            f"-I{HEADERS}",
+            f"-I{SOURCES}",
+            "-o",
+            target,
+            SOURCES / source,
+            "-lm",
+        ],
         check=True,
-    )  # fmt: skip
+    )
     return target.read_bytes()
 
 
@@ -136,10 +147,20 @@ def description2(name: str = "Motor", *, units: bool = True, phi: str = "rad", f
         return f'unit="{text}"' if units else ""
 
     return FMI2.format(
-        name=name, identifier="Motor", flags=flags, units=UNITS if units else "", phi=phi,
-        p="<ScalarVariable ", fixed=FIXED, angle='declaredType="Angle"' if units else "",
-        kgm2=unit("kg.m2"), nm=unit("Nm"), w=unit("rad.s-1"), a=unit("rad/s2"), kelvin=unit("K"),
-    )  # fmt: skip
+        name=name,
+        identifier="Motor",
+        flags=flags,
+        units=UNITS if units else "",
+        phi=phi,
+        p="<ScalarVariable ",
+        fixed=FIXED,
+        angle='declaredType="Angle"' if units else "",
+        kgm2=unit("kg.m2"),
+        nm=unit("Nm"),
+        w=unit("rad.s-1"),
+        a=unit("rad/s2"),
+        kelvin=unit("K"),
+    )
 
 
 def motor2(

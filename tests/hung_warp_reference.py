@@ -51,9 +51,16 @@ class Hung(Carrier):
 
                 events = [of_two(each) for each in self.events(contact, side)]
                 run = solve_ivp(
-                    motion, (begin, stop), state, method="DOP853", rtol=1e-12, atol=1e-13, max_step=2e-4,
-                    dense_output=True, events=events,
-                )  # fmt: skip
+                    motion,
+                    (begin, stop),
+                    state,
+                    method="DOP853",
+                    rtol=1e-12,
+                    atol=1e-13,
+                    max_step=2e-4,
+                    dense_output=True,
+                    events=events,
+                )
                 inside = (times >= begin) & (times <= run.t[-1])
                 for place in np.flatnonzero(inside):
                     z, v, force = run.sol(times[place])

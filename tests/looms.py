@@ -14,9 +14,15 @@ class Loom:
     """A loom at constant speed, its belt monitored in steps of an equal angle."""
 
     def __init__(
-        self, name: str = "WL680-3600", *, rpm: float = 600.0, steps: int = 720, head: str = "G6300 left",
-        begin: float = 0.0, **belt: Any,
-    ) -> None:  # fmt: skip
+        self,
+        name: str = "WL680-3600",
+        *,
+        rpm: float = 600.0,
+        steps: int = 720,
+        head: str = "G6300 left",
+        begin: float = 0.0,
+        **belt: Any,
+    ) -> None:
         turning = {"speed": rpm * RPM}
         self.weft = WeftInsertion(**parameters("WeftInsertion", machine=name), **turning)
         given = turning | {"inputs_at_step_end": True} | belt

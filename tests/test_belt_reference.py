@@ -94,9 +94,15 @@ def test_a_slow_load_leans_the_belt_on_its_guide_as_in_statics():
     length, turn = 0.1737, 3.8
     rate = (pi / length) ** 2 * math.sqrt(0.25 / 0.05)
     belt = standing(
-        8, length, clearance=CLEARANCE, guide=GUIDE, stiffness=0.25, rho=0.05,
-        tension=0.25 * (turn / length) ** 2, drag=0.1 * rate,
-    )  # fmt: skip
+        8,
+        length,
+        clearance=CLEARANCE,
+        guide=GUIDE,
+        stiffness=0.25,
+        rho=0.05,
+        tension=0.25 * (turn / length) ** 2,
+        drag=0.1 * rate,
+    )
     bow = 1e-4 * np.linalg.solve(belt.inner, belt.at((belt.n, np.sin(pi * belt.x))))
     found = belt.nodes(bow, 0.0 * bow, [0.0, 30.0 / rate], 1e-3, 1e-7)[:, -1]
     assert belt.touched(0.0, bow[0]) == 0.0

@@ -20,9 +20,16 @@ SPEED = RPM * math.pi / 30.0
 
 
 def trace(
-    path: Path, values: Any = np.sin, steps: int = 720, turns: float = 2.0, unit: str = "m",
-    worst: float = 0.5, clearance: float = 3e-4, more: bool = False, speed: float = SPEED,
-) -> Path:  # fmt: skip
+    path: Path,
+    values: Any = np.sin,
+    steps: int = 720,
+    turns: float = 2.0,
+    unit: str = "m",
+    worst: float = 0.5,
+    clearance: float = 3e-4,
+    more: bool = False,
+    speed: float = SPEED,
+) -> Path:
     """A trace of one smooth signal over the shaft's angle, and a count of revolutions."""
     angle = np.linspace(0.0, 2.0 * math.pi * turns, round(steps * turns) + 1)
     channels = [
@@ -115,9 +122,11 @@ def test_a_claim_whose_worst_frame_changes_is_listed_once(tmp_path: Path) -> Non
     )
     (change,) = loomfmu.compare(a, b).changes
     assert change.row == (
-        "claim", text, "holds (2 |heald_1.warp_height|), 0.017 m, bound 0 m",
+        "claim",
+        text,
+        "holds (2 |heald_1.warp_height|), 0.017 m, bound 0 m",
         "FAILS (2 |heald_2.warp_height|), -0.016 m, bound 0 m",
-    )  # fmt: skip
+    )
     assert loomfmu.compare(a, near, tolerance=1e-3)  # which frame it is is not a value of its own
 
 
@@ -135,8 +144,10 @@ def test_long_names_keep_the_values_of_both_traces_apart(
     assert f"A: {a}, B: {b}" in lines
     place = lines.index("claim they pass each other slowly enough: relative speed of the heads during the")
     assert lines[place + 1 : place + 4] == [
-        "  transfer", "  A: holds, 0.017 m, bound 0 m", "  B: FAILS, -0.016 m, bound 0 m",
-    ]  # fmt: skip
+        "  transfer",
+        "  A: holds, 0.017 m, bound 0 m",
+        "  B: FAILS, -0.016 m, bound 0 m",
+    ]
 
 
 def test_claims_of_one_text_belong_together_by_their_signals(tmp_path: Path) -> None:

@@ -145,9 +145,13 @@ def test_the_long_commands_of_the_readme_can_be_followed(
 
 # what the base install answers to the commands of the README that need an extra; fmpy brings that for reports
 LACKING = {
-    "build": "native", "export --fmu": "native", "sweep": "sweep,plot", "optimize": "study", "plot": "plot",
+    "build": "native",
+    "export --fmu": "native",
+    "sweep": "sweep,plot",
+    "optimize": "study",
+    "plot": "plot",
     "pytest": "No module named pytest",
-}  # fmt: skip
+}
 MINUTES = 20.0  # that one command may take on a busy machine, without a compiler
 
 
@@ -164,9 +168,13 @@ def test_the_readme_can_be_followed_in_an_environment_of_its_own(tmp_path: Path,
 
     def outcome(*arguments: str) -> tuple[int, str]:
         done = subprocess.run(
-            [python, *arguments], cwd=folder, env=environment, capture_output=True, text=True,
+            [python, *arguments],
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
             timeout=60.0 * MINUTES,
-        )  # fmt: skip
+        )
         assert "Traceback" not in done.stderr and "a bug in loomfmu" not in done.stderr, done.stderr
         return done.returncode, (done.stderr.splitlines() or [""])[-1]
 
@@ -194,9 +202,17 @@ def within(start: str, command: str) -> bool:
 
 WORDS = {3: "three", 4: "four", 5: "five", 6: "six"}
 FOLLOWED = (
-    "tour", "report", "scenes", "how_sure", "traces", "testing", "limits", "tolerances", "optimizing",
+    "tour",
+    "report",
+    "scenes",
+    "how_sure",
+    "traces",
+    "testing",
+    "limits",
+    "tolerances",
+    "optimizing",
     "fitting",
-)  # fmt: skip
+)
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",
@@ -266,8 +282,11 @@ def test_values_that_a_page_calls_assumed_are_marked_so_where_they_are_declared(
 
 
 def test_the_readme_quotes_the_benchmarks() -> None:
-    (row,) = re.findall(r"^\| a step, all outputs recorded \| (\w+) us \| .* \((\S+) us\) \|$",
-                        (HOUSE / "results" / "benchmarks.md").read_text(), re.M)  # fmt: skip
+    (row,) = re.findall(
+        r"^\| a step, all outputs recorded \| (\w+) us \| .* \((\S+) us\) \|$",
+        (HOUSE / "results" / "benchmarks.md").read_text(),
+        re.M,
+    )
     ours, other = (round(float(each)) for each in row)
     text = " ".join(README.read_text().split())
     assert f"all outputs recorded, takes {ours} us" in text

@@ -126,17 +126,22 @@ def test_without_extras_everything_works_or_names_what_it_needs(tmp_path: Path, 
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     done = subprocess.run(
-        [sys.executable, base_install.__file__], cwd=tmp_path, input=json.dumps(list(OUTCOMES)),
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        [sys.executable, base_install.__file__],
+        cwd=tmp_path,
+        input=json.dumps(list(OUTCOMES)),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     found = {}
     for line, (status, said) in zip(OUTCOMES, json.loads(done.stdout), strict=True):
         named = re.fullmatch(r'[^\n]+ needs? [^\n]*: pip install "loomfmu\[([a-z,]+)\]"', said)
         found[line] = named[1] if named and status == 2 else status if status != 2 else said
     assert found == OUTCOMES
     assert {line.partition(" ")[0] for line in OUTCOMES} - set(base_install.CALLS) == set(COMMANDS) - {
-        "sweep", "optimize"
-    }  # fmt: skip
+        "sweep",
+        "optimize",
+    }
     assert set(EXTRAS) == set(
         ",".join(each for each in OUTCOMES.values() if isinstance(each, str)).split(",")
     )

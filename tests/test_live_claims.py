@@ -64,7 +64,7 @@ ON_THE_LOOM = [
     {"kind": "transfer_in_time", "window": ["0 deg", "360 deg"]},
     {"kind": "transfer_in_time", "window": ["100 deg", "460 deg"]},
     {"kind": "transfer_speed", "at_most": "30 m/s"},
-]  # fmt: skip
+]
 ON_A_MOTOR = [
     {"kind": "motor_power", "at_most": "1 kW"},
     {"kind": "speed_fluctuation", "at_most": "5 %"},

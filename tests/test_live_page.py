@@ -34,10 +34,17 @@ ALIKE = 1e-12
 # in the head's speed between two samples, from travels that differ by little (1.1e-12); what belts in motion
 # leave of the energy is rounding itself
 LESS_ALIKE = {
-    "belt.largest_deflection": 1e-10, "belt_2.largest_deflection": 1e-10,
-    "belt.": 1e-11, "belt_2.": 1e-11, "play_": 1e-9, "yarn.strain": 1e-10, "yarn.highest_snatch": 1e-11,
-    "belt_motion.energy_residual": 1e-5, "belt_motion_2.energy_residual": 1e-5, "belt_motion": 1e-9,
-}  # fmt: skip
+    "belt.largest_deflection": 1e-10,
+    "belt_2.largest_deflection": 1e-10,
+    "belt.": 1e-11,
+    "belt_2.": 1e-11,
+    "play_": 1e-9,
+    "yarn.strain": 1e-10,
+    "yarn.highest_snatch": 1e-11,
+    "belt_motion.energy_residual": 1e-5,
+    "belt_motion_2.energy_residual": 1e-5,
+    "belt_motion": 1e-9,
+}
 pytestmark = [
     pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed: nothing is compiled"),
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="native FMUs are tested on Linux alone"),

@@ -63,8 +63,11 @@ def lowest_force(speed: float = 400.0 * math.pi / 30.0) -> float:
         return float(500.0 + 5000.0 * 0.03 * law(u) + scale * law.deriv(2)(u))
 
     near = min(np.linspace(0.0, 1.0, 1001), key=force)
-    return float(minimize_scalar(force, bounds=(near - 1e-3, near + 1e-3), method="bounded",
-                                 options={"xatol": 1e-10}).fun)  # fmt: skip
+    return float(
+        minimize_scalar(
+            force, bounds=(near - 1e-3, near + 1e-3), method="bounded", options={"xatol": 1e-10}
+        ).fun
+    )
 
 
 def changed(folder: Path, **texts: str) -> None:
@@ -82,9 +85,13 @@ def changed(folder: Path, **texts: str) -> None:
 
 def in_a_process(*arguments: str, cwd: Path) -> str:
     found = subprocess.run(
-        [sys.executable, *arguments], cwd=cwd, capture_output=True, text=True, check=False,
+        [sys.executable, *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
         env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
-    )  # fmt: skip
+    )
     assert found.returncode == 0, found.stdout + found.stderr
     return found.stdout
 
@@ -94,8 +101,11 @@ def test_the_folder_runs_and_its_tests_pass_as_it_is_written(tmp_path: Path, nam
     assert main(["new", name, "--output", str(tmp_path / "made here")]) == 0
     folder = tmp_path / "made here" / own
     assert sorted(file.name for file in folder.iterdir()) == [
-        "README.md", f"{own}.py", f"{own}.toml", f"test_{own}.py",
-    ]  # fmt: skip
+        "README.md",
+        f"{own}.py",
+        f"{own}.toml",
+        f"test_{own}.py",
+    ]
     assert not any("ccentric" in file.read_text() for file in folder.iterdir())
     assert "holds" in in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", cwd=folder)
     in_a_process("-m", "loomfmu.cli", "run", f"{own}.toml", "--native", cwd=folder)
@@ -324,8 +334,11 @@ def test_without_a_readme_its_docstring_is_the_documentation(cam: Path) -> None:
 def test_the_fmu_runs_in_a_scene_as_a_file_and_in_a_package(cam: Path) -> None:
     even = loomfmu.evaluate(cam / "cam.toml")
     assert main(["build", str(cam / "picking_cam.py"), "--output", str(cam)]) == 0
-    text = (cam / "cam.toml").read_text().replace("component = \"picking_cam.py:PickingCam\"",
-                                                  'fmu = "PickingCam.fmu"')  # fmt: skip
+    text = (
+        (cam / "cam.toml")
+        .read_text()
+        .replace('component = "picking_cam.py:PickingCam"', 'fmu = "PickingCam.fmu"')
+    )
     (cam / "file.toml").write_text(text)
     (note,) = scenes.load(cam / "file.toml").notes
     assert note.startswith("cam runs at its own constant speed")

@@ -38,11 +38,20 @@ def test_parts_of_an_entry_fill_the_lines(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert shown(43, monkeypatch, capsys) == [
-        "", "FAILS  a long claim about something", "  (belt.margin) 1 mm", "holds  another", "",
-    ]  # fmt: skip
+        "",
+        "FAILS  a long claim about something",
+        "  (belt.margin) 1 mm",
+        "holds  another",
+        "",
+    ]
     assert shown(20, monkeypatch, capsys) == [
-        "", "FAILS  a long claim", "  about something", "  (belt.margin) 1 mm", "holds  another", "",
-    ]  # fmt: skip
+        "",
+        "FAILS  a long claim",
+        "  about something",
+        "  (belt.margin) 1 mm",
+        "holds  another",
+        "",
+    ]
 
 
 def test_parts_of_a_stacked_entry_are_on_one_line_or_begin_one_each() -> None:
@@ -50,8 +59,11 @@ def test_parts_of_a_stacked_entry_are_on_one_line_or_begin_one_each() -> None:
     assert printed.as_entry(parts, 52, stacked=True) == ["  ".join(parts)]
     assert printed.as_entry(parts, 51, stacked=True) == [parts[0], "  A: holds", "  B: FAILS"]
     assert printed.as_entry(parts, 20, stacked=True) == [
-        "claim a long one", "  about something", "  A: holds", "  B: FAILS",
-    ]  # fmt: skip
+        "claim a long one",
+        "  about something",
+        "  A: holds",
+        "  B: FAILS",
+    ]
 
 
 class Terminal(io.StringIO):

@@ -100,11 +100,21 @@ def test_aliases_lead_to_units():
 @pytest.mark.parametrize(
     ("name", "spelling"),
     [
-        ("1", "1"), ("rad", "rad"), ("rad/s", "rad s-1"), ("rad/s2", "rad s-2"), ("1/s", "s-1"),
-        ("1/s2", "s-2"), ("N.m2", "N m2"), ("kg.m2", "kg m2"), ("N.s/m", "N s m-1"), ("rev/min", "rev min-1"),
-        ("N.m.s/rad", "N m s rad-1"), ("J/K", "J K-1"), ("N.m/A", "N m A-1"),
+        ("1", "1"),
+        ("rad", "rad"),
+        ("rad/s", "rad s-1"),
+        ("rad/s2", "rad s-2"),
+        ("1/s", "s-1"),
+        ("1/s2", "s-2"),
+        ("N.m2", "N m2"),
+        ("kg.m2", "kg m2"),
+        ("N.s/m", "N s m-1"),
+        ("rev/min", "rev min-1"),
+        ("N.m.s/rad", "N m s rad-1"),
+        ("J/K", "J K-1"),
+        ("N.m/A", "N m A-1"),
     ],
-)  # fmt: skip
+)
 def test_spelling_for_climate_and_forecast_readers(name, spelling):
     assert udunits(name) == spelling
 

@@ -41,8 +41,18 @@ BY_NAME = {variable.name: variable for variable in variables_of(Pump)}
 def test_order_is_that_of_the_declaration():
     names = [variable.name for variable in variables_of(Pump)]
     assert names == [
-        "speed", "kind", "open", "load", "angle", "turning", "flow", "strokes", "level", "passes", "primed",
-    ]  # fmt: skip
+        "speed",
+        "kind",
+        "open",
+        "load",
+        "angle",
+        "turning",
+        "flow",
+        "strokes",
+        "level",
+        "passes",
+        "primed",
+    ]
     # inherited variables come first, so that a base's references hold
     assert [variable.name for variable in variables_of(BigPump)] == [*names, "width"]
 
@@ -50,13 +60,17 @@ def test_order_is_that_of_the_declaration():
 @pytest.mark.parametrize(
     ("name", "causality", "variability", "kind"),
     [
-        ("speed", "parameter", "fixed", float), ("kind", "parameter", "fixed", int),
-        ("open", "parameter", "fixed", bool), ("load", "input", "continuous", float),
-        ("flow", "output", "continuous", float), ("strokes", "output", "discrete", int),
-        ("level", "local", "continuous", float), ("passes", "local", "discrete", int),
+        ("speed", "parameter", "fixed", float),
+        ("kind", "parameter", "fixed", int),
+        ("open", "parameter", "fixed", bool),
+        ("load", "input", "continuous", float),
+        ("flow", "output", "continuous", float),
+        ("strokes", "output", "discrete", int),
+        ("level", "local", "continuous", float),
+        ("passes", "local", "discrete", int),
         ("primed", "local", "discrete", bool),
     ],
-)  # fmt: skip
+)
 def test_declared_roles(name, causality, variability, kind):
     variable = BY_NAME[name]
     assert (variable.causality, variable.variability, variable.type) == (causality, variability, kind)

@@ -16,9 +16,13 @@ from loomfmu.fmi.native.platforms import host
 
 Signals = dict[str, NDArray[np.float64]]
 GETTERS = {
-    "Real": "getReal", "Integer": "getInteger", "Enumeration": "getInteger", "Boolean": "getBoolean",
-    "Float64": "getFloat64", "Int64": "getInt64",
-}  # fmt: skip
+    "Real": "getReal",
+    "Integer": "getInteger",
+    "Enumeration": "getInteger",
+    "Boolean": "getBoolean",
+    "Float64": "getFloat64",
+    "Int64": "getInt64",
+}
 
 
 def exported(scene: Scene, directory: Path, fmi: int = 2) -> Path:
@@ -59,9 +63,11 @@ class Instance:
         model = whole.description
         made = FMU2Slave if whole.fmi == 2 else FMU3Slave
         self.slave = made(
-            guid=model.guid, unzipDirectory=whole.directory, instanceName=name,
+            guid=model.guid,
+            unzipDirectory=whole.directory,
+            instanceName=name,
             modelIdentifier=model.coSimulation.modelIdentifier,
-        )  # fmt: skip
+        )
         if whole.fmi == 2:
             callbacks = fmpy.fmi2.fmi2CallbackFunctions()
             callbacks.logger = fmpy.fmi2.fmi2CallbackLoggerTYPE(self._log)

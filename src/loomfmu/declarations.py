@@ -51,10 +51,21 @@ def parameter(
     if choices:
         minimum, maximum = 1, len(choices)
     return _declare(
-        "parameter", "fixed", unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, choices=choices, source=source,
-        source_for=source_for, when=when, unless=unless,
-    )  # fmt: skip
+        "parameter",
+        "fixed",
+        unit,
+        start,
+        description,
+        display,
+        minimum=minimum,
+        maximum=maximum,
+        nominal=nominal,
+        choices=choices,
+        source=source,
+        source_for=source_for,
+        when=when,
+        unless=unless,
+    )
 
 
 def at_step_end() -> Any:
@@ -83,10 +94,22 @@ def input_(
     """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
     variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
-        "input", variability, unit, start, description, display,
-        minimum=minimum, maximum=maximum, nominal=nominal, unbounded=unbounded, rate=rate, source=source,
-        source_for=source_for, when=when, unless=unless,
-    )  # fmt: skip
+        "input",
+        variability,
+        unit,
+        start,
+        description,
+        display,
+        minimum=minimum,
+        maximum=maximum,
+        nominal=nominal,
+        unbounded=unbounded,
+        rate=rate,
+        source=source,
+        source_for=source_for,
+        when=when,
+        unless=unless,
+    )
 
 
 def output(
@@ -111,11 +134,24 @@ def output(
     """A value that the component computes; integers and booleans are discrete by default."""
     usual = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
-        "output", variability or usual, unit, start, description, display,
-        nominal=nominal, unbounded=unbounded, rate=rate, depends=(follows,) if follows else depends,
-        follows=follows, lowest_of=lowest_of, highest_of=highest_of, so_far=so_far, pole=pole,
-        valid_if=valid_if, error=error,
-    )  # fmt: skip
+        "output",
+        variability or usual,
+        unit,
+        start,
+        description,
+        display,
+        nominal=nominal,
+        unbounded=unbounded,
+        rate=rate,
+        depends=(follows,) if follows else depends,
+        follows=follows,
+        lowest_of=lowest_of,
+        highest_of=highest_of,
+        so_far=so_far,
+        pole=pole,
+        valid_if=valid_if,
+        error=error,
+    )
 
 
 def state(
@@ -133,9 +169,16 @@ def state(
     """
     variability = "continuous" if isinstance(start, float) else "discrete"
     return _declare(
-        "local", variability, unit, start, description, None,
-        minimum=minimum, maximum=maximum, carried=carried,
-    )  # fmt: skip
+        "local",
+        variability,
+        unit,
+        start,
+        description,
+        None,
+        minimum=minimum,
+        maximum=maximum,
+        carried=carried,
+    )
 
 
 def auxiliary(unit: str, description: str, **rest: Any) -> Any:

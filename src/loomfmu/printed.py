@@ -72,9 +72,11 @@ def complain_of(error: BaseException) -> None:
 
 
 def show(
-    headings: Sequence[str], rows: Sequence[Sequence[str]], entries: Sequence[Sequence[str]],
+    headings: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    entries: Sequence[Sequence[str]],
     stacked: bool = False,
-) -> None:  # fmt: skip
+) -> None:
     """Print rows below headings if the terminal is wide enough for them, and else entries, given in parts.
 
     Each part of a `stacked` entry begins a line, unless all fit on one. Piped, there are 80 columns, unless
@@ -121,9 +123,13 @@ def as_entry(parts: Sequence[str], width: int, stacked: bool = False) -> list[st
             continue
         first = INDENT if lines[-1] else ""
         broken = textwrap.wrap(
-            part, width, initial_indent=first, subsequent_indent=INDENT, break_long_words=False,
+            part,
+            width,
+            initial_indent=first,
+            subsequent_indent=INDENT,
+            break_long_words=False,
             break_on_hyphens=False,
-        )  # fmt: skip
+        )
         lines = [*filter(None, lines), *broken]
     return lines
 

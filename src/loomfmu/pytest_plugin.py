@@ -26,9 +26,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         TRACES, metavar="DIR", help="keep a trace of each scene that is tested, and a report if a claim fails"
     )
     parser.addini(
-        SCENES, "Scenes of loomfmu to collect, such as sims/*.toml, beside those on the command line",
-        type="args", default=[],
-    )  # fmt: skip
+        SCENES,
+        "Scenes of loomfmu to collect, such as sims/*.toml, beside those on the command line",
+        type="args",
+        default=[],
+    )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":

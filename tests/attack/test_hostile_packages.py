@@ -192,16 +192,18 @@ def test_a_structure_may_have_any_encoding_that_xml_has(
 DESCRIPTIONS = {
     "two variables are called 'J'": ('name="tau_stall"', 'name="J"'),
     "'J' has the value reference 4294967296, not a number of 32 bits": (
-        'name="J" valueReference="0"', 'name="J" valueReference="4294967296"'
+        'name="J" valueReference="0"',
+        'name="J" valueReference="4294967296"',
     ),
     "'J' has the value reference -1, not a number": (
-        'name="J" valueReference="0"', 'name="J" valueReference="-1"'
+        'name="J" valueReference="0"',
+        'name="J" valueReference="-1"',
     ),
     "2147483648 is outside of what an Integer holds": ("<Integer/>", '<Integer start="2147483648"/>'),
     "has 200000 characters, not 1 to 1000": ('name="load.tau"', f'name="{"a" * 200_000}"'),
     "a unit has the factor 0": ('factor="0.0174532925199433"', 'factor="0"'),
     "modelName has 200000 characters; at most 1000": ('modelName="Motor"', f'modelName="{"a" * 200_000}"'),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("said", DESCRIPTIONS)

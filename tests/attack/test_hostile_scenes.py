@@ -59,7 +59,7 @@ HOSTILE = {
         f'{LOOM}[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "18 mm"\nhealds = 5\n',
         "claim 'rapier_in_open_shed': healds = 5 must be a list of names, such as [\"heald_1\"]",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", HOSTILE)

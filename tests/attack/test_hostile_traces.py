@@ -51,9 +51,12 @@ CRAFTED = dict(hostile_traces.crafted())
 
 @pytest.mark.parametrize("name", CRAFTED)
 def test_what_somebody_crafts_is_refused(
-    name: str, valid: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    valid: bytes,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+) -> None:
     monkeypatch.chdir(tmp_path)
     with h5py.File("secret.h5", "w") as secret:
         for signal in ("secret", "time", "shaft_angle", "margin"):

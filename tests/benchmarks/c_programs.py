@@ -62,9 +62,21 @@ def _compiled(directory: Path, source: str, options: tuple[str, ...] = ()) -> Pa
     flags = [flag for flag in compiler.FLAGS if flag != "-shared"]
     program = directory / Path(source).stem
     _run(
-        sys.executable, "-m", "ziglang", "cc", "-target", target, *flags, *options, "-o", str(program),
-        source, "-lm", "-ldl", directory=directory,
-    )  # fmt: skip
+        sys.executable,
+        "-m",
+        "ziglang",
+        "cc",
+        "-target",
+        target,
+        *flags,
+        *options,
+        "-o",
+        str(program),
+        source,
+        "-lm",
+        "-ldl",
+        directory=directory,
+    )
     return program
 
 

@@ -126,9 +126,11 @@ Configurations = Mapping[str, tuple[Any, ...]]  # name -> arguments of `Child`
 
 @contextmanager
 def children(
-    configurations: Configurations, fails: Callable[[str, str], None], pinned: bool = False,
+    configurations: Configurations,
+    fails: Callable[[str, str], None],
+    pinned: bool = False,
     inside: bool = False,
-) -> Iterator[Asked]:  # fmt: skip
+) -> Iterator[Asked]:
     """The configurations that can be built here; `fails` is told name and reason of the others."""
     started: Asked = {}
     try:

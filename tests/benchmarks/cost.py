@@ -60,9 +60,15 @@ def measure(effort: str, notes: Notes) -> list[Table]:
                     master, recording = name.rsplit(", ", 1)
                     centre = middle(found)
                     rows.add(
-                        flavour, cores, master, recording, 1e6 * centre.turn / STEPS, 100.0 * spread(found),
-                        1e3 * centre.set_up, len(found),
-                    )  # fmt: skip
+                        flavour,
+                        cores,
+                        master,
+                        recording,
+                        1e6 * centre.turn / STEPS,
+                        100.0 * spread(found),
+                        1e3 * centre.set_up,
+                        len(found),
+                    )
     return [rows]
 
 
@@ -128,10 +134,11 @@ def _table(rows: list[Row]) -> str:
     lines = []
     for row in rows:
         ours = [
-            each[STEP] for each in rows
+            each[STEP]
+            for each in rows
             if each["master"].startswith("loomfmu")
             and (each["recording"] == "none") == (row["recording"] == "none")
-        ]  # fmt: skip
+        ]
         ratio = shown(row[STEP] / min(ours)) if ours else ""
         cells = [shown(row[key]) for key in (STEP, "spread [%]", "set-up [ms]", "repeats")]
         lines.append([row["master"], row["recording"], *cells, ratio])

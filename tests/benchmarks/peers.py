@@ -151,9 +151,11 @@ class Libcosim(Peer):
             lines.append(f'<simulator name="{name}" decimationFactor="1">{variables}</simulator>')
         told.write_text(f"<simulators>{''.join(lines)}</simulators>", encoding="utf-8")
         create = wrap_function(
-            lib=libcosimc(), funcname="cosim_file_observer_create_from_cfg",
-            argtypes=[ctypes.c_char_p, ctypes.c_char_p], restype=ctypes.POINTER(CosimObserver),
-        )  # fmt: skip
+            lib=libcosimc(),
+            funcname="cosim_file_observer_create_from_cfg",
+            argtypes=[ctypes.c_char_p, ctypes.c_char_p],
+            restype=ctypes.POINTER(CosimObserver),
+        )
         return CosimObserver(
             CosimObserver._CosimObserver__create_key, create(str(log).encode(), str(told).encode())
         )
@@ -200,9 +202,11 @@ class Fmpy(Peer):
         ]
         size = self.step_size(steps)
         return simulate_ssp(
-            str(self.package), stop_time=(count - 0.5) * size, step_size=size,
+            str(self.package),
+            stop_time=(count - 0.5) * size,
+            step_size=size,
             parameter_set=ParameterSet(parameters=values),
-        )  # fmt: skip
+        )
 
     def time(self, steps: int, turns: float) -> Timing:
         """Seconds of its one call until the last FMU is there, and from then to the end of the steps."""

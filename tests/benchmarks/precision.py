@@ -21,17 +21,37 @@ from loomfmu.validation import plot_style
 NAME = "precision"
 PLACES = 45  # of a revolution, at which signals are compared: every count of steps is a multiple
 RATES = {"heald_1.lift": "heald_1.velocity", "damper_1.displacement": "damper_1.rate"}
-MOTIONS = ("shaft.angle", "shaft.velocity", "shaft.acceleration",
-           "heald_1.lift", "heald_1.velocity", "heald_1.acceleration")  # fmt: skip
-NAMES = tuple(dict.fromkeys([
-    *SIGNALS, *RATES.values(), *MOTIONS, "belt.lowest_margin", "damper_1.peak_load",
-]))  # fmt: skip
+MOTIONS = (
+    "shaft.angle",
+    "shaft.velocity",
+    "shaft.acceleration",
+    "heald_1.lift",
+    "heald_1.velocity",
+    "heald_1.acceleration",
+)
+NAMES = tuple(
+    dict.fromkeys(
+        [
+            *SIGNALS,
+            *RATES.values(),
+            *MOTIONS,
+            "belt.lowest_margin",
+            "damper_1.peak_load",
+        ]
+    )
+)
 COLUMNS = (
-    "method", "steps per revolution", "time [ms/revolution]", "spread [%]", "repeats",
-    "error of lowest margin [1]", "error of dwell [rad]", "error of peak load [share]",
+    "method",
+    "steps per revolution",
+    "time [ms/revolution]",
+    "spread [%]",
+    "repeats",
+    "error of lowest margin [1]",
+    "error of dwell [rad]",
+    "error of peak load [share]",
     *(f"error of {signal} [share of largest]" for signal in SIGNALS),
     *(f"delay of {signal} [steps]" for signal in RATES),
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)
@@ -180,9 +200,13 @@ TARGETS = {
     "error of damper_1.displacement [share of largest]": 1e-4,
 }
 COLOURS = {
-    "loomfmu, live FMUs": plot_style.SKY, "loomfmu, native FMUs": plot_style.BLUE, CLAIMS: plot_style.GREEN,
-    "libcosim": plot_style.ORANGE, "ecos": plot_style.RED, "fmpy": plot_style.PURPLE,
-}  # fmt: skip
+    "loomfmu, live FMUs": plot_style.SKY,
+    "loomfmu, native FMUs": plot_style.BLUE,
+    CLAIMS: plot_style.GREEN,
+    "libcosim": plot_style.ORANGE,
+    "ecos": plot_style.RED,
+    "fmpy": plot_style.PURPLE,
+}
 
 
 def section(find: Find) -> str:

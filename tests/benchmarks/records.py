@@ -15,8 +15,16 @@ from typing import Any
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 PACKAGES = (
-    "loomfmu", "numpy", "scipy", "h5py", "fmpy", "libcosimpy", "ecospy", "ziglang", "mpmath",
-)  # fmt: skip
+    "loomfmu",
+    "numpy",
+    "scipy",
+    "h5py",
+    "fmpy",
+    "libcosimpy",
+    "ecospy",
+    "ziglang",
+    "mpmath",
+)
 
 Row = dict[str, Any]
 

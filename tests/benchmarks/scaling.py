@@ -39,11 +39,16 @@ RECORDED = (
     ["heald_*.*"],
 )
 KINDS = {
-    "full": {"frames": (1, 2, 5, 10, 20, 50, 100, 200), "wide": 50, "repeats": 7, "turns": 34.0,
-             "steps": (10**3, 10**4, 10**5, 10**6, 10**7)},
+    "full": {
+        "frames": (1, 2, 5, 10, 20, 50, 100, 200),
+        "wide": 50,
+        "repeats": 7,
+        "turns": 34.0,
+        "steps": (10**3, 10**4, 10**5, 10**6, 10**7),
+    },
     "quick": {"frames": (1, 10, 50), "wide": 20, "repeats": 3, "turns": 12.0, "steps": (10**3, 10**4, 10**5)},
     "tiny": {"frames": (1, 2), "wide": 2, "repeats": 1, "turns": 0.2, "steps": (100, 200)},
-}  # fmt: skip
+}
 
 
 def loom(frames: int, record: list[str] | None = None) -> Source:

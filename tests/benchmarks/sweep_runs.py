@@ -128,9 +128,13 @@ def _swept(directory: Path, rows: int, processes: int) -> float:
     ]
     start = perf_counter()
     run = subprocess.run(
-        [sys.executable, "-c", MAIN, *words], env=installed(), capture_output=True, text=True, check=False,
+        [sys.executable, "-c", MAIN, *words],
+        env=installed(),
+        capture_output=True,
+        text=True,
+        check=False,
         timeout=PATIENCE,
-    )  # fmt: skip
+    )
     duration = perf_counter() - start
     if run.returncode not in (0, 1):  # 1: in some rows a claim fails
         raise RuntimeError(f"loomfmu sweep: {run.stderr.strip()[-300:]}")

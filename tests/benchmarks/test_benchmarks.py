@@ -87,9 +87,13 @@ def test_the_first_page_has_its_numbers_from_the_tables(tmp_path: Path) -> None:
     start.add(start_up.RUN, 230.0, 1.0, 7)
     costs = records.Table(cost.NAME, cost.COLUMNS)
     for master, recording, step in (
-        (cost.PLAIN, "none", 10.0), (cost.ISOLATED, "none", 250.0), ("loomfmu", "HDF5", 4.0),
-        ("ecos", "CSV", 36.0), ("libcosim", "CSV", 90.0), ("ecos", "none", 8.0),
-    ):  # fmt: skip
+        (cost.PLAIN, "none", 10.0),
+        (cost.ISOLATED, "none", 250.0),
+        ("loomfmu", "HDF5", 4.0),
+        ("ecos", "CSV", 36.0),
+        ("libcosim", "CSV", 90.0),
+        ("ecos", "none", 8.0),
+    ):
         costs.add("native", "one", master, recording, step, 1.0, 1.0, 7)
     for table in (start, costs):
         table.write(folder)
@@ -176,5 +180,6 @@ def test_results_of_one_benchmark_replace_its_own_alone(tmp_path: Path) -> None:
         notes("something", why)
         records.replaced(tmp_path, "notes", name, notes.rows(), columns)
     assert [(row["benchmark"], row["why"]) for row in records.read(tmp_path, "notes")] == [
-        ("pruning", "b"), ("cost", "c"),
-    ]  # fmt: skip
+        ("pruning", "b"),
+        ("cost", "c"),
+    ]

@@ -144,10 +144,14 @@ def dobby(given: Any, theta: Floats, speed: float) -> dict[str, Any]:
     acceleration = np.where(mirrored, -second, second) * speed * speed
     share, rate, bend = _lift(angle, velocity, acceleration)
     return {
-        "rotor_angle": angle, "rotor_velocity": velocity, "rotor_acceleration": acceleration,
-        "lift_fraction": share, "lift_rate": rate, "lift_acceleration": bend,
+        "rotor_angle": angle,
+        "rotor_velocity": velocity,
+        "rotor_acceleration": acceleration,
+        "lift_fraction": share,
+        "lift_rate": rate,
+        "lift_acceleration": bend,
         "pick": np.floor(theta / TURN),
-    }  # fmt: skip
+    }
 
 
 def _sloped_sine(x: Floats, reduction: float) -> tuple[Floats, Floats, Floats]:
@@ -189,7 +193,10 @@ def heald(given: Any, found: dict[str, Any]) -> dict[str, Any]:
     lift = given.stroke * (before + change * share)
     acceleration = given.stroke * change * bend
     return {
-        "lift": lift, "velocity": given.stroke * change * rate, "acceleration": acceleration,
+        "lift": lift,
+        "velocity": given.stroke * change * rate,
+        "acceleration": acceleration,
         "warp_height": given.warp_ratio * (lift - 0.5 * given.stroke),
-        "inertia_force": given.frame_mass * acceleration, "moving": change != 0,
-    }  # fmt: skip
+        "inertia_force": given.frame_mass * acceleration,
+        "moving": change != 0,
+    }

@@ -17,8 +17,16 @@ from loomfmu.traces import Channel, TraceWriter
 from loomfmu.traces.chunks import LEVEL, ROWS
 
 NAME = "writing"
-COLUMNS = ("writer", "channels", "rows of a block", "compression", "time [us/row/channel]", "spread [%]",
-           "size [B/value]", "repeats")  # fmt: skip
+COLUMNS = (
+    "writer",
+    "channels",
+    "rows of a block",
+    "compression",
+    "time [us/row/channel]",
+    "spread [%]",
+    "size [B/value]",
+    "repeats",
+)
 KINDS = {
     "full": {"repeats": 7, "rows": 8 * ROWS, "channels": (10, 100)},
     "quick": {"repeats": 3, "rows": 4 * ROWS, "channels": (100,)},

@@ -39,8 +39,17 @@ BENCHMARKS: dict[str, tuple[str, ModuleType]] = {
     guard.NAME: ("Guard", guard),
 }
 RUNS = (
-    "benchmark", "effort", "duration [s]", "date", "commit", "CPU", "cores", "kernel", "Python", "packages",
-)  # fmt: skip
+    "benchmark",
+    "effort",
+    "duration [s]",
+    "date",
+    "commit",
+    "CPU",
+    "cores",
+    "kernel",
+    "Python",
+    "packages",
+)
 NOTES = ("benchmark", "what", "why")
 
 TITLE = "# Benchmarks"

@@ -108,9 +108,15 @@ def published_frequency(speed, near):
 def moving_beam(speed):
     """Frequencies of the finite elements, EI = rho = L = 1."""
     elements = FiniteElements(
-        lambda _t: (1.0, speed, 0.0), lambda x, _length: 0.0 * x, rho=1.0, mass=0.0, stiffness=1.0,
-        elements=12, bent=False, stands=True,
-    )  # fmt: skip
+        lambda _t: (1.0, speed, 0.0),
+        lambda x, _length: 0.0 * x,
+        rho=1.0,
+        mass=0.0,
+        stiffness=1.0,
+        elements=12,
+        bent=False,
+        stands=True,
+    )
     by_rate, by_value, _bow = elements.linear(0.0)
     n = elements.free
     found = np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [by_value, by_rate]])).imag
@@ -158,9 +164,12 @@ def test_against_finite_elements_in_space(belt_in_c, bow_of, elements, everywher
 
     rtol = 1e-6 if elements < 10 else 1e-8
     expected = FiniteElements(loom.motion, curvature, elements=elements).run(
-        lambda x: shape(modes, end, 1.0 - x), lambda x: shape(rates, end_rate, 1.0 - x), np.array(times),
-        rtol=rtol, atol=1e-4 * rtol,
-    )  # fmt: skip
+        lambda x: shape(modes, end, 1.0 - x),
+        lambda x: shape(rates, end_rate, 1.0 - x),
+        np.array(times),
+        rtol=rtol,
+        atol=1e-4 * rtol,
+    )
     found = np.array(found).T
     assert np.abs(found - expected).max() <= everywhere * np.abs(expected).max()
     assert np.abs(found).max(axis=0) == pytest.approx(np.abs(expected).max(axis=0), rel=farthest)
@@ -289,8 +298,10 @@ def test_inputs_at_the_start_of_a_step_move_the_belt_as_those_at_its_end_one_ste
         number += 1
         loom.step_size = longest * (1.0 if number % 3 else 0.5)  # steps need not be equal
         late.travel, late.velocity, late.acceleration = (
-            loom.belt.travel, loom.belt.velocity, loom.belt.acceleration,
-        )  # fmt: skip
+            loom.belt.travel,
+            loom.belt.velocity,
+            loom.belt.acceleration,
+        )
         assert late.step(loom.time, loom.step_size) == 0
         for name in ("free_length", "compression", "deflection", "energy", "largest_deflection", "margin"):
             assert getattr(late, name) == getattr(loom.belt, name)
@@ -371,9 +382,17 @@ def test_a_belt_that_folds_has_its_energy_balanced_until_then(belt_in_c):
     found = []
     for steps in (360, 1440):
         loom = Loom(
-            belt_in_c, 900.0, steps=steps, start=85.0, bow=1e-5, guide_end=2, head_end=2,
-            guide_clearance=3e-3, guide_length=5.0, guide_offset=-0.01,
-        )  # fmt: skip
+            belt_in_c,
+            900.0,
+            steps=steps,
+            start=85.0,
+            bow=1e-5,
+            guide_end=2,
+            head_end=2,
+            guide_clearance=3e-3,
+            guide_length=5.0,
+            guide_offset=-0.01,
+        )
         loom.turn_to(264.0)
         assert loom.belt.folded and loom.belt.followed
         assert abs(loom.belt.energy_residual) < 1e-8 * loom.belt.energy_through
@@ -404,8 +423,11 @@ def test_a_belt_too_long_for_its_modes_says_so_and_does_not_count(belt_in_c, bey
 
 
 SLOW = {
-    "loom.machine": "WL450-4600", "shaft.speed": "50 rev/min", "steps_per_revolution": 720, "revolutions": 1,
-}  # fmt: skip
+    "loom.machine": "WL450-4600",
+    "shaft.speed": "50 rev/min",
+    "steps_per_revolution": 720,
+    "revolutions": 1,
+}
 
 
 def test_a_belt_that_cannot_be_followed_has_not_folded_and_its_claim_is_undecided(tmp_path):

@@ -132,9 +132,14 @@ def test_the_shapes_in_which_the_belt_buckles_have_the_wave_of_their_growth():
 def under_slow_load(belt_class, turn, clearance, guide, length=LENGTH):
     """A belt with play at rest under a load, and how far it is from the line of the guide at most."""
     belt = belt_class(
-        travel=0.793 + length, bow=0.0, guide_end=PLAY, guide_clearance=clearance, guide_length=guide,
-        head_mass=1e-3, damping=(pi / length) ** 2 * sqrt(0.25 / 0.05),
-    )  # fmt: skip
+        travel=0.793 + length,
+        bow=0.0,
+        guide_end=PLAY,
+        guide_clearance=clearance,
+        guide_length=guide,
+        head_mass=1e-3,
+        damping=(pi / length) ** 2 * sqrt(0.25 / 0.05),
+    )
     belt.initialize(0.0)
     belt.mode_1 = 1e-4
     belt.yarn_tension = turn**2 * 0.25 / length**2
@@ -188,18 +193,30 @@ def elastica(clamped, ratio):
         square = brentq(lambda square: (2.0 * ellipk(square) / pi) ** 2 - ratio, 1e-9, 0.9)
         return 2.0 * sqrt(square / ratio) / pi
     load, x = ratio * CLAMPED**2, np.linspace(0.0, 1.0, 201)
-    guess = 0.4 * sqrt(ratio - 1.0) * np.array(
-        [CLAMPED * np.cos(CLAMPED * x) - np.sin(CLAMPED), -(CLAMPED**2) * np.sin(CLAMPED * x),
-         np.sin(CLAMPED * x) - x * np.sin(CLAMPED)]
-    )  # fmt: skip
+    guess = (
+        0.4
+        * sqrt(ratio - 1.0)
+        * np.array(
+            [
+                CLAMPED * np.cos(CLAMPED * x) - np.sin(CLAMPED),
+                -(CLAMPED**2) * np.sin(CLAMPED * x),
+                np.sin(CLAMPED * x) - x * np.sin(CLAMPED),
+            ]
+        )
+    )
 
     def bent(_x, y, force):
         return [y[1], force * np.cos(y[0]) - load * np.sin(y[0]), np.sin(y[0])]
 
     solved = solve_bvp(
-        bent, lambda head, guide, _force: [head[2], head[1], guide[0], guide[2]], x, guess,
-        [load * 0.4 * sqrt(ratio - 1.0) * -np.sin(CLAMPED)], tol=1e-8, max_nodes=50_000,
-    )  # fmt: skip
+        bent,
+        lambda head, guide, _force: [head[2], head[1], guide[0], guide[2]],
+        x,
+        guess,
+        [load * 0.4 * sqrt(ratio - 1.0) * -np.sin(CLAMPED)],
+        tol=1e-8,
+        max_nodes=50_000,
+    )
     assert solved.success
     return np.abs(solved.sol(np.linspace(0.0, 1.0, 4001))[2]).max()
 
@@ -232,7 +249,7 @@ def test_a_slow_load_throws_a_crooked_belt_from_one_side_of_its_guide_to_the_oth
     """Leaving one side, its end comes and goes for a while: it was given up there, with NaN in its stages."""
     belt = belt_in_c(
         guide_end=PLAY, head_end=GUIDED, guide_clearance=1e-4, damping=75.0, bow=2e-4, bow_length=0.23
-    )  # fmt: skip
+    )
     belt.travel = belt.idle_travel + belt.head_length + 0.35
     belt.initialize(0.0)
     sides = []
@@ -309,11 +326,12 @@ def test_a_belt_in_motion_has_the_clearance_of_the_guide_of_its_loom(tmp_path):
     changes = {"belt_motion.guide_end": "play", "steps_per_revolution": 360}
     wide, narrow = (
         run(
-            "sims/belt_motion.toml", output=tmp_path / f"{n}.h5",
+            "sims/belt_motion.toml",
+            output=tmp_path / f"{n}.h5",
             set={**changes, "belt.guide_clearance": f"{clearance} mm"},
         ).claims[1]
         for n, clearance in enumerate((0.3, 0.1))
-    )  # fmt: skip
+    )
     assert narrow.worst < 0.8 * wide.worst
     assert narrow.holds
 
@@ -400,10 +418,15 @@ def against_finite_elements(belt_class, bow_of, elements, **given):
         return -bow * (pi / half) ** 2 * np.sin(pi * (length - x) / half)
 
     reference = FiniteElements(
-        loom.motion, curvature, stiffness=belt.stiffness, elements=elements, guided=belt.head_end == GUIDED,
-        clearance=belt.guide_clearance if belt.guide_end == PLAY else None, guide=belt.guide_length,
+        loom.motion,
+        curvature,
+        stiffness=belt.stiffness,
+        elements=elements,
+        guided=belt.head_end == GUIDED,
+        clearance=belt.guide_clearance if belt.guide_end == PLAY else None,
+        guide=belt.guide_length,
         offset=belt.guide_offset,
-    )  # fmt: skip
+    )
     rtol = 1e-6 if elements < 10 else 1e-7
     expected = reference.run(
         lambda x: shape(modes, end, 1.0 - x),

@@ -18,10 +18,17 @@ every_stroke = pytest.mark.parametrize("begin", STROKES.values(), ids=STROKES)
 
 # as recomputed: r/min at mu = 0.8, case I
 SAFE_SPEED = {
-    "WL680-3400": 863.99, "WL680-3600": 681.80, "WL680-3800": 526.90, "WL800-3600": 553.27,
-    "WL800-3800": 471.68, "WL450-3600": 635.61, "WL450-3800": 505.76, "WL450-4000": 418.68,
-    "WL450-4600": 212.56, "WL450-5400": 137.45,
-}  # fmt: skip
+    "WL680-3400": 863.99,
+    "WL680-3600": 681.80,
+    "WL680-3800": 526.90,
+    "WL800-3600": 553.27,
+    "WL800-3800": 471.68,
+    "WL450-3600": 635.61,
+    "WL450-3800": 505.76,
+    "WL450-4000": 418.68,
+    "WL450-4600": 212.56,
+    "WL450-5400": 137.45,
+}
 CASES = {row["case"]: name for name, row in HEADS.items()}
 MASS = {row["case"]: float(row["mass_g"]) for row in HEADS.values()}
 CORRECTED = {"I": "I", "II": "II", "III": "IV", "IV": "III"}  # column in which a case is printed
@@ -33,9 +40,13 @@ WIDE = "WL450-5400"  # its own columns contradict each other, see below
 def safe_speed(name: str, case: str = "I", factor: float = 0.8, tension: float = 0.0) -> float:
     """Lowest speed limit over an insertion, r/min. The loom runs slowly: the limit does not depend on it."""
     loom = Loom(
-        name, rpm=100.0, head=CASES[case], prescribe_length_factor=True, prescribed_length_factor=factor,
+        name,
+        rpm=100.0,
+        head=CASES[case],
+        prescribe_length_factor=True,
+        prescribed_length_factor=factor,
         yarn_tension=tension,
-    )  # fmt: skip
+    )
     return loom.turn(0.5).lowest_speed_limit / RPM
 
 
@@ -375,12 +386,13 @@ def test_speed_limits_of_giver_and_taker_in_either_stroke(taker, begin):
     of = machine(name)
     found = minimize_scalar(
         lambda angle: float(of.safe_speed(angle, 0.8, tension=load)),
-        bounds=(float(of.free_start()) + 1e-3, float(of.push_end()) - 1e-3), method="bounded",
-    )  # fmt: skip
+        bounds=(float(of.free_start()) + 1e-3, float(of.push_end()) - 1e-3),
+        method="bounded",
+    )
     limit = found.fun
     belt = Loom(
         name, rpm=100.0, begin=begin, taker=taker, yarn_tension=tension, prescribe_length_factor=True
-    ).turn(0.5)  # fmt: skip
+    ).turn(0.5)
     # the quintic of steps of half a degree, as in the table of steps above
     assert belt.lowest_speed_limit == pytest.approx(limit, rel=1e-8)
 
@@ -388,9 +400,15 @@ def test_speed_limits_of_giver_and_taker_in_either_stroke(taker, begin):
 def test_the_load_changes_where_the_head_turns_within_a_step():
     # s = 1 + 2 u - 4 u^2 over a step of 0.1 s: the head turns at u = 1/4, where it is 0.25 m further in
     belt = BeltMonitor(
-        travel=1.0, velocity=20.0, acceleration=-800.0, head_mass=1e-6, yarn_tension=1.0,
-        inputs_at_step_end=True, speed=0.1, prescribe_length_factor=True,
-    )  # fmt: skip
+        travel=1.0,
+        velocity=20.0,
+        acceleration=-800.0,
+        head_mass=1e-6,
+        yarn_tension=1.0,
+        inputs_at_step_end=True,
+        speed=0.1,
+        prescribe_length_factor=True,
+    )
     belt.initialize(0.0)
     belt.travel, belt.velocity = -1.0, -60.0
     belt.step(0.0, 0.1)

@@ -26,8 +26,10 @@ def test_published_loads_while_the_block_wears(row):
 def test_wrap_angle_has_no_influence():
     one, other = wrapped(wrap_angle=0.0), wrapped(wrap_angle=3.0)
     assert (one.lever_arm, one.restraint_load, one.bending_moment) == (
-        other.lever_arm, other.restraint_load, other.bending_moment,
-    )  # fmt: skip
+        other.lever_arm,
+        other.restraint_load,
+        other.bending_moment,
+    )
 
 
 def test_moment_does_not_change_with_wear():

@@ -287,10 +287,18 @@ def test_backwards_is_the_mirror_image():
 def test_starting_amid_a_load():
     shaft = started(40.0, start_angle=2.0)
     assert values(shaft, "output") == {
-        "angle": 2.0, "velocity": FULL, "acceleration": -20.0, "motor_torque": 0.0, "load_torque": 40.0,
-        "motor_power": 0.0, "motor_power_rate": 800.0 * FULL, "motor_work": 0.0, "load_work": 0.0,
-        "other_work": 0.0, "kinetic_energy": FULL**2,
-    }  # fmt: skip
+        "angle": 2.0,
+        "velocity": FULL,
+        "acceleration": -20.0,
+        "motor_torque": 0.0,
+        "load_torque": 40.0,
+        "motor_power": 0.0,
+        "motor_power_rate": 800.0 * FULL,
+        "motor_work": 0.0,
+        "load_work": 0.0,
+        "other_work": 0.0,
+        "kinetic_energy": FULL**2,
+    }
     assert shaft.initialize(5.0) == 0  # the start is where the run starts, whatever its time
     assert shaft.angle == 2.0
 
@@ -303,9 +311,10 @@ REFLECTED = 0.1985  # kg m2, the most that this mass is at the shaft
 
 def weft_on_the_shaft(mass):
     weft = WeftInsertion(
-        **parameters("WeftInsertion", machine="WL680-3600") | {"moving_mass": mass}, follow_shaft=True,
+        **parameters("WeftInsertion", machine="WL680-3600") | {"moving_mass": mass},
+        follow_shaft=True,
         inputs_at_step_end=True,
-    )  # fmt: skip
+    )
     assert weft.initialize(0.0) == 0
     return weft
 
@@ -313,8 +322,10 @@ def weft_on_the_shaft(mass):
 def followed(weft, shaft, time=0.0):
     """The mechanism where the shaft is; the torque that it asks for."""
     weft.shaft_angle, weft.shaft_velocity, weft.shaft_acceleration = (
-        shaft.angle, shaft.velocity, shaft.acceleration
-    )  # fmt: skip
+        shaft.angle,
+        shaft.velocity,
+        shaft.acceleration,
+    )
     assert weft.step(time, 0.0) == 0
     return weft.shaft_torque
 
@@ -385,18 +396,24 @@ def test_a_torque_of_the_step_before_wants_a_shaft_that_outweighs_the_masses():
 
 
 MECHANISMS = {
-    "shaft": DrivenShaft, "weft": COMPONENTS["WeftInsertion"], "belt": COMPONENTS["BeltMonitor"],
-    "heald_1": COMPONENTS["HealdFrame"], "reed": COMPONENTS["ReedBeatUp"],
-}  # fmt: skip
+    "shaft": DrivenShaft,
+    "weft": COMPONENTS["WeftInsertion"],
+    "belt": COMPONENTS["BeltMonitor"],
+    "heald_1": COMPONENTS["HealdFrame"],
+    "reed": COMPONENTS["ReedBeatUp"],
+}
 
 
 def test_every_mechanism_with_a_torque_has_the_next_free_place():
     assert gathered("shaft", MECHANISMS, {}) == {
-        "shaft.torque_1": "weft.shaft_torque", "shaft.work_1": "weft.shaft_work",
-        "shaft.torque_2": "heald_1.shaft_torque", "shaft.work_2": "heald_1.shaft_work",
+        "shaft.torque_1": "weft.shaft_torque",
+        "shaft.work_1": "weft.shaft_work",
+        "shaft.torque_2": "heald_1.shaft_torque",
+        "shaft.work_2": "heald_1.shaft_work",
         "shaft.passed_torque_2": "heald_1.passed_torque",
-        "shaft.torque_3": "reed.shaft_torque", "shaft.work_3": "reed.shaft_work",
-    }  # fmt: skip
+        "shaft.torque_3": "reed.shaft_torque",
+        "shaft.work_3": "reed.shaft_work",
+    }
     assert gathered("reed", MECHANISMS, {}) == {}
 
 

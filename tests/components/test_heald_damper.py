@@ -176,13 +176,17 @@ def quintic_points(curve, duration):
 def test_a_stop_that_is_met_three_times_within_a_piece_is_counted_three_times():
     # a very soft stop: 463 N/m under four springs of 5960
     case = (
-        (0.0, 0.0, -544.4379850780051), (-0.007992412317558229, -4.6044550993616715, -502.3966920965361),
-        0.012, (-186.2722780451448, 107.08239307798868),
-    )  # fmt: skip
+        (0.0, 0.0, -544.4379850780051),
+        (-0.007992412317558229, -4.6044550993616715, -502.3966920965361),
+        0.012,
+        (-186.2722780451448, 107.08239307798868),
+    )
     parameters = {
-        "free_travel": 2e-4, "stop_stiffness": 463.43489160277807, "start_rate": 0.23674392313000253,
+        "free_travel": 2e-4,
+        "stop_stiffness": 463.43489160277807,
+        "start_rate": 0.23674392313000253,
         "start_displacement": 1.4776225773092255e-4,
-    }  # fmt: skip
+    }
     force, _acceleration, contacts = integrated_step(*case, **parameters)
     damper = moved_in_one_step(*case, **parameters)
     assert damper.stop_contacts == contacts == 3
@@ -194,10 +198,17 @@ signed = st.floats(-1.0, 1.0)
 
 @settings(max_examples=60, deadline=None)
 @given(
-    st.sampled_from([0.003, 0.012, 0.03]), st.floats(1.0, 3.0), st.tuples(signed, signed, signed, signed),
-    st.tuples(signed, signed), st.sampled_from([0.0, 0.05, 0.5]), st.sampled_from([2e-4, 1e-3, 0.015, 1.0]),
-    st.floats(2.0, 6.0), st.sampled_from([0.2, 0.5, 1.0]), signed, signed,
-)  # fmt: skip
+    st.sampled_from([0.003, 0.012, 0.03]),
+    st.floats(1.0, 3.0),
+    st.tuples(signed, signed, signed, signed),
+    st.tuples(signed, signed),
+    st.sampled_from([0.0, 0.05, 0.5]),
+    st.sampled_from([2e-4, 1e-3, 0.015, 1.0]),
+    st.floats(2.0, 6.0),
+    st.sampled_from([0.2, 0.5, 1.0]),
+    signed,
+    signed,
+)
 def test_every_extreme_within_a_step_is_found(
     duration, size, frame_shares, loads, ratio, travel, stop, restitution, start, rate
 ):
@@ -207,10 +218,13 @@ def test_every_extreme_within_a_step_is_found(
     end = (lift * largest * duration**2 / 6.0, velocity * largest * duration / 2.0, last * largest)
     case = (begin, end, duration, (300.0 * loads[0], 300.0 * loads[1]))
     parameters = {
-        "damping_ratio": ratio, "free_travel": travel, "stop_stiffness": 10.0**stop,
-        "stop_restitution": restitution, "start_displacement": 0.999 * start * min(travel, 0.015),
+        "damping_ratio": ratio,
+        "free_travel": travel,
+        "stop_stiffness": 10.0**stop,
+        "stop_restitution": restitution,
+        "start_displacement": 0.999 * start * min(travel, 0.015),
         "start_rate": 0.3 * rate,
-    }  # fmt: skip
+    }
     force, acceleration, _contacts = integrated_step(*case, **parameters)
     damper = moved_in_one_step(*case, **parameters)
     # scipy's samples are 6 us apart at most, (w t)^2 / 8 of a swing with w up to 300 / s: 4e-7 of what the
@@ -416,8 +430,10 @@ def test_roundings_of_a_frame_that_has_not_moved_make_no_ratio(velocity, roundin
     # by half a millisecond more the frame accelerates by 0.5 m/s2
     h = 5e-4
     damper.lift, damper.velocity, damper.acceleration = (
-        0.049 + velocity * h + 0.5 * h**3 / 6 / h, velocity + 0.25 * h, 0.5,
-    )  # fmt: skip
+        0.049 + velocity * h + 0.5 * h**3 / 6 / h,
+        velocity + 0.25 * h,
+        0.5,
+    )
     assert damper.step(0.0, h) == 0
     assert damper.acceleration_ratio == damper.peak_carrier / damper.peak_frame > 1.0
 

@@ -44,9 +44,15 @@ def integrated(play, end):
         for event in (up, down):
             event.terminal, event.direction = True, 1.0
         run = solve_ivp(
-            lambda t, s: (s[1], -play.gravity - bars(t)[2]), (time, end), state, method="DOP853",
-            rtol=1e-12, atol=1e-15, max_step=1e-3, events=[up, down],
-        )  # fmt: skip
+            lambda t, s: (s[1], -play.gravity - bars(t)[2]),
+            (time, end),
+            state,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-15,
+            max_step=1e-3,
+            events=[up, down],
+        )
         time, state = run.t[-1], run.y[:, -1]
         if run.status == 1:
             blows, hardest = blows + 1, max(hardest, abs(state[1]))

@@ -148,9 +148,13 @@ def test_torque_on_the_shaft_is_what_the_energies_ask_for(component, given):
 def test_torque_of_head_belt_and_wheel_is_the_derivative_of_their_energy(name):
     of = machine(name)
     weft = WeftInsertion(
-        **parameters("WeftInsertion", machine=name), belt_mass=0.06, belt_length=2.5, wheel_inertia=0.03,
-        moving_mass=0.1105, **SHAFT,
-    )  # fmt: skip
+        **parameters("WeftInsertion", machine=name),
+        belt_mass=0.06,
+        belt_length=2.5,
+        wheel_inertia=0.03,
+        moving_mass=0.1105,
+        **SHAFT,
+    )
     radius = MP.mpf(weft.wheel_diameter) / 2
     mass = MP.mpf("0.1105") + MP.mpf("0.06") * MP.mpf("2.5") + MP.mpf("0.03") / radius**2
 

@@ -104,9 +104,12 @@ def test_shaft_is_carried_over_a_step():
     at_start.initialize(0.0)
     at_start.step(0.0, 0.01)
     at_end = PatternLock(
-        follow_shaft=True, inputs_at_step_end=True, shaft_angle=2.6 + 0.4 + 0.005, shaft_velocity=41.0,
+        follow_shaft=True,
+        inputs_at_step_end=True,
+        shaft_angle=2.6 + 0.4 + 0.005,
+        shaft_velocity=41.0,
         shaft_acceleration=100.0,
-    )  # fmt: skip
+    )
     at_end.initialize(0.0)
     at_end.step(0.0, 0.01)
     assert at_start.turn == pytest.approx(at_end.turn, rel=1e-14)  # rounding of the carried angle

@@ -203,9 +203,14 @@ def test_shaft_torque_is_the_power_of_the_moving_masses(name):
     masses = {"reed_mass": 40.0, "rocker_inertia": 2.5}
     for theta in ANGLES[::24]:
         reed = ReedBeatUp(
-            follow_shaft=True, inputs_at_step_end=True, shaft_angle=theta, shaft_velocity=4.0,
-            shaft_acceleration=-30.0, **MACHINES[name], **masses,
-        )  # fmt: skip
+            follow_shaft=True,
+            inputs_at_step_end=True,
+            shaft_angle=theta,
+            shaft_velocity=4.0,
+            shaft_acceleration=-30.0,
+            **MACHINES[name],
+            **masses,
+        )
         assert reed.initialize(0.0) == 0
         position, chi, _slope = of.reed(of.crank(theta))
         turning = of.of.crank_direction

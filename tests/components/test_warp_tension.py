@@ -52,9 +52,13 @@ def pull_to(warp, x, rate, second):
 
 def level(**parameters):
     return WarpTension(
-        stroke=0.0, shed_offset=0.0, front_length=FRONT, back_length=FRONT, inputs_at_step_end=True,
+        stroke=0.0,
+        shed_offset=0.0,
+        front_length=FRONT,
+        back_length=FRONT,
+        inputs_at_step_end=True,
         **parameters,
-    )  # fmt: skip
+    )
 
 
 MIDDLE, SWING, FREQUENCY = 0.004, 0.003, 2.0 * pi * 4.0
@@ -100,9 +104,11 @@ class Swung:
         for n in range(steps + 1):
             t = n * step
             pull_to(
-                self.warp, MIDDLE + SWING * sin(FREQUENCY * t), SWING * FREQUENCY * cos(FREQUENCY * t),
+                self.warp,
+                MIDDLE + SWING * sin(FREQUENCY * t),
+                SWING * FREQUENCY * cos(FREQUENCY * t),
                 -SWING * FREQUENCY**2 * sin(FREQUENCY * t),
-            )  # fmt: skip
+            )
             assert (self.warp.step((n - 1) * step, step) if n else self.warp.initialize(0.0)) == 0
             if watch is not None:
                 watch(t)
@@ -209,9 +215,15 @@ def integrated(rpm, turns):
 
     times = np.arange(turns * 360 + 1) * period / 360
     run = solve_ivp(
-        law, (0.0, turns * period), [b * stretch(0.0)[0]], method="DOP853", rtol=1e-13, atol=1e-15,
-        max_step=period / 720, t_eval=times,
-    )  # fmt: skip
+        law,
+        (0.0, turns * period),
+        [b * stretch(0.0)[0]],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-15,
+        max_step=period / 720,
+        t_eval=times,
+    )
     return 0.15 + run.y[0]
 
 
@@ -265,9 +277,14 @@ def test_outputs_at_a_sample_are_the_formulas():
 def test_load_takes_the_work_that_the_threads_take_up():
     # a spring without pretension: the energy in it is what the eye has put in
     warp = WarpTension(
-        inputs_at_step_end=True, creep_rate=0.0, relaxation_rate=0.0, pretension=0.0, shed_offset=0.0,
-        stroke=0.0, lift=0.0,
-    )  # fmt: skip
+        inputs_at_step_end=True,
+        creep_rate=0.0,
+        relaxation_rate=0.0,
+        pretension=0.0,
+        shed_offset=0.0,
+        stroke=0.0,
+        lift=0.0,
+    )
     warp.initialize(0.0)
     work = 0.0
     for n in range(1, 2001):
@@ -305,9 +322,11 @@ def test_restored_while_the_thread_is_slack():
     for n in range(round(t / 0.005) + 1, 101):
         at = n * 0.005
         pull_to(
-            again, MIDDLE + SWING * sin(FREQUENCY * at), SWING * FREQUENCY * cos(FREQUENCY * at),
+            again,
+            MIDDLE + SWING * sin(FREQUENCY * at),
+            SWING * FREQUENCY * cos(FREQUENCY * at),
             -SWING * FREQUENCY**2 * sin(FREQUENCY * at),
-        )  # fmt: skip
+        )
         again.step(at - 0.005, 0.005)
     assert values(again) == values(swung.warp)  # the same bits
 

@@ -15,11 +15,17 @@ every_machine = pytest.mark.parametrize("name", ALL_MACHINES)
 
 # as recomputed, degrees: free length begins, positive acceleration ends
 WINDOW = {
-    "WL680-3400": (94.44, 104.69), "WL680-3600": (92.53, 103.91), "WL680-3800": (91.62, 104.48),
-    "WL800-3600": (87.95, 102.80), "WL800-3800": (87.26, 102.94), "WL450-3600": (91.52, 104.18),
-    "WL450-3800": (90.12, 103.96), "WL450-4000": (88.89, 104.01), "WL450-4600": (85.57, 106.40),
+    "WL680-3400": (94.44, 104.69),
+    "WL680-3600": (92.53, 103.91),
+    "WL680-3800": (91.62, 104.48),
+    "WL800-3600": (87.95, 102.80),
+    "WL800-3800": (87.26, 102.94),
+    "WL450-3600": (91.52, 104.18),
+    "WL450-3800": (90.12, 103.96),
+    "WL450-4000": (88.89, 104.01),
+    "WL450-4600": (85.57, 106.40),
     "WL450-5400": (82.25, 106.53),
-}  # fmt: skip
+}
 
 
 def weft_of(name: str, **given: float) -> WeftInsertion:
@@ -212,12 +218,21 @@ def test_torque_needs_no_turning_shaft():
         ({"output_length": 0.01}, 2),
         # a crank at rest, with crank, coupler and output in one line: a dead point again
         (
-            {"crank_cone": 0.0, "rocker_angle": pi / 2, "rocker_offset": -pi / 2, "crank_length": 0.25,
-             "coupler_length": 0.5, "output_length": 0.25, "pivot_x": 1.0, "pivot_y": 0.0}, 2,
+            {
+                "crank_cone": 0.0,
+                "rocker_angle": pi / 2,
+                "rocker_offset": -pi / 2,
+                "crank_length": 0.25,
+                "coupler_length": 0.5,
+                "output_length": 0.25,
+                "pivot_x": 1.0,
+                "pivot_y": 0.0,
+            },
+            2,
         ),
         ({"assembly": 0}, 3),
     ],
-)  # fmt: skip
+)
 def test_linkages_that_do_not_close_are_refused(given, problem):
     weft = WeftInsertion(**given)
     assert weft.check() == problem

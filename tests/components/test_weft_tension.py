@@ -16,9 +16,13 @@ from loomfmu.physics.weft import capstan_gain, drag_per_length
 RPM = pi / 30.0
 SPEED = 400.0 * RPM
 NOTHING = {
-    "linear_density": 0.0, "air_friction": 0.0, "supply_tension": 0.0, "brake_force": 0.0, "friction": 0.0,
+    "linear_density": 0.0,
+    "air_friction": 0.0,
+    "supply_tension": 0.0,
+    "brake_force": 0.0,
+    "friction": 0.0,
     "pick_up_travel": 0.0,
-}  # fmt: skip
+}
 
 
 def harmonic(t, speed=SPEED, stroke=2.0):
@@ -162,9 +166,12 @@ def test_a_short_hold_of_the_brake_is_not_missed():
         seen = []
         soft = {"pick_up_travel": 0.0, "yarn_stiffness": 5.0, "retardation_time": 2e-4}
         drawn(
-            steps=steps, end=pi / SPEED, watch=lambda _now, weft: seen.append(weft.strain),
-            brake_program_11=1.9224310776942357, **soft,
-        )  # fmt: skip
+            steps=steps,
+            end=pi / SPEED,
+            watch=lambda _now, weft: seen.append(weft.strain),
+            brake_program_11=1.9224310776942357,
+            **soft,
+        )
         return np.array(seen)
 
     # missed it is 4e-6; the cubics of the coarse steps are 2e-9 off
@@ -174,9 +181,10 @@ def test_a_short_hold_of_the_brake_is_not_missed():
 def test_the_way_through_the_program_may_be_long_or_backward():
     """Steps of a whole revolution, or a shaft that turns backward, see every point of the program."""
     backward = drawn(
-        steps=50, speed=-SPEED,
+        steps=50,
+        speed=-SPEED,
         **EVERYTHING | {f"brake_program_{n}": 1.0 + 0.8 * sin(26 - n) for n in range(2, 25)},
-    )  # fmt: skip
+    )
     forward = drawn(steps=50, **EVERYTHING)
     # mirrored about 0 deg: point n becomes point 26 - n; the same but for rounding
     assert backward.highest_tension == pytest.approx(forward.highest_tension, rel=1e-10)
@@ -243,9 +251,14 @@ def test_yarn_never_pushes(force, density, stiffness, retardation, pick_up):
         assert weft.slack == (weft.carried and weft.tension == 0.0)
 
     drawn(
-        steps=90, brake_force=force, linear_density=density, yarn_stiffness=stiffness, watch=watch,
-        retardation_time=retardation, pick_up_travel=pick_up,
-    )  # fmt: skip
+        steps=90,
+        brake_force=force,
+        linear_density=density,
+        yarn_stiffness=stiffness,
+        watch=watch,
+        retardation_time=retardation,
+        pick_up_travel=pick_up,
+    )
 
 
 @pytest.mark.no_cover
@@ -311,9 +324,12 @@ def test_the_brake_holds_and_yields_without_chatter():
     closing = {f"brake_program_{n}": 5.0 if 6 < n < 10 else 1.0 for n in range(1, 25)}
     seen = []
     drawn(
-        steps=3600, end=pi / SPEED, pick_up_travel=0.0,
-        watch=lambda _now, weft: seen.append((weft.strain, weft.eye_tension)), **closing,
-    )  # fmt: skip
+        steps=3600,
+        end=pi / SPEED,
+        pick_up_travel=0.0,
+        watch=lambda _now, weft: seen.append((weft.strain, weft.eye_tension)),
+        **closing,
+    )
     strains, tensions = np.array(seen).T
     turns = np.sum(np.diff(np.sign(np.diff(tensions[20:]))) != 0)
     assert turns <= 6  # rise and fall of the program and of the speed, no more
@@ -390,8 +406,14 @@ def test_a_shaft_that_turns_back_in_mid_shed_is_not_followed():
 def test_a_shaft_that_turns_back_outside_the_shed_or_turns_backward_throughout_is():
     assert all(known(rocking, 1.3))  # 1 - cos(100 deg) = 1.17: no head carries the weft yet
     assert all(known(lambda t: (-60.0 * t, -60.0, 0.0), 0.1))
-    assert all(known(lambda t: (2.0, 0.0, 0.0) if t < 0.1 else (2.0 + 300.0 * (t - 0.1) ** 2,
-                                                               600.0 * (t - 0.1), 600.0), 0.1))  # fmt: skip
+    assert all(
+        known(
+            lambda t: (
+                (2.0, 0.0, 0.0) if t < 0.1 else (2.0 + 300.0 * (t - 0.1) ** 2, 600.0 * (t - 0.1), 600.0)
+            ),
+            0.1,
+        )
+    )
 
 
 def test_the_snatch_is_that_of_the_wave_along_the_yarn():

@@ -14,9 +14,17 @@ every_machine = pytest.mark.parametrize("name", ALL_MACHINES)
 SPEED = 600.0 * RPM
 # overlap in mid-shed as the README has it, mm
 OVERLAP = {
-    "WL680-3400": 109.5, "WL680-3600": 104.6, "WL680-3800": 112.0, "WL800-3600": 119.6, "WL800-3800": 47.6,
-    "WL450-3600": 124.2, "WL450-3800": 106.6, "WL450-4000": 112.7, "WL450-4600": 103.0, "WL450-5400": 123.8,
-}  # fmt: skip
+    "WL680-3400": 109.5,
+    "WL680-3600": 104.6,
+    "WL680-3800": 112.0,
+    "WL800-3600": 119.6,
+    "WL800-3800": 47.6,
+    "WL450-3600": 124.2,
+    "WL450-3800": 106.6,
+    "WL450-4000": 112.7,
+    "WL450-4600": 103.0,
+    "WL450-5400": 123.8,
+}
 
 
 def met(transfer, giver, taker):
@@ -94,9 +102,10 @@ def test_mirrored_rapiers_meet_at_half_a_turn(name):
 def test_a_phase_shifts_the_meeting_by_half_of_it(name, lead):
     # the motion of a head is symmetric about its dead centre, so that the sum of two is about their middle
     giver, taker = head(name), head(name, lead)
-    transfer = met(WeftTransfer(**parameters("WeftTransfer", machine=name)), *(
-        each(pi - 0.5 * lead) for each in (giver, taker)
-    ))  # fmt: skip
+    transfer = met(
+        WeftTransfer(**parameters("WeftTransfer", machine=name)),
+        *(each(pi - 0.5 * lead) for each in (giver, taker)),
+    )
     travel, velocity, _acceleration = giver(pi + 0.5 * lead)
     # sums of travels of up to 3 m, velocities of up to 3 m/rad
     assert transfer.overlap == pytest.approx(2.0 * travel - transfer.separation, abs=5e-12)

@@ -58,8 +58,9 @@ def test_within_its_error_of_the_bound_a_verdict_is_undecided_and_does_not_hold(
     for side in (-0.5, 0.5):
         result = run(
             parse(LOOM.format(steps=90, bound=repr(worst.worst + side * worst.error)), "near"),
-            output=tmp_path / "near.h5", overwrite=True,
-        )  # fmt: skip
+            output=tmp_path / "near.h5",
+            overwrite=True,
+        )
         (verdict,) = result.claims
         assert not result and not verdict and not verdict.holds and not verdict.decided
         assert verdict.word == "undecided" and "1 of 1 claims is undecided" in repr(result)

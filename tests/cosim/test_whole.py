@@ -126,9 +126,11 @@ def test_times_may_be_off_the_grid_by_what_a_host_rounds(tmp_path: Path, demo: W
 def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
     scene = loaded(DEMO)
     found = fmpy.simulate_fmu(
-        str(demo.path), stop_time=100 * scene.step_size, output_interval=scene.step_size,
+        str(demo.path),
+        stop_time=100 * scene.step_size,
+        output_interval=scene.step_size,
         output=["belt.margin", "heald_1.lift"],
-    )  # fmt: skip
+    )
     expected = traced(scene, tmp_path)
     for signal in ("belt.margin", "heald_1.lift"):
         np.testing.assert_array_equal(found[signal], expected[signal][: len(found)])
@@ -139,17 +141,25 @@ def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
 
 @settings(max_examples=8)
 @given(
-    speed=st.floats(30.0, 75.0), clearance=st.floats(0.0, 1e-3), stroke=st.floats(0.05, 0.12),
+    speed=st.floats(30.0, 75.0),
+    clearance=st.floats(0.0, 1e-3),
+    stroke=st.floats(0.05, 0.12),
     steps=st.integers(90, 300),
-)  # fmt: skip
+)
 def test_a_parameter_has_the_effect_of_set(
-    tmp_path_factory: pytest.TempPathFactory, demo: Whole, speed: float, clearance: float, stroke: float,
+    tmp_path_factory: pytest.TempPathFactory,
+    demo: Whole,
+    speed: float,
+    clearance: float,
+    stroke: float,
     steps: int,
-) -> None:  # fmt: skip
+) -> None:
     values: dict[str, Any] = {
-        "shaft__speed": speed, "belt__guide_clearance": clearance, "heald_2__stroke": stroke,
+        "shaft__speed": speed,
+        "belt__guide_clearance": clearance,
+        "heald_2__stroke": stroke,
         "steps_per_revolution": steps,
-    }  # fmt: skip
+    }
     scene = loaded(DEMO, revolutions=1, **values)
     instance = demo.instance(**values)
     found = instance.along(scene.steps, scene.step_size)
@@ -207,9 +217,13 @@ def test_only_what_its_outputs_need_is_in_it(tmp_path: Path) -> None:
     made = whole.system(scenes.parse(text, "lean"))
     assert [part.name for part in made.parts] == ["shaft", "weft"]
     assert made.outputs == {
-        "shaft.angle", "shaft.velocity", "shaft.acceleration", "weft.travel", "weft.velocity",
+        "shaft.angle",
+        "shaft.velocity",
+        "shaft.acceleration",
+        "weft.travel",
+        "weft.velocity",
         "weft.acceleration",
-    }  # fmt: skip
+    }
 
 
 def test_the_same_scene_gives_the_same_bytes(tmp_path: Path) -> None:

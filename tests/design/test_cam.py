@@ -233,9 +233,12 @@ def test_table_of_points(tmp_path):
     for k in (0, 90, 300):
         found = [float(value) for value in rows[k].values()]
         expected = [
-            k, *(1e3 * cam.profile[k]), *(1e3 * cam.path[k]), np.degrees(cam.pressure_angle[k]),
+            k,
+            *(1e3 * cam.profile[k]),
+            *(1e3 * cam.path[k]),
+            np.degrees(cam.pressure_angle[k]),
             1e3 * cam.curvature_radius[k],
-        ]  # fmt: skip
+        ]
         assert found == pytest.approx(expected, abs=5e-7)  # six decimals
 
 

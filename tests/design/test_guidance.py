@@ -17,9 +17,13 @@ from loomfmu.design.reed import reed_dyad
 from loomfmu.errors import LoomfmuError
 
 PUBLISHED = {
-    "front": "490 mm", "back": "330 mm", "swing": "13.610 deg", "slope": 0.1154,
-    "pressure_angle": "-1.235 deg", "rocker": "550 mm",
-}  # fmt: skip
+    "front": "490 mm",
+    "back": "330 mm",
+    "swing": "13.610 deg",
+    "slope": 0.1154,
+    "pressure_angle": "-1.235 deg",
+    "rocker": "550 mm",
+}
 
 
 def places(joint, length, arms, tilts):
@@ -32,9 +36,14 @@ def places(joint, length, arms, tilts):
 
 
 @given(
-    st.floats(0.2, 1.0), st.floats(0.5, 2.5), st.floats(0.2, 1.0), st.integers(3, 7),
-    st.floats(0.1, 0.5), st.floats(0.1, 0.5), st.booleans(),
-)  # fmt: skip
+    st.floats(0.2, 1.0),
+    st.floats(0.5, 2.5),
+    st.floats(0.2, 1.0),
+    st.integers(3, 7),
+    st.floats(0.1, 0.5),
+    st.floats(0.1, 0.5),
+    st.booleans(),
+)
 def test_the_joint_comes_back_from_any_number_of_places(radius, start, length, count, swing, turn, sloped):
     assume(abs(swing - turn) > 0.05)  # a rod that turns with the rocker says nothing of the joint
     joint = (radius * cos(start), radius * sin(start))
@@ -143,7 +152,7 @@ def test_any_transmission_angle_within_reach(swing, share, rocker):
         (lambda: beat_up_linkage(**PUBLISHED, smallest_transmission_angle="85 deg"), "must be below"),
         (lambda: beat_up_linkage(**PUBLISHED | {"back": "500 mm"}, frame_angle="15 deg"), "no rod takes"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused(call, message):
     with pytest.raises(LoomfmuError, match=message):
         call()

@@ -37,9 +37,14 @@ def test_round_cam_is_round(trailing):
     angle = swing_on_a_round_cam(1 if trailing else -1)
     swings = [angle(2.0 * pi * k / 720) for k in range(720)]
     cam = design_rocker_cam(
-        lift_law(angle), distance=APART, arm=ARM, lowest_angle=min(swings), swing=max(swings) - min(swings),
-        roller_radius=ROLLER, trailing=trailing,
-    )  # fmt: skip
+        lift_law(angle),
+        distance=APART,
+        arm=ARM,
+        lowest_angle=min(swings),
+        swing=max(swings) - min(swings),
+        roller_radius=ROLLER,
+        trailing=trailing,
+    )
     # the spline of fifth degree through 720 samples, as for the radial follower
     assert np.hypot(*(cam.profile - (CRANK, 0.0)).T) == pytest.approx(np.full(1441, ROUND), rel=1e-8)
     assert cam.curvature_radius == pytest.approx(np.full(1441, ROUND), rel=1e-6)
@@ -61,9 +66,7 @@ def test_a_long_arm_is_a_radial_follower(trailing):
     apart = hypot(arm, middle)  # the arm stands square to the radial line in the middle of the lift
     start = 2.0 * np.arcsin(0.5 * np.sqrt((low**2 - (apart - arm) ** 2) / (apart * arm)))
     end = 2.0 * np.arcsin(0.5 * np.sqrt((high**2 - (apart - arm) ** 2) / (apart * arm)))
-    cam = design_rocker_cam(
-        distance=apart, arm=arm, lowest_angle=start, swing=end - start, trailing=trailing
-    )  # fmt: skip
+    cam = design_rocker_cam(distance=apart, arm=arm, lowest_angle=start, swing=end - start, trailing=trailing)
     radial = design_cam(lowest_radius=low, highest_radius=high, law_on_roller=True)
     # the roller leaves the radial line by the lift squared over the arm, 7e-6 m, the law by 1e-3 of the lift
     radii, expected = (np.hypot(*of.path.T) for of in (cam, radial))

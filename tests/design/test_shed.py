@@ -61,14 +61,18 @@ def test_angle_and_greatest_height_to_fifty_digits(height, near, far):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: stream_heights("16.5 mm", "10 mm", **PUBLISHED | {"entry_upper": "4 mm"}),
-         "entry_upper = 4 mm is more than the shed leaves on either side of the confuser: .* = 3.25 mm"),
-        (lambda: control_points(StreamHeights(0, 1, 0, 1), ["80 deg", "295 deg", "290 deg", "657 deg"]),
-         "angles = 80, 295, 290, 657 deg: give four that rise between 0 and 720 deg"),
+        (
+            lambda: stream_heights("16.5 mm", "10 mm", **PUBLISHED | {"entry_upper": "4 mm"}),
+            "entry_upper = 4 mm is more than the shed leaves on either side of the confuser: .* = 3.25 mm",
+        ),
+        (
+            lambda: control_points(StreamHeights(0, 1, 0, 1), ["80 deg", "295 deg", "290 deg", "657 deg"]),
+            "angles = 80, 295, 290, 657 deg: give four that rise between 0 and 720 deg",
+        ),
         (lambda: control_points(StreamHeights(0, 1, 0, 1), ["80 deg"]), "angles = 80 deg: give four"),
         (lambda: shed_angle("-1 mm", "80 mm"), "shed_height"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused(call, message):
     with pytest.raises(LoomfmuError, match=message):
         call()

@@ -151,9 +151,13 @@ def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
     (tmp_path / "temporary").mkdir()
     done = subprocess.run(
         [sys.executable, "-m", "loomfmu.cli", "run", SIMS / "belt_alone.toml", *flavour, "--output", "x.h5"],
-        cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "temporary")},
-        capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(tmp_path / "temporary")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
     assert done.returncode == 0
     assert done.stderr == (
         f"loomfmu: the cache {no_home}/.cache/loomfmu cannot be used (Not a directory);"

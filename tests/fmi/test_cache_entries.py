@@ -137,8 +137,11 @@ def run(cache: Path, *options: str) -> str:
     """Two FMUs in a process of its own; what it printed but for how long it took and what it replaced."""
     done = subprocess.run(
         [sys.executable, "-m", "loomfmu.cli", "run", SCENE, "--output", cache / "x.h5", *options],
-        capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     return "".join(
         line for line in done.stdout.splitlines(True) if not re.search(" us each; |^replaced: ", line)

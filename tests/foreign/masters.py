@@ -117,9 +117,11 @@ def fmpy(scene: Scene, directory: Path) -> Signals:
         if variable != "inputs_at_step_end"
     ]
     rows = simulate_ssp(
-        str(packed(scene, directory)), stop_time=(scene.steps - 0.5) * scene.step_size,
-        step_size=scene.step_size, parameter_set=ParameterSet(parameters=values),
-    )  # fmt: skip
+        str(packed(scene, directory)),
+        stop_time=(scene.steps - 0.5) * scene.step_size,
+        step_size=scene.step_size,
+        parameter_set=ParameterSet(parameters=values),
+    )
     return {signal: rows[signal] for signal in reals(scene)}
 
 

@@ -36,14 +36,21 @@ def test_a_shaft_drives_the_weft_in_it(tmp_path: Path) -> None:
         type="Float64", name="travel", causality="output", variability="continuous", initial="calculated"
     )
     description = ModelDescription(
-        fmiVersion="3.0", modelName="Loom", instantiationToken="{loom}", unitDefinitions=[],
-        typeDefinitions=[], defaultExperiment=DefaultExperiment(stopTime="0.15"),
-        coSimulation=CoSimulation(fixedInternalStepSize=1e-3), modelVariables=[time, follow, travel],
-    )  # fmt: skip
+        fmiVersion="3.0",
+        modelName="Loom",
+        instantiationToken="{loom}",
+        unitDefinitions=[],
+        typeDefinitions=[],
+        defaultExperiment=DefaultExperiment(stopTime="0.15"),
+        coSimulation=CoSimulation(fixedInternalStepSize=1e-3),
+        modelVariables=[time, follow, travel],
+    )
     wires = Connection(
-        shaft, [variable(shaft, name) for name in SHAFT],
-        weft, [variable(weft, f"shaft_{name}") for name in SHAFT],
-    )  # fmt: skip
+        shaft,
+        [variable(shaft, name) for name in SHAFT],
+        weft,
+        [variable(weft, f"shaft_{name}") for name in SHAFT],
+    )
     mappings = {follow: [(weft, variable(weft, "follow_shaft"))], travel: [(weft, variable(weft, "travel"))]}
     (tmp_path / "unzipped").mkdir()
     container = tmp_path / "Loom.fmu"

@@ -22,9 +22,12 @@ class Callbacks(Structure):
     """fmi2CallbackFunctions."""
 
     _fields_ = (
-        ("logger", LOGGER), ("allocate", ALLOCATE), ("release", RELEASE), ("finished", c_void_p),
+        ("logger", LOGGER),
+        ("allocate", ALLOCATE),
+        ("release", RELEASE),
+        ("finished", c_void_p),
         ("environment", c_void_p),
-    )  # fmt: skip
+    )
 
 
 def library(fmu: Fmu) -> ctypes.CDLL:
@@ -39,9 +42,15 @@ class Native:
     """An instance of a native FMU. Nothing raises: calls return the FMI status."""
 
     def __init__(
-        self, fmu: Fmu, *, logging: bool = True, guid: str | None = None, name: str | None = "tested",
-        kind: int = 1, own_memory: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        fmu: Fmu,
+        *,
+        logging: bool = True,
+        guid: str | None = None,
+        name: str | None = "tested",
+        kind: int = 1,
+        own_memory: bool = False,
+    ) -> None:
         self.fmu = fmu
         self.library = library(fmu)
         self.log: list[tuple[int, str, str]] = []

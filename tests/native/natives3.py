@@ -49,9 +49,15 @@ class Native3:
     """An instance. Nothing raises: calls return the FMI status."""
 
     def __init__(
-        self, fmu: Unpacked3, kind: str = "CoSimulation", *, logging: bool = True, token: str | None = None,
-        name: str | None = "tested", event_mode: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        fmu: Unpacked3,
+        kind: str = "CoSimulation",
+        *,
+        logging: bool = True,
+        token: str | None = None,
+        name: str | None = "tested",
+        event_mode: bool = False,
+    ) -> None:
         self.fmu = fmu
         self.library = ctypes.CDLL(str(fmu.binary))
         self.log: list[tuple[int, str, str]] = []

@@ -74,9 +74,12 @@ def test_inputs_without_given_derivatives_go_on_with_their_declared_rates(native
     given, declared = native("WeftInsertion"), native("WeftInsertion")
     for instance in (given, declared):
         instance.start(follow_shaft=True, shaft_angle=1.0, shaft_velocity=50.0, shaft_acceleration=300.0)
-    assert given.set_derivatives(
-        {("shaft_angle", 1): 50.0, ("shaft_angle", 2): 300.0, ("shaft_velocity", 1): 300.0}
-    ) == OK  # fmt: skip
+    assert (
+        given.set_derivatives(
+            {("shaft_angle", 1): 50.0, ("shaft_angle", 2): 300.0, ("shaft_velocity", 1): 300.0}
+        )
+        == OK
+    )
     assert declared.set_derivatives({("shaft_acceleration", 1): 0.0}) == OK
     for instance in (given, declared):
         assert instance.step(0.0, SIZE) == OK
@@ -121,9 +124,10 @@ def test_better_than_holding_the_inputs(native):
         for step in range(steps):
             angle = 60.0 * step * 0.05 / steps
             values = {
-                "lift": 2e-3 * math.sin(angle), "velocity": 0.12 * math.cos(angle),
+                "lift": 2e-3 * math.sin(angle),
+                "velocity": 0.12 * math.cos(angle),
                 "acceleration": -7.2 * math.sin(angle),
-            }  # fmt: skip
+            }
             if step == 0:
                 instance.start(**values)
             assert instance.set(**values) == OK

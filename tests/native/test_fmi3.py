@@ -320,8 +320,13 @@ def test_there_are_no_states_and_no_event_indicators(native3):
     for function in ("GetNumberOfContinuousStates", "GetNumberOfEventIndicators"):
         count = c_size_t(7)
         assert instance.call(function, byref(count)) == OK and count.value == 0
-    for function in ("GetContinuousStates", "GetContinuousStateDerivatives", "GetNominalsOfContinuousStates",
-                     "GetEventIndicators", "SetContinuousStates"):  # fmt: skip
+    for function in (
+        "GetContinuousStates",
+        "GetContinuousStateDerivatives",
+        "GetNominalsOfContinuousStates",
+        "GetEventIndicators",
+        "SetContinuousStates",
+    ):
         assert instance.call(function, None, c_size_t(0)) == OK
     assert instance.call("GetContinuousStates", None, c_size_t(1)) == ERROR
     assert solver_ready(native3("MainShaft", "ModelExchange")).set_time(math.inf) == ERROR
@@ -457,11 +462,22 @@ def test_the_table_is_complete():
     named = set(re.findall(r"#define fmi3(\w+) +fmi3FullName\(fmi3\w+\)", header))
     rest = {name for name in named - set(TABLE) if not re.match(r"(Get|Set)(U?Int\d+|Float32|Binary)$", name)}
     assert rest == {
-        "GetVersion", "InstantiateCoSimulation", "InstantiateModelExchange", "InstantiateScheduledExecution",
-        "FreeInstance", "GetIntervalDecimal", "GetIntervalFraction", "GetShiftDecimal", "GetShiftFraction",
-        "SetIntervalDecimal", "SetIntervalFraction", "SetShiftDecimal", "SetShiftFraction",
-        "GetNumberOfContinuousStates", "GetNumberOfEventIndicators",
-    }  # fmt: skip
+        "GetVersion",
+        "InstantiateCoSimulation",
+        "InstantiateModelExchange",
+        "InstantiateScheduledExecution",
+        "FreeInstance",
+        "GetIntervalDecimal",
+        "GetIntervalFraction",
+        "GetShiftDecimal",
+        "GetShiftFraction",
+        "SetIntervalDecimal",
+        "SetIntervalFraction",
+        "SetShiftDecimal",
+        "SetShiftFraction",
+        "GetNumberOfContinuousStates",
+        "GetNumberOfEventIndicators",
+    }
 
 
 # ---- state

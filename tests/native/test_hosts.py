@@ -46,8 +46,11 @@ def test_a_host_without_python_gets_the_components_results(built, host, name):
     library = built[name].directory / "binaries" / platform / f"{name}.so"
     run = subprocess.run(
         [host, library, built[name].guid, str(steps), repr(SIZE), letters],
-        capture_output=True, text=True, check=False, env={},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=False,
+        env={},
+    )
     assert (run.returncode, run.stderr) == (0, "")
     python = component()
     assert python.initialize(0.0) == 0

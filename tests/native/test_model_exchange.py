@@ -93,8 +93,12 @@ def test_a_component_that_remembers_is_for_co_simulation(native):
 def test_there_are_no_states_and_as_many_indicators_as_are_told(native):
     instance = solver_ready(native("DobbyDrive", kind=MODEL_EXCHANGE))
     none, one, value = c_size_t(0), c_size_t(1), c_double()
-    for function in ("GetContinuousStates", "GetDerivatives", "GetNominalsOfContinuousStates",
-                     "SetContinuousStates"):  # fmt: skip
+    for function in (
+        "GetContinuousStates",
+        "GetDerivatives",
+        "GetNominalsOfContinuousStates",
+        "SetContinuousStates",
+    ):
         assert instance.call(function, None, none) == OK
         assert (
             solver_ready(native("DobbyDrive", kind=MODEL_EXCHANGE)).call(function, byref(value), one) == ERROR
@@ -190,11 +194,16 @@ def test_a_solver_finds_what_co_simulation_finds(built, name):
     held = {v.name: True for v in declared if v.name == "inputs_at_step_end"}
     solving, stepping = (
         fmpy.simulate_fmu(
-            str(built[name].path), fmi_type=kind, stop_time=0.4, output_interval=1e-3, output=outputs,
-            start_values=held, record_events=False,
+            str(built[name].path),
+            fmi_type=kind,
+            stop_time=0.4,
+            output_interval=1e-3,
+            output=outputs,
+            start_values=held,
+            record_events=False,
         )
         for kind in ("ModelExchange", "CoSimulation")
-    )  # fmt: skip
+    )
     assert len(solving) == len(stepping)
     for output in outputs:
         one, other = (found[output].astype(float) for found in (solving, stepping))
@@ -246,9 +255,12 @@ def test_a_frame_begins_and_ends_its_changes_at_slow_points(solve, fmi):
         dtype=[(key, float) for key in ("time", "rotor_angle", "rotor_velocity", "rotor_acceleration")],
     )
     found = solve(
-        "HealdFrame", fmi, input=turning,
-        start_values={"pattern_length": 4, "pattern[1]": 6}, output=["moving"],
-    )  # fmt: skip
+        "HealdFrame",
+        fmi,
+        input=turning,
+        start_values={"pattern_length": 4, "pattern[1]": 6},
+        output=["moving"],
+    )
     # pegs 0 1 1 0: it changes, holds, changes, holds
     wanted = [2.0 * math.pi * n / speed for n in range(1, 7)]
     assert jumps(found, "moving") == pytest.approx(wanted, abs=1e-12)
@@ -261,8 +273,11 @@ def test_the_lock_is_late_from_its_speed_limit_on(solve, fmi):
         dtype=[(key, float) for key in ("time", "shaft_angle", "shaft_velocity", "shaft_acceleration")],
     )
     found = solve(
-        "PatternLock", fmi, input=faster,
-        start_values={"follow_shaft": True}, output=["in_time", "speed_limit"],
-    )  # fmt: skip
+        "PatternLock",
+        fmi,
+        input=faster,
+        start_values={"follow_shaft": True},
+        output=["in_time", "speed_limit"],
+    )
     limit = float(found["speed_limit"][0])
     assert jumps(found, "in_time") == pytest.approx([(limit - 20.0) / 80.0], abs=1e-11)

@@ -166,11 +166,19 @@ def test_a_state_that_cannot_be_is_refused_even_with_a_proper_checksum(native):
     nan, infinity = bytes.fromhex("000000000000f87f"), bytes.fromhex("000000000000f07f")
     speed = 8 + 36 + 4 + 16
     for place, value in (
-        (44, b"\x00"), (44, b"\x03"), (44, b"\x41"), (44, b"\xff"),  # no mode
-        (48, nan), (48, infinity), (56, nan),  # no times
-        (speed, nan), (speed, infinity), (speed, bytes.fromhex("000000000088c340")),  # no speed
-        (speed + 8, b"\x08"), (speed + 9, nan),  # no derivatives
-    ):  # fmt: skip
+        (44, b"\x00"),
+        (44, b"\x03"),
+        (44, b"\x41"),
+        (44, b"\xff"),  # no mode
+        (48, nan),
+        (48, infinity),
+        (56, nan),  # no times
+        (speed, nan),
+        (speed, infinity),
+        (speed, bytes.fromhex("000000000088c340")),  # no speed
+        (speed + 8, b"\x08"),
+        (speed + 9, nan),  # no derivatives
+    ):
         assert instance.unpack(forged(content, place, value))[0] == ERROR, (place, value)
     assert instance.drop(state) == OK
 

@@ -136,9 +136,20 @@ def test_a_warning_is_told_once(native, live):
 
 @pytest.mark.parametrize(
     ("time", "size"),
-    [(0.0, -1e-3), (0.0, math.nan), (0.0, math.inf), (math.nan, 1e-3), (math.inf, 0.0), (0.3, -123456.789),
-     (1e22, -1e-7), (1e15, -1.0), (1e16, -2.5), (0.0001, -0.00001), (100.0, -12.0)],
-)  # fmt: skip
+    [
+        (0.0, -1e-3),
+        (0.0, math.nan),
+        (0.0, math.inf),
+        (math.nan, 1e-3),
+        (math.inf, 0.0),
+        (0.3, -123456.789),
+        (1e22, -1e-7),
+        (1e15, -1.0),
+        (1e16, -2.5),
+        (0.0001, -0.00001),
+        (100.0, -12.0),
+    ],
+)
 def test_a_step_that_is_none(native, live, time, size):
     compiled, python = native("MainShaft").start(), live("MainShaft").start()
     assert (compiled.step(time, size), python.step(time, size)) == (DISCARD, FATAL)

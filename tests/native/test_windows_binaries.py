@@ -27,9 +27,19 @@ def host(tools, tmp_path_factory) -> Path:
     """The C host of the other tests, built for Windows."""
     path = tmp_path_factory.mktemp("windows") / "host.exe"
     command = [
-        sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu", "-std=c99", "-O1",
-        f"-I{native_builder.HEADERS}", "-o", path, HERE / "host.c",
-    ]  # fmt: skip
+        sys.executable,
+        "-m",
+        "ziglang",
+        "cc",
+        "-target",
+        "x86_64-windows-gnu",
+        "-std=c99",
+        "-O1",
+        f"-I{native_builder.HEADERS}",
+        "-o",
+        path,
+        HERE / "host.c",
+    ]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     return path
@@ -44,9 +54,12 @@ def test_the_windows_binary_gives_the_components_results(fmu_cache, host, tmp_pa
     letters = "".join({float: "r", int: "i", bool: "b"}[v.type] for v in variables_of(component))
     run = subprocess.run(
         [WINE, host, f"Z:{library}", builder.guid(component), str(STEPS), repr(SIZE), letters],
-        capture_output=True, text=True, check=False, timeout=300,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
         env=os.environ | {"WINEPREFIX": str(host.parent / "prefix"), "WINEDEBUG": "-all", "DISPLAY": ""},
-    )  # fmt: skip
+    )
     assert run.returncode == 0, run.stderr
     python = component()
     assert python.initialize(0.0) == 0

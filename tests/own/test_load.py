@@ -58,15 +58,21 @@ MISTAKES = {
     "a rate that is not there": ('rate="rate"', 'rate="rat"', "line 15: sound: rate = 'rat' is not one of"),
     "a rate in another unit": ('"m/s", "Rate"', '"m", "Rate"', "line 15: sound is in m, but its rate"),
     "a switch that is not there": (
-        'minimum=0.0, maximum=1.0)', 'when="loud")', "pitch: when = 'loud' is not one of its parameters"
+        "minimum=0.0, maximum=1.0)",
+        'when="loud")',
+        "pitch: when = 'loud' is not one of its parameters",
     ),
     "a taken name": ("pitch", "machine", "line 14: a variable cannot be called machine"),
     "a key of every instance": ("pitch", "isolated", "line 14: a variable cannot be called isolated"),
     "a number that vouches": (
-        '"Rate")', '"Rate", valid_if="sound")', "rate: valid_if = 'sound' is not a yes-or-no output",
+        '"Rate")',
+        '"Rate", valid_if="sound")',
+        "rate: valid_if = 'sound' is not a yes-or-no output",
     ),
     "an error in another unit": (
-        '"Rate")', '"Rate", error="sound")', "rate is in m/s, but its error sound in m",
+        '"Rate")',
+        '"Rate", error="sound")',
+        "rate is in m/s, but its error sound in m",
     ),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
     "an extreme that keeps nothing": (
@@ -119,7 +125,7 @@ MISTAKES = {
         r"2 components; name one: .*bell\.py:Other, .*bell\.py:Bell",
     ),
     "no component": ("(Component)", "", "it has no component; declare a class on"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)

@@ -161,9 +161,12 @@ def test_printed_deflection_formula_gives_half():
     # erratum of (11): half of the exact elastica and of the paper's own figure
     share = math.sqrt((685 / 686) ** 2)  # sqrt(F_cr / F)
     printed = (
-        2 * math.sqrt(2) * 0.174 / math.pi
+        2
+        * math.sqrt(2)
+        * 0.174
+        / math.pi
         * math.sqrt((1 - share) / (2 * share**2 + share * math.sin(2 * math.pi * share) / math.pi))
-    )  # fmt: skip
+    )
     assert printed == pytest.approx(4.2e-3, abs=5e-5)  # two digits
     # exactly half for small deflections, up to a few times the overload of 0.3 %
     assert elastica_deflection((686 / 685) ** 2, 0.174) / printed == pytest.approx(2.0, rel=1e-2)

@@ -64,7 +64,7 @@ def test_bending_and_shortening_and_their_rates_are_those_of_the_shape(clamped):
     speeds = modes * np.array([30.0, -20.0, 40.0, 10.0, -60.0, 20.0])
     state = end_motion(
         *modes, *speeds, VELOCITY, ACCELERATION, clamped, *free_turn(clamped, LENGTH), *bow(LENGTH)
-    )  # fmt: skip
+    )
     found = np.array(bent_belt(*modes, *speeds, LENGTH, VELOCITY, ACCELERATION, clamped, *state[2:]))
 
     def later(time):
@@ -106,16 +106,48 @@ def test_the_energy_changes_by_the_powers(clamped, shape, swing, size, velocity,
     def energy(time, load=0.0):
         length = LENGTH + time * velocity + 0.5 * time**2 * acceleration
         return energy_and_powers(
-            *(modes + time * speeds + 0.5 * time**2 * found), *(speeds + time * found), *found, length,
-            velocity + time * acceleration, acceleration, tension, head_mass, belt_mass, damping, stiffness,
-            1, BOW, BOW_LENGTH, offset, True, clamped, turn + by_length * (length - LENGTH), by_length, load,
-        )  # fmt: skip
+            *(modes + time * speeds + 0.5 * time**2 * found),
+            *(speeds + time * found),
+            *found,
+            length,
+            velocity + time * acceleration,
+            acceleration,
+            tension,
+            head_mass,
+            belt_mass,
+            damping,
+            stiffness,
+            1,
+            BOW,
+            BOW_LENGTH,
+            offset,
+            True,
+            clamped,
+            turn + by_length * (length - LENGTH),
+            by_length,
+            load,
+        )
 
     b = stiffness * np.array(bow_forces(1, BOW, BOW_LENGTH, LENGTH)[:6])
     *found, load = accelerations(
-        *modes, *speeds, LENGTH, velocity, acceleration, tension, head_mass, belt_mass, damping, stiffness,
-        offset, clamped, turn, by_length, 6, *b, *bow(LENGTH),
-    )  # fmt: skip
+        *modes,
+        *speeds,
+        LENGTH,
+        velocity,
+        acceleration,
+        tension,
+        head_mass,
+        belt_mass,
+        damping,
+        stiffness,
+        offset,
+        clamped,
+        turn,
+        by_length,
+        6,
+        *b,
+        *bow(LENGTH),
+    )
     found = np.array(found)
     fastest = 1e3 + np.abs(swing).max() + np.sqrt(np.abs(found).max() / (np.abs(modes).max() + 1e-9))
     step = 1e-3 / fastest

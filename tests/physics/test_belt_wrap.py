@@ -50,7 +50,7 @@ def test_erratum_of_the_published_loads():
         for row, column, printed, computed in loads("belt_wrap_theory")
         if (row["D_mm"], column) == ERRATUM
     ]
-    (printed, computed), = wrong  # fmt: skip
+    ((printed, computed),) = wrong
     assert computed == pytest.approx(59.10, abs=5e-3)
     assert printed == 54.81
     # along the row the load goes with 1 / sqrt(c), but for c^2 beside D c: the printed one breaks that

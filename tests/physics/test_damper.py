@@ -61,8 +61,10 @@ def test_two_pieces_make_one_whole(z, v, first_part):
     u0, u1, u2, u3 = drive
     later = (
         u0 + first_part * (u1 + first_part * (u2 + first_part * u3)),
-        u1 + first_part * (2 * u2 + first_part * 3 * u3), u2 + 3 * first_part * u3, u3,
-    )  # fmt: skip
+        u1 + first_part * (2 * u2 + first_part * 3 * u3),
+        u2 + 3 * first_part * u3,
+        u3,
+    )
     both = propagate(*first, k, c, *later, 1.0 - first_part)
     assert both == pytest.approx(propagate(z, v, k, c, *drive, 1.0), abs=5e-15)  # a few roundings
 
@@ -240,9 +242,7 @@ def test_located_where_there_is_no_slope():
 def test_located_release_of_an_elastic_stop(depth, share):
     # pressing on an undamped stop the carrier moves on a circle and is let go at its surface
     z, v = 1.0 + depth, -sqrt(1.0 - depth**2) * share
-    found, then = contact_change(
-        1, z, v, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, pi / 2
-    )  # fmt: skip
+    found, then = contact_change(1, z, v, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, pi / 2)
     amplitude = sqrt(depth**2 + v**2)
     exact = acos(0.0) - acos(depth / amplitude)  # depth(t) = amplitude cos(t + phase)
     # the force is a difference of two lengths of 1: rounding over the speed at the surface

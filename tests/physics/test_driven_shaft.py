@@ -126,9 +126,14 @@ def along(share, velocity, net, rise, bulge, duration, inertia, slope):
 
 @settings(max_examples=10, deadline=None)  # quadratures in 60 digits
 @given(
-    st.floats(-50.0, 50.0), torques, torques, torques, st.floats(-5.0, 0.0), st.floats(0.0, 2.0),
+    st.floats(-50.0, 50.0),
+    torques,
+    torques,
+    torques,
+    st.floats(-5.0, 0.0),
+    st.floats(0.0, 2.0),
     st.sampled_from([0.0, 0.1, 40.0]),
-)  # fmt: skip
+)
 def test_motion_and_work_are_exact_for_a_load_on_a_parabola(velocity, net, rise, bulge, size, mass, slope):
     step = (10.0**size, 10.0**mass, slope)
     gained, more, second, third = driven_motion(velocity, net, rise, bulge, *step)

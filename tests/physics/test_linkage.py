@@ -28,10 +28,16 @@ def sector(weft: dict, theta: float) -> tuple[float, float, float]:
     """`weft_motion` of a machine; without a four-bar its lengths are not used."""
     bars = [weft.get(f"{bar}_length", 1.0) for bar in ("crank", "coupler", "output")]
     return weft_motion(
-        theta + weft["crank_phase"], weft["rocker_angle"], weft["crank_cone"], weft["rocker_offset"],
-        weft["planar_linkage"], *bars, weft.get("pivot_x", 0.0), weft.get("pivot_y", 0.0),
+        theta + weft["crank_phase"],
+        weft["rocker_angle"],
+        weft["crank_cone"],
+        weft["rocker_offset"],
+        weft["planar_linkage"],
+        *bars,
+        weft.get("pivot_x", 0.0),
+        weft.get("pivot_y", 0.0),
         weft.get("assembly", 1),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("name", ALL_MACHINES)
@@ -93,9 +99,17 @@ def test_four_bar_margin_agrees_with_a_search(low, swing, crank, coupler, output
 
 
 @given(
-    angle, st.floats(-1.0, 1.0), st.floats(0.05, 1.4), st.floats(-3.0, 3.0), length, length, place, place,
-    st.floats(0.0, 1.0), way,
-)  # fmt: skip
+    angle,
+    st.floats(-1.0, 1.0),
+    st.floats(0.05, 1.4),
+    st.floats(-3.0, 3.0),
+    length,
+    length,
+    place,
+    place,
+    st.floats(0.0, 1.0),
+    way,
+)
 def test_derivatives_of_any_linkage_are_exact(
     theta, arc_share, crank_cone, offset, crank, output, x, y, coupler_share, assembly
 ):
@@ -108,10 +122,18 @@ def test_derivatives_of_any_linkage_are_exact(
     shortest, longest = abs(distance - output) + 0.02, distance + output - 0.02
     coupler = shortest + coupler_share * (longest - shortest)
     weft = {
-        "rocker_angle": rocker, "crank_cone": crank_cone, "crank_phase": 0.0, "rocker_offset": offset,
-        "planar_linkage": True, "crank_length": crank, "coupler_length": coupler, "output_length": output,
-        "pivot_x": x, "pivot_y": y, "assembly": assembly,
-    }  # fmt: skip
+        "rocker_angle": rocker,
+        "crank_cone": crank_cone,
+        "crank_phase": 0.0,
+        "rocker_offset": offset,
+        "planar_linkage": True,
+        "crank_length": crank,
+        "coupler_length": coupler,
+        "output_length": output,
+        "pivot_x": x,
+        "pivot_y": y,
+        "assembly": assembly,
+    }
     exact = sector_angle(weft, Jet(theta, 1))
     found = sector(weft, theta)
     # rounding of 1e-16, magnified by the nearness to the dead points: up to (1 / 0.02)^2 on each derivative

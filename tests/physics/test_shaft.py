@@ -21,9 +21,13 @@ def exact_angle(time, speed, start, duration, amplitude, order):
 
 
 @given(
-    st.floats(0.01, 3.0), st.floats(-100.0, 100.0), st.floats(-7.0, 7.0), st.sampled_from([0.0, 0.5, 2.0]),
-    st.floats(0.0, 0.9), st.integers(1, 8),
-)  # fmt: skip
+    st.floats(0.01, 3.0),
+    st.floats(-100.0, 100.0),
+    st.floats(-7.0, 7.0),
+    st.sampled_from([0.0, 0.5, 2.0]),
+    st.floats(0.0, 0.9),
+    st.integers(1, 8),
+)
 def test_velocity_and_acceleration_belong_to_the_angle(time, speed, start, duration, amplitude, order):
     case = (speed, start, duration, amplitude, order)
     angle, velocity, acceleration = shaft_motion(time, *case)

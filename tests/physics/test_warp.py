@@ -135,9 +135,13 @@ def run(extension, rate, second, step, steps, stiffness, creep, relaxation, forc
     for n in range(steps):
         at, then = n * step, (n + 1) * step
         a = joined(
-            extension(at), step * rate(at), step * step * second(at),
-            extension(then), step * rate(then), step * step * second(then),
-        )  # fmt: skip
+            extension(at),
+            step * rate(at),
+            step * step * second(at),
+            extension(then),
+            step * rate(then),
+            step * step * second(then),
+        )
         drive = thread_drive(stiffness, creep * step, extension(at), extension(then), *a)
         force, _area = thread_force(force, relaxation * step, *drive, 1.0)
     return force
@@ -188,9 +192,15 @@ def test_sinusoidal_drive(n, r):
     errors = []
     for steps in (8, 16, 32, 1024):
         force = run(
-            lambda at: size * sin(w * at), lambda at: size * w * cos(w * at),
-            lambda at: -size * w * w * sin(w * at), t / steps, steps, b, n, r,
-        )  # fmt: skip
+            lambda at: size * sin(w * at),
+            lambda at: size * w * cos(w * at),
+            lambda at: -size * w * w * sin(w * at),
+            t / steps,
+            steps,
+            b,
+            n,
+            r,
+        )
         errors.append(float(abs(force - exact(MP.mpf(t)))))
     # quintics: an extension of 3 mm within X (w h)^6 / 46080, a rate within X w (w h)^5 / 3000
     for steps, error in zip((8, 16, 32, 1024), errors, strict=True):
@@ -222,9 +232,15 @@ def test_equal_rates_make_a_spring():
     # n = r: F' + r F = b (x' + r x) is solved by F = b x, whatever the motion
     b, r = 67.0, 10.0
     force = run(
-        lambda t: 0.007 * sin(9 * t), lambda t: 0.063 * cos(9 * t), lambda t: -0.567 * sin(9 * t),
-        0.01, 37, b, r, r,
-    )  # fmt: skip
+        lambda t: 0.007 * sin(9 * t),
+        lambda t: 0.063 * cos(9 * t),
+        lambda t: -0.567 * sin(9 * t),
+        0.01,
+        37,
+        b,
+        r,
+        r,
+    )
     assert force == pytest.approx(b * 0.007 * sin(9 * 0.37), abs=1e-15)  # rounding of 0.5 N
 
 
@@ -270,9 +286,15 @@ def test_steps_follow_the_published_solution():
     b, n, r = 67.0, 5.0, 10.0
     small, share = r / (b * n), (1 - r / n) / (b * n)
     force = run(
-        lambda t: small * t - share * expm1(-n * t), lambda t: small + share * n * exp(-n * t),
-        lambda t: -share * n * n * exp(-n * t), 0.01, 50, b, n, r,
-    )  # fmt: skip
+        lambda t: small * t - share * expm1(-n * t),
+        lambda t: small + share * n * exp(-n * t),
+        lambda t: -share * n * n * exp(-n * t),
+        0.01,
+        50,
+        b,
+        n,
+        r,
+    )
     # (n h)^5 / 3000 of the transient's rate
     assert force == pytest.approx(0.5, rel=1e-9)
 

@@ -20,9 +20,17 @@ from loomfmu.components import HealdDamper
 # 720 steps on the travel's own rounding would show, 60 * 1e-15 / h^2; what replaces it is of fourth order
 # too, with eight times the error, and at last there is the rounding of the velocity over the step, 1e-15 / h.
 BOUNDS = {
-    45: 1e-4, 90: 7e-6, 180: 5e-7, 360: 3e-8, 720: 2e-9, 1440: 1e-9, 2880: 1e-10, 5760: 5e-11, 11520: 5e-11,
+    45: 1e-4,
+    90: 7e-6,
+    180: 5e-7,
+    360: 3e-8,
+    720: 2e-9,
+    1440: 1e-9,
+    2880: 1e-10,
+    5760: 5e-11,
+    11520: 5e-11,
     23040: 5e-11,
-}  # fmt: skip
+}
 WINDOW = (85.0 / 360.0, 110.0 / 360.0)  # turns between which every belt has its worst place
 
 

@@ -47,9 +47,13 @@ def test_a_released_carrier_is_where_the_closed_solution_has_it(mass, ratio):
     for stiffness in STIFFNESSES:
         own = sqrt(4.0 * stiffness / mass)
         damper = HealdDamper(
-            carrier_mass=mass, spring_stiffness=stiffness, damping_ratio=ratio, acceleration=0.0,
-            free_travel=1.0, start_displacement=0.01,
-        )  # fmt: skip
+            carrier_mass=mass,
+            spring_stiffness=stiffness,
+            damping_ratio=ratio,
+            acceleration=0.0,
+            free_travel=1.0,
+            start_displacement=0.01,
+        )
         damper.initialize(0.0)
         time = 0.0
         for size in (1e-9 / own, 0.3 / own, 2.0 / own, 20.0 / own, 1e-3 / own):
@@ -103,9 +107,12 @@ def energy(damper: HealdDamper) -> float:
 )
 def test_an_undamped_swing_keeps_its_energy_over_many_steps(steps, mass, stiffness):
     damper = HealdDamper(
-        carrier_mass=mass, spring_stiffness=stiffness, damping_ratio=0.0, acceleration=0.0,
+        carrier_mass=mass,
+        spring_stiffness=stiffness,
+        damping_ratio=0.0,
+        acceleration=0.0,
         start_displacement=0.01,
-    )  # fmt: skip
+    )
     damper.initialize(0.0)
     start = energy(damper)
     size = 0.37 / sqrt(4.0 * stiffness / mass)
@@ -121,9 +128,13 @@ def test_an_undamped_swing_keeps_its_energy_over_many_steps(steps, mass, stiffne
 @pytest.mark.parametrize("restitution", [1.0, 0.9, 0.15])
 def test_stops_give_no_energy(stop_stiffness, stiffness, restitution):
     damper = HealdDamper(
-        spring_stiffness=stiffness, damping_ratio=0.0, acceleration=0.0, start_rate=3.0,
-        stop_stiffness=stop_stiffness, stop_restitution=restitution,
-    )  # fmt: skip
+        spring_stiffness=stiffness,
+        damping_ratio=0.0,
+        acceleration=0.0,
+        start_rate=3.0,
+        stop_stiffness=stop_stiffness,
+        stop_restitution=restitution,
+    )
     damper.initialize(0.0)
     before = start = energy(damper)
     # the displacement is rounded once in each of some ten pieces of a contact, and the stop's force, up to
@@ -228,9 +239,15 @@ def test_a_step_that_would_need_too_many_pieces_is_refused_at_once():
 def test_a_carrier_that_rattles_for_ever_is_given_up():
     # elastic stops, next to no way between them: a contact is a piece or more
     problem, pieces, damper = step_of(
-        50.0, spring_stiffness=0.0, damping_ratio=0.0, stop_stiffness=1e9, stop_restitution=1.0,
-        free_travel=1e-6, start_rate=1.0, acceleration=0.0,
-    )  # fmt: skip
+        50.0,
+        spring_stiffness=0.0,
+        damping_ratio=0.0,
+        stop_stiffness=1e9,
+        stop_restitution=1.0,
+        free_travel=1e-6,
+        start_rate=1.0,
+        acceleration=0.0,
+    )
     assert (problem, pieces) == (1, MOST_PIECES)
     assert isfinite(damper.displacement)
 
@@ -265,9 +282,15 @@ def test_any_damper_moves_or_says_why_not(
     mass, stiffness, ratio, travel, stop, restitution, rate, size, at_end
 ):
     damper = HealdDamper(
-        carrier_mass=mass, spring_stiffness=stiffness, damping_ratio=ratio, free_travel=travel,
-        stop_stiffness=stop, stop_restitution=restitution, start_rate=rate, inputs_at_step_end=at_end,
-    )  # fmt: skip
+        carrier_mass=mass,
+        spring_stiffness=stiffness,
+        damping_ratio=ratio,
+        free_travel=travel,
+        stop_stiffness=stop,
+        stop_restitution=restitution,
+        start_rate=rate,
+        inputs_at_step_end=at_end,
+    )
     assert damper.initialize(0.0) == 0
     peak = -inf
     for n in range(4):

@@ -21,9 +21,15 @@ MP = mpmath.mp.clone()
 MP.dps = 40
 
 LAWS = {
-    "uniform": 1, "harmonic_ends": 2, "sloped_line": 3, "sloped_sine": 4, "slotted_levers": 5,
-    "noncircular_gears": 6, "spline_cam": 7, "table": 8,
-}  # fmt: skip
+    "uniform": 1,
+    "harmonic_ends": 2,
+    "sloped_line": 3,
+    "sloped_sine": 4,
+    "slotted_levers": 5,
+    "noncircular_gears": 6,
+    "spline_cam": 7,
+    "table": 8,
+}
 
 
 def seeds(few: int, many: int) -> Any:
@@ -175,10 +181,11 @@ def comes_back(rng: random.Random) -> bool:
     inner = sorted(rng.uniform(0.0, 4.0 * pi) for _ in range(4))
     heights = [rng.uniform(0.0, 0.02) for _ in range(4)]
     drive = DobbyDrive(
-        law=LAWS["spline_cam"], speed=1.0,
+        law=LAWS["spline_cam"],
+        speed=1.0,
         **{f"cam_angle_{n + 2}": angle for n, angle in enumerate(inner)},
         **{f"cam_height_{n + 2}": height for n, height in enumerate(heights)},
-    )  # fmt: skip
+    )
     if told(drive, drive.initialize(0.0)):
         return False
     rows = []
@@ -219,9 +226,11 @@ def elastica(load_ratio: Any) -> Any:
     else:
         # in the complementary modulus, whose logarithm is all that is left of it at a large load
         q = MP.findroot(
-            lambda q: MP.ellipk(1 - MP.exp(2 * q)) - target, (MP.log(4) - target - 1, MP.mpf("-1e-3")),
-            solver="anderson", tol=1e-30,
-        )  # fmt: skip
+            lambda q: MP.ellipk(1 - MP.exp(2 * q)) - target,
+            (MP.log(4) - target - 1, MP.mpf("-1e-3")),
+            solver="anderson",
+            tol=1e-30,
+        )
         k = MP.sqrt(1 - MP.exp(2 * q))
     return k / target
 
@@ -275,9 +284,15 @@ def test_the_length_factor_has_no_gaps():
 @pytest.mark.parametrize("clearance", [0.0, 5e-324, 0.8e-3, 0.05])
 def test_a_belt_that_hardly_leaves_its_guide(free, tension, clearance):
     belt = BeltMonitor(
-        head_length=0.0, idle_travel=0.0, travel=free, velocity=0.0, acceleration=400.0, yarn_tension=tension,
-        guide_clearance=clearance, inputs_at_step_end=True,
-    )  # fmt: skip
+        head_length=0.0,
+        idle_travel=0.0,
+        travel=free,
+        velocity=0.0,
+        acceleration=400.0,
+        yarn_tension=tension,
+        guide_clearance=clearance,
+        inputs_at_step_end=True,
+    )
     assert belt.initialize(0.0) in (0, 1)
     for n in range(5):
         belt.travel = free * (n - 1.0)
@@ -349,9 +364,12 @@ def test_a_pawl_gets_over_at_any_corner(seed):
 def test_a_thread_held_tight_relaxes_as_its_law_says(relaxation, creep, size):
     # at a constant extension x: F(t) = b x [n/r + (1 - n/r) exp(-r t)], and without relaxation b x (1 + n t)
     warp = WarpTension(
-        creep_rate=creep, relaxation_rate=relaxation, pretension=1e3, thread_stiffness=1e-3,
+        creep_rate=creep,
+        relaxation_rate=relaxation,
+        pretension=1e3,
+        thread_stiffness=1e-3,
         inputs_at_step_end=True,
-    )  # fmt: skip
+    )
     warp.initialize(0.0)
     tight = 1e-3 * warp.extension
     time = 0.0

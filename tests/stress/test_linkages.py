@@ -18,13 +18,26 @@ from loomfmu.variables import Component
 
 CLEAR = 1e-9  # m or 1: how far both components stay clear of a dead point
 WEFT = (
-    "rocker_angle", "crank_cone", "rocker_offset",
-    "crank_length", "coupler_length", "output_length", "pivot_x", "pivot_y",
-)  # fmt: skip
+    "rocker_angle",
+    "crank_cone",
+    "rocker_offset",
+    "crank_length",
+    "coupler_length",
+    "output_length",
+    "pivot_x",
+    "pivot_y",
+)
 REED = (
-    "crank_length", "coupler_length", "rocker_length", "crank_x", "crank_y",
-    "arm_length", "arm_angle", "rod_length", "reed_height",
-)  # fmt: skip
+    "crank_length",
+    "coupler_length",
+    "rocker_length",
+    "crank_x",
+    "crank_y",
+    "arm_length",
+    "arm_angle",
+    "rod_length",
+    "reed_height",
+)
 SOME_MACHINES = ("WL680-3600", "WL450-5400")
 
 

@@ -42,8 +42,10 @@ def test_a_million_turns_later_a_mechanism_does_what_it_did(name, turns):
         one, other = ([row[output] for row in each] for each in (first, later))
         if output in COUNTED:
             whole = turns if isinstance(value, int) else TURN * turns
-            assert all(fabs(b - a - whole) <= 2.0 * rounding * (1 + 9 * (output == "rotor_angle"))
-                       for a, b in zip(one, other, strict=True)), output  # fmt: skip
+            assert all(
+                fabs(b - a - whole) <= 2.0 * rounding * (1 + 9 * (output == "rotor_angle"))
+                for a, b in zip(one, other, strict=True)
+            ), output
         elif isinstance(value, float):
             # as much as an output may change over the rounding of the angle: twice its steepest slope
             steepest = max(fabs(b - a) for a, b in itertools.pairwise(one)) * 1500 / TURN

@@ -52,10 +52,22 @@ def sanitized(folder: Path, sanitizers: str, scenes: list[Path], threads: int) -
     runtime = {"thread": "libtsan.so"}.get(sanitizers, "libasan.so")
     for source in (steppers.SOURCE, compiled.SOURCE):
         subprocess.run(
-            [gcc(), "-shared", "-fPIC", "-O1", "-g1", f"-fsanitize={sanitizers}", "-ffp-contract=off",
-             "-fno-sanitize-recover=undefined", "-o", folder / f"{source.stem}.so", source, "-lm"],
+            [
+                gcc(),
+                "-shared",
+                "-fPIC",
+                "-O1",
+                "-g1",
+                f"-fsanitize={sanitizers}",
+                "-ffp-contract=off",
+                "-fno-sanitize-recover=undefined",
+                "-o",
+                folder / f"{source.stem}.so",
+                source,
+                "-lm",
+            ],
             check=True,
-        )  # fmt: skip
+        )
     found = subprocess.run([gcc(), f"-print-file-name={runtime}"], capture_output=True, text=True, check=True)
     done = subprocess.run(
         ["setarch", "-R", sys.executable, "-c", RUN, str(folder), str(threads), *map(str, scenes)],

@@ -56,8 +56,11 @@ SLOWEST_AND_FASTEST = (SPEEDS[0], SPEEDS[-1])
 
 def unlimited(name: str, expected: float, value: float, factor: float) -> bool:
     """Whether the value stands for none: 95,493 rev/min, or 1e6 s, at every speed of the loom."""
-    none = {"BeltMonitor.speed_limit": NO_LIMIT, "BeltMonitor.lowest_speed_limit": NO_LIMIT,
-            "PatternLock.available_time": UNLIMITED_TIME}.get(name)  # fmt: skip
+    none = {
+        "BeltMonitor.speed_limit": NO_LIMIT,
+        "BeltMonitor.lowest_speed_limit": NO_LIMIT,
+        "PatternLock.available_time": UNLIMITED_TIME,
+    }.get(name)
     if none is None or max(expected, value) < none:
         return False
     return value >= 0.999 * min(none, none * factor)
@@ -96,9 +99,7 @@ def test_a_loom_is_the_same_at_every_speed(rpm, way, direction):
     "name", ["WeftInsertion", "DobbyDrive", "PatternLock", "ReedBeatUp", "DetachingRoller"]
 )
 def test_backwards_a_mechanism_shows_what_it_showed_forwards(name):
-    onwards, back = (
-        WholeLoom(speed, follow=False, names=[name]).parts[name] for speed in (2.0, -2.0)
-    )  # fmt: skip
+    onwards, back = (WholeLoom(speed, follow=False, names=[name]).parts[name] for speed in (2.0, -2.0))
     continuous = [
         variable
         for variable in declared(type(onwards))

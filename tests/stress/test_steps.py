@@ -12,8 +12,14 @@ from whole_loom import TURN, WIRES, WholeLoom
 SPEED = 40.0  # rad/s
 # what is a function of the shaft alone
 STATELESS = (
-    "MainShaft", "WeftInsertion", "DobbyDrive", "HealdFrame", "PatternLock", "ReedBeatUp", "DetachingRoller",
-)  # fmt: skip
+    "MainShaft",
+    "WeftInsertion",
+    "DobbyDrive",
+    "HealdFrame",
+    "PatternLock",
+    "ReedBeatUp",
+    "DetachingRoller",
+)
 step_sizes = st.one_of(
     st.just(0.0),
     st.floats(-9.0, 0.0).map(lambda power: 10.0**power),  # a nanosecond to six revolutions

@@ -25,8 +25,12 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
     "HealdFrame": {
         name: ("DobbyDrive", name)
         for name in (
-            "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration",
+            "rotor_angle",
+            "rotor_velocity",
+            "rotor_acceleration",
+            "lift_fraction",
+            "lift_rate",
+            "lift_acceleration",
         )
     },
     "WarpTension": FRAME,
@@ -34,25 +38,34 @@ WIRES: dict[str, dict[str, tuple[str, str]]] = {
     "PatternLock": SHAFT,
     "ReedBeatUp": SHAFT,
     "DetachingRoller": SHAFT,
-}  # fmt: skip
+}
 
 # Parameters at a shaft that turns with 1 rad/s, chosen to stay within their limits when they are scaled
 # to any speed from 0.001 to 5,000 rev/min
 AT_ONE_RADIAN: dict[str, dict[str, Any]] = {
     "BeltMonitor": {"bending_stiffness": 1.5e-3, "head_mass": 1.0},
     "WeftTension": {  # air has a density of its own: without drag
-        "linear_density": 2e-4, "yarn_stiffness": 10.0, "retardation_time": 1e-5, "air_friction": 0.0,
-        "brake_force": 6e-4, "supply_tension": 1.5e-4,
+        "linear_density": 2e-4,
+        "yarn_stiffness": 10.0,
+        "retardation_time": 1e-5,
+        "air_friction": 0.0,
+        "brake_force": 6e-4,
+        "supply_tension": 1.5e-4,
     },
     "HealdFrame": {"frame_mass": 2.0, "gravity": 0.0, "pattern_length": 3},
     "WarpTension": {"pretension": 0.01, "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2},
     "HealdDamper": {
-        "carrier_mass": 10.0, "spring_stiffness": 1.0, "stop_stiffness": 1e6, "pretension": 0.01,
-        "thread_stiffness": 0.05, "creep_rate": 0.1, "relaxation_rate": 0.2,
+        "carrier_mass": 10.0,
+        "spring_stiffness": 1.0,
+        "stop_stiffness": 1e6,
+        "pretension": 0.01,
+        "thread_stiffness": 0.05,
+        "creep_rate": 0.1,
+        "relaxation_rate": 0.2,
     },
     "PatternLock": {"spring_force": 2.0, "spring_stiffness": 2e3},
     "DetachingRoller": {"nip_load": 0.5, "largest_drafting_force": 0.1},
-}  # fmt: skip
+}
 
 
 def scale(unit: str, speed: float) -> float:
@@ -82,7 +95,7 @@ class WholeLoom:
 
     def __init__(
         self, speed: float, *, follow: bool, time: float = 0.0, names: Iterable[str] = WIRES, **shaft: Any
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.speed = speed
         self.parts: dict[str, Component] = {}
         for name in names:

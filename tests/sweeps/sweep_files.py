@@ -44,6 +44,10 @@ def started(path: Path, *arguments: str) -> subprocess.Popen[str]:
     """The command, in a process group of its own."""
     return subprocess.Popen(
         [sys.executable, "-m", "loomfmu.cli", "sweep", str(path), *arguments],
-        cwd=path.parent, env=os.environ | {"COLUMNS": "150"}, start_new_session=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        cwd=path.parent,
+        env=os.environ | {"COLUMNS": "150"},
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )

@@ -30,9 +30,12 @@ def cluster(fmu_cache: None) -> Iterator[Any]:
     quiet = {"distributed.admin.system-monitor.disk": False, "distributed.scheduler.allowed-failures": 0}
     with dask.config.set(quiet):
         running = distributed.LocalCluster(
-            n_workers=2, threads_per_worker=2, dashboard_address=":0", silence_logs=logging.CRITICAL,
+            n_workers=2,
+            threads_per_worker=2,
+            dashboard_address=":0",
+            silence_logs=logging.CRITICAL,
             host="127.0.0.1",
-        )  # fmt: skip
+        )
         yield running
         running.close()
 

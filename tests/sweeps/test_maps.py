@@ -81,9 +81,11 @@ def test_names_are_cells_and_the_limit_runs_between_those_that_hold_and_those_th
     assert ticks == ["WL680-3600", "WL450-3600", "WL450-5400"]
     assert picture.figure.axes[1].get_ylabel() == "belt.lowest_speed_limit [rev/min]"
     segments = [
-        segment for each in picture.axes.collections if hasattr(each, "get_segments")
+        segment
+        for each in picture.axes.collections
+        if hasattr(each, "get_segments")
         for segment in each.get_segments()
-    ]  # fmt: skip
+    ]
     upright = {(round(s[0][0], 6), s[0][1], s[1][1]) for s in segments if s[0][0] == s[1][0]}
     # half-way between the last speed that holds and the first that fails; the widest machine always fails
     wanted = {

@@ -58,8 +58,9 @@ def test_keys_may_be_quoted_or_not_and_stand_for_all_frames(tmp_path: Path) -> N
     scene = SCENE.replace("[shaft]", 'weave = "10/01"\n[shaft]')
     found = plan(tmp_path, '[grid]\nheald.stroke = ["90 mm", "100 mm"]\nrevolutions = [1, 2]\n', scene)
     assert [axis.varied.targets for axis in found.axes] == [
-        ("heald_1.stroke", "heald_2.stroke"), ("revolutions",),
-    ]  # fmt: skip
+        ("heald_1.stroke", "heald_2.stroke"),
+        ("revolutions",),
+    ]
     assert found.settings(range(1, 2)) == [
         {"heald_1.stroke": 0.09, "heald_2.stroke": 0.09, "revolutions": 2.0}
     ]
@@ -74,9 +75,11 @@ def test_a_machine_goes_to_all_instances_that_take_one_and_a_head_too(tmp_path: 
     (settings,) = found.settings(range(1, 2))
     assert settings.pop("shaft.speed") == pytest.approx(400 * RPM, rel=1e-15)  # rounding
     assert settings == {
-        "weft.machine": "WL800-3600", "belt.machine": "WL800-3600",
-        "weft.head": "GS900 right", "belt.head": "GS900 right",
-    }  # fmt: skip
+        "weft.machine": "WL800-3600",
+        "belt.machine": "WL800-3600",
+        "weft.head": "GS900 right",
+        "belt.head": "GS900 right",
+    }
     instances = scenes.load(tmp_path / "scene.toml", settings).instances
     for name, component in (("weft", "WeftInsertion"), ("belt", "BeltMonitor")):
         wanted = parameters(component, machine="WL800-3600", head="GS900 right")
@@ -295,16 +298,39 @@ def test_nor_can_a_wired_one_in_the_words_of_set(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "key",
-    ["machine", "loom.machine", "weft.machine", "head", "grid", "coupling", "steps_per_revolution",
-     "belt.guide_clearance", "belt.prescribe_length_factor", "duration", "belt.margin", "title", "record",
-     "revolutions", "loom.weave", "shaft.machine", "belt.travel", "belt.fmu", "belt.units"],
-)  # fmt: skip
+    [
+        "machine",
+        "loom.machine",
+        "weft.machine",
+        "head",
+        "grid",
+        "coupling",
+        "steps_per_revolution",
+        "belt.guide_clearance",
+        "belt.prescribe_length_factor",
+        "duration",
+        "belt.margin",
+        "title",
+        "record",
+        "revolutions",
+        "loom.weave",
+        "shaft.machine",
+        "belt.travel",
+        "belt.fmu",
+        "belt.units",
+    ],
+)
 def test_a_sweep_varies_what_set_takes_and_nothing_else(tmp_path: Path, key: str) -> None:
     values = {
-        "machine": "WL450-3600", "head": "GS900 left", "grid": "windows", "coupling": "iterated",
-        "belt.prescribe_length_factor": True, "belt.guide_clearance": 1e-3, "loom.weave": "10",
+        "machine": "WL450-3600",
+        "head": "GS900 left",
+        "grid": "windows",
+        "coupling": "iterated",
+        "belt.prescribe_length_factor": True,
+        "belt.guide_clearance": 1e-3,
+        "loom.weave": "10",
         "belt.fmu": "x.fmu",
-    }  # fmt: skip
+    }
     value = values.get(key, values.get(key.rpartition(".")[2], 10))
 
     def taken(read: Callable[[], object]) -> bool:

@@ -16,8 +16,11 @@ SWEEPS = Path(__file__).parents[2] / "sims" / "sweeps"
 
 def test_there_is_a_test_for_each() -> None:
     assert sorted(path.name for path in SWEEPS.iterdir()) == [
-        "belt_motion.toml", "damper.toml", "safe_speed.toml", "what_matters.toml"
-    ]  # fmt: skip
+        "belt_motion.toml",
+        "damper.toml",
+        "safe_speed.toml",
+        "what_matters.toml",
+    ]
 
 
 def test_safe_speed_falls_with_wear_and_is_that_of_the_design(

@@ -53,8 +53,11 @@ def test_indices_of_sobol_are_those_of_the_product(tmp_path: Path) -> None:
         assert influence.indices["ST_conf"][place] < 0.1
     assert found.sensitivity.brief[0][1].startswith("shaft.speed 0.")
     assert sorted(each.name for each in Path("results/swept").iterdir()) == [
-        "sensitivity.csv", "sensitivity.png", "sweep.json", "table.parquet"
-    ]  # fmt: skip
+        "sensitivity.csv",
+        "sensitivity.png",
+        "sweep.json",
+        "table.parquet",
+    ]
 
 
 def test_mean_changes_of_morris_are_those_of_the_product(tmp_path: Path) -> None:
@@ -98,9 +101,11 @@ def test_the_command_prints_what_matters_and_what_does_not(
 
 
 def test_an_output_without_a_value_in_some_rows_says_so(tmp_path: Path) -> None:
-    scene = 'title = "x"\nrevolutions = 1\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n' \
-        'head = "G6300 left"\nweave = "10/01"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n' \
-        'clearance = "6 mm"\nat_least = "90 deg"\n'  # fmt: skip
+    scene = (
+        'title = "x"\nrevolutions = 1\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n'
+        'head = "G6300 left"\nweave = "10/01"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n'
+        'clearance = "6 mm"\nat_least = "90 deg"\n'
+    )
     text = '[sensitivity]\nmethod = "morris"\nsamples = 8\n"heald.stroke" = ["10 mm", "98 mm"]\n'
     path = written(tmp_path, text + '"dobby.speed_reduction" = [0.4, 0.6]\n', scene, 'scene = "scene.toml"\n')
     found = sweep(path, processes=1)
@@ -129,15 +134,21 @@ def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('[sensitivity]\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]',
-         "sensitivity needs two ranges or more"),
-        (f"[sensitivity]\nsamples = 8\n{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
-         r"\[sensitivity\] chooses the rows itself; leave out \[grid\]"),
-        ('[sensitivity]\nsamples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
-         "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min"),
+        (
+            '[sensitivity]\nsamples = 8\n"shaft.speed" = ["500 rpm", "600 rpm"]',
+            "sensitivity needs two ranges or more",
+        ),
+        (
+            f"[sensitivity]\nsamples = 8\n{RANGES}[grid]\n'belt.guide_clearance' = ['0.2 mm']",
+            r"\[sensitivity\] chooses the rows itself; leave out \[grid\]",
+        ),
+        (
+            '[sensitivity]\nsamples = 8\n"shaft.speed" = ["600 rpm", "500 rpm"]',
+            "sensitivity.shaft.speed: 600 rev/min is not below 500 rev/min",
+        ),
         ('[sensitivity]\nsamples = 8\n"dobby.law" = ["uniform", "table"]', "has no instance 'dobby'"),
     ],
-)  # fmt: skip
+)
 def test_rows_of_another_kind_and_empty_ranges_are_refused(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
         sweep(written(tmp_path, text))

@@ -298,10 +298,12 @@ def test_the_note_on_a_verdict_is_shown(
 
 def made_up(worst: list[float | None], holds: list[bool | None]) -> pa.Table:
     columns = {
-        "claim_1.holds": pa.array(holds), "claim_1.worst": pa.array(worst, pa.float64()),
+        "claim_1.holds": pa.array(holds),
+        "claim_1.worst": pa.array(worst, pa.float64()),
         "claim_1.bound": pa.array([None if each is None else 10.0 for each in holds], pa.float64()),
-        "holds": pa.array(holds), "error": pa.array([None if each is not None else "why" for each in holds]),
-    }  # fmt: skip
+        "holds": pa.array(holds),
+        "error": pa.array([None if each is not None else "why" for each in holds]),
+    }
     about = {"claims": json.dumps([{"claim": "a", "signal": "b.c", "unit": "1", "display_unit": "1"}])}
     return pa.table(columns).replace_schema_metadata(about)
 
@@ -459,8 +461,10 @@ def test_the_command_says_how_many_hold_which_are_worst_and_where_all_is(
     assert lines[0] == "Swept: 3 combinations: 1 hold and 2 fail"
     table = [line.split() for line in lines if "rev/min" in line]
     assert [row[:4] for row in table] == [
-        ["FAILS", "1", "750", "rev/min"], ["FAILS", "2", "700", "rev/min"], ["holds", "0", "500", "rev/min"],
-    ]  # fmt: skip
+        ["FAILS", "1", "750", "rev/min"],
+        ["FAILS", "2", "700", "rev/min"],
+        ["holds", "0", "500", "rev/min"],
+    ]
     assert lines[-3:] == [
         "table: results/swept/table.parquet",
         "map: results/swept/map.png",

@@ -137,7 +137,10 @@ def _settings(random: Random) -> list[dict[str, Any]]:
     few = [round(math.exp(random.uniform(low, middle))) for _ in range(3)]
     many = [random.choice([MANY, round(math.exp(random.uniform(middle, high)))]) for _ in range(2)]
     return [
-        {key: few[0]}, {key: few[1] // 2 * 2}, {key: many[0]},
-        {key: few[2], "grid": "windows"}, {key: many[1], "grid": "windows"},
+        {key: few[0]},
+        {key: few[1] // 2 * 2},
+        {key: many[0]},
+        {key: few[2], "grid": "windows"},
+        {key: many[1], "grid": "windows"},
         {"accuracy": 10.0 ** random.uniform(-7.0, -3.0)},
-    ]  # fmt: skip
+    ]

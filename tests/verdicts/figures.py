@@ -35,11 +35,17 @@ def statistics(group: Sequence[Found]) -> list[str]:
     shown = [f"{value:.2g}" for value in np.percentile(ratios, [50, 95])] if len(ratios) else ["-", "-"]
     undecided = [each for each in counted if not each.verdict.decided]
     counts = [
-        len({(each.scene.family, each.scene.number) for each in group}), len(counted),
-        sum(each.wrong == "holds" for each in wrong), sum(each.wrong == "FAILS" for each in wrong),
-        sum(each.steps >= MANY for each in wrong), len(undecided), sum(map(needless, undecided)),
-        len(first), sum(each.too_small for each in first), len(compared),
-    ]  # fmt: skip
+        len({(each.scene.family, each.scene.number) for each in group}),
+        len(counted),
+        sum(each.wrong == "holds" for each in wrong),
+        sum(each.wrong == "FAILS" for each in wrong),
+        sum(each.steps >= MANY for each in wrong),
+        len(undecided),
+        sum(map(needless, undecided)),
+        len(first),
+        sum(each.too_small for each in first),
+        len(compared),
+    ]
     return [*map(str, counts), *shown]
 
 

@@ -22,22 +22,29 @@ def new(commands: Any) -> None:
     new = commands.add_parser("new", help="write a folder for a mechanism of your own, ready to run")
     new.add_argument("name", metavar="NAME", help="class name, such as PickingCam")
     new.add_argument(
-        "--output", type=Path, default=Path(), metavar="DIR",
+        "--output",
+        type=Path,
+        default=Path(),
+        metavar="DIR",
         help="where to put the folder; the current folder by default",
-    )  # fmt: skip
+    )
 
 
 def build(commands: Any) -> None:
     """Arguments of `build`."""
     build = commands.add_parser("build", help="build FMUs")
     build.add_argument(
-        "names", nargs="*", metavar="NAME",
+        "names",
+        nargs="*",
+        metavar="NAME",
         help="an FMU, or FILE.py[:CLASS] for one of your own; all FMUs by default",
-    )  # fmt: skip
+    )
     build.add_argument(
-        "--output", type=Path, metavar="DIR",
+        "--output",
+        type=Path,
+        metavar="DIR",
         help="build/fmus by default; build/native or build/native_fmi3 for native FMUs",
-    )  # fmt: skip
+    )
     build.add_argument("--native", action="store_true", help="build native FMUs: in C, without Python")
     add_platform(build)
     build.add_argument(
@@ -56,9 +63,12 @@ def validate(commands: Any) -> None:
     """Arguments of `validate`."""
     validate = commands.add_parser("validate", help="compare published and computed values")
     validate.add_argument(
-        "--output", type=Path, default=Path("results"), metavar="DIR",
+        "--output",
+        type=Path,
+        default=Path("results"),
+        metavar="DIR",
         help="folder for the report; results by default",
-    )  # fmt: skip
+    )
     add_force(validate, "files in DIR that are not part of such a report")
 
 
@@ -66,7 +76,11 @@ def init(commands: Any) -> None:
     """Arguments of `init`."""
     init = commands.add_parser("init", help="write an example scene and a sweep of it")
     init.add_argument(
-        "directory", nargs="?", type=Path, default=Path(), metavar="DIR",
+        "directory",
+        nargs="?",
+        type=Path,
+        default=Path(),
+        metavar="DIR",
         help="folder to write to; the current one by default",
-    )  # fmt: skip
+    )
     init.add_argument("--all", action="store_true", help="write every example scene")

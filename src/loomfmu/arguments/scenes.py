@@ -32,10 +32,13 @@ def page(commands: Any) -> None:
     page = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
     page.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
     page.add_argument(
-        "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        "--vary",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=LOW..HIGH",
         help="what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a"
         " range 20 %% around the scene's value, or its choices; the shaft's speed by default",
-    )  # fmt: skip
+    )
     add_set(page)
     page.add_argument(
         "--output",
@@ -53,17 +56,20 @@ def export(commands: Any) -> None:
     export.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
     file = export.add_mutually_exclusive_group(required=True)
     file.add_argument(
-        "--fmu", type=Path, metavar="FILE.fmu",
+        "--fmu",
+        type=Path,
+        metavar="FILE.fmu",
         help="write one native FMU: all mechanisms wired inside, without delay between them",
-    )  # fmt: skip
+    )
     file.add_argument(
         "--ssp", type=Path, metavar="FILE.ssp", help="write a system package: one FMU for each mechanism"
     )
     add_set(export)
     export.add_argument("--fmi", type=int, choices=(2, 3), help="FMI version of FILE.fmu; 2 by default")
     export.add_argument(
-        "--flavour", choices=("live", "native"),
+        "--flavour",
+        choices=("live", "native"),
         help="kind of FMUs in FILE.ssp; native by default if they can be built",
-    )  # fmt: skip
+    )
     add_platform(export)
     add_force(export, "the file even if loomfmu did not write it")

@@ -25,9 +25,13 @@ def add_scene(command: argparse.ArgumentParser) -> None:
 def add_set(command: argparse.ArgumentParser) -> None:
     """Values that a command overrides."""
     command.add_argument(
-        "--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE", dest="overrides",
+        "--set",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=VALUE",
+        dest="overrides",
         help="override a value of the scene, such as shaft.speed=685rpm",
-    )  # fmt: skip
+    )
 
 
 def add_place(command: argparse.ArgumentParser, name: str) -> None:
@@ -47,9 +51,10 @@ def add_place(command: argparse.ArgumentParser, name: str) -> None:
 def add_platform(command: argparse.ArgumentParser) -> None:
     """The platforms of native FMUs."""
     command.add_argument(
-        "--platform", metavar="NAME[,NAME]",
+        "--platform",
+        metavar="NAME[,NAME]",
         help="platforms of native FMUs: linux64,win64,darwin64; all by default",
-    )  # fmt: skip
+    )
 
 
 def add_force(command: argparse.ArgumentParser, what: str) -> None:

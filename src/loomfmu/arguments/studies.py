@@ -15,15 +15,19 @@ def sweep(commands: Any) -> None:
 def limit(commands: Any) -> None:
     """Arguments of `limit`."""
     limit = commands.add_parser(
-        "limit", help="find the values at which claims begin to fail",
+        "limit",
+        help="find the values at which claims begin to fail",
         epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
-    )  # fmt: skip
+    )
     add_scene(limit)
     limit.add_argument(
-        "--vary", action="append", required=True, metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        "--vary",
+        action="append",
+        required=True,
+        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
         help="what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the"
         " limits of the first at values of the second",
-    )  # fmt: skip
+    )
     limit.add_argument(
         "--from",
         dest="from_",
@@ -47,16 +51,20 @@ def limit(commands: Any) -> None:
 def tolerances(commands: Any) -> None:
     """Arguments of `tolerances`."""
     tolerances = commands.add_parser(
-        "tolerances", help="find the worst case of every claim within tolerances",
+        "tolerances",
+        help="find the worst case of every claim within tolerances",
         epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails or is undecided;"
         " 2 bad input or a failed FMU.",
-    )  # fmt: skip
+    )
     add_scene(tolerances)
     tolerances.add_argument(
-        "--vary", action="append", default=[], metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        "--vary",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=LOW..HIGH",
         help="a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
         " [tolerances] by default",
-    )  # fmt: skip
+    )
     add_set(tolerances)
     tolerances.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
     add_force(tolerances, "the picture even if it is not one")
@@ -65,9 +73,10 @@ def tolerances(commands: Any) -> None:
 def optimize(commands: Any) -> None:
     """Arguments of `optimize`."""
     optimize = commands.add_parser(
-        "optimize", help="find the best design within ranges and choices, all claims met",
+        "optimize",
+        help="find the best design within ranges and choices, all claims met",
         epilog="Exit status: 0 a design was found; 1 none meets all claims; 2 bad input or a failed FMU.",
-    )  # fmt: skip
+    )
     optimize.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
     add_place(optimize, "STUDY")
 
@@ -77,17 +86,24 @@ def fit(commands: Any) -> None:
     fit = commands.add_parser("fit", help="find parameters of a scene from measured curves")
     add_scene(fit)
     fit.add_argument(
-        "data", metavar="DATA.csv|h5",
+        "data",
+        metavar="DATA.csv|h5",
         help="columns with units, such as shaft_angle [deg],heald_1.displacement [mm]; or a trace",
-    )  # fmt: skip
+    )
     fit.add_argument(
-        "--vary", action="append", required=True, metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        "--vary",
+        action="append",
+        required=True,
+        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
         help="a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
-    )  # fmt: skip
+    )
     fit.add_argument(
-        "--signal", action="append", default=[], metavar="SIGNAL",
+        "--signal",
+        action="append",
+        default=[],
+        metavar="SIGNAL",
         help="what is fitted of the data (repeatable); all columns of a table by default",
-    )  # fmt: skip
+    )
     fit.add_argument(
         "--offset",
         metavar="LOW..HIGH",

@@ -43,9 +43,11 @@ def plot(commands: Any) -> None:
     plot = commands.add_parser("plot", help="plot signals of a trace (PNG, SVG or PDF)")
     plot.add_argument("trace", type=ending(".h5"), metavar="FILE.h5")
     plot.add_argument(
-        "names", nargs="+", metavar="SIGNAL",
+        "names",
+        nargs="+",
+        metavar="SIGNAL",
         help="signals such as belt.margin; other traces (MORE.h5) before them are laid over the first",
-    )  # fmt: skip
+    )
     plot.add_argument(
         "--over", choices=("angle", "time"), help="the shaft's angle if a shaft turns, by default"
     )
@@ -59,24 +61,32 @@ def plot(commands: Any) -> None:
 def compare(commands: Any) -> None:
     """Arguments of `compare`."""
     compare = commands.add_parser(
-        "compare", help="report what differs between two traces, where first and by how much",
+        "compare",
+        help="report what differs between two traces, where first and by how much",
         epilog="Exit status: 0 equal within the tolerance; 1 they differ; 2 bad input.",
-    )  # fmt: skip
+    )
     compare.add_argument("first", metavar="A.h5")
     compare.add_argument("second", metavar="B.h5")
     compare.add_argument(
-        "--tolerance", action="append", default=[], metavar="SHARE|NAME=VALUE",
+        "--tolerance",
+        action="append",
+        default=[],
+        metavar="SHARE|NAME=VALUE",
         help="what may differ, as a share of each signal's largest magnitude (1e-9), such as 0.1%%; or, for"
         " one signal, an amount with its unit, such as belt.free_length=0.1mm",
-    )  # fmt: skip
+    )
     compare.add_argument(
-        "--ignore", action="append", default=[], metavar="NAME",
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="NAME",
         help="leave signals and values out, such as 'motor.*'",
-    )  # fmt: skip
+    )
     compare.add_argument(
-        "--over", choices=("angle", "time"),
+        "--over",
+        choices=("angle", "time"),
         help="compare at equal shaft angles or at equal times; shaft angles by default if the shafts turn",
-    )  # fmt: skip
+    )
     compare.add_argument(
         "--all", action="store_true", help="list all signals that differ, not only those that do so most"
     )

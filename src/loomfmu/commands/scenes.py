@@ -39,9 +39,12 @@ def _run_here(options: argparse.Namespace) -> int:
     from ..cosim.run import run as run_scene
 
     result = run_scene(
-        options.scene, output=options.output, progress=True,
-        flavour="live" if options.live else "native", overwrite=options.force,
-    )  # fmt: skip
+        options.scene,
+        output=options.output,
+        progress=True,
+        flavour="live" if options.live else "native",
+        overwrite=options.force,
+    )
     # before anything is printed: the reader of our output may have had enough
     page = _page_of(result.trace, result.path, options.force) if options.report else None
     warn(result.warnings)

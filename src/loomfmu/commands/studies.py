@@ -11,9 +11,13 @@ def sweep(options: argparse.Namespace) -> int:
     from ..sweeps.run import sweep as run_sweep
 
     found = run_sweep(
-        options.sweep, processes=options.processes, output=options.output, scheduler=options.scheduler,
-        restart=options.restart, progress=True,
-    )  # fmt: skip
+        options.sweep,
+        processes=options.processes,
+        output=options.output,
+        scheduler=options.scheduler,
+        restart=options.restart,
+        progress=True,
+    )
     from ..sweeps.report import show  # after the extra `sweep` is known to be installed
 
     warn(found.warnings)

@@ -156,10 +156,13 @@ def compare(options: argparse.Namespace) -> int:
         report.check()
         check_target(Path(options.report), report.REPORT, inputs, options.force)
     found = comparing.compare(
-        options.first, options.second, ignore=options.ignore, over=options.over,
+        options.first,
+        options.second,
+        ignore=options.ignore,
+        over=options.over,
         tolerance=share(shares[0]) if shares else comparing.TOLERANCE,
         absolute=pairs(amounts, "--tolerance"),
-    )  # fmt: skip
+    )
     found.show(None if options.all else MOST)
     if options.report:
         say(f"report: {report.write(inputs, options.report, options.force, comparison=found)}")

@@ -137,9 +137,12 @@ class Estimates:
                 found[number] = _noted(found[number], f"numerical error not estimated: {coarser.why}")
                 continue
             found[number] = _estimated(
-                found[number], self.claims[number], trace, self._methods[number],
+                found[number],
+                self.claims[number],
+                trace,
+                self._methods[number],
                 [run[number] for run in coarser.values],
-            )  # fmt: skip
+            )
         return tuple(found)
 
 

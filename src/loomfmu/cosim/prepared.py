@@ -95,9 +95,16 @@ class Pattern:
             verdicts = self._estimates.of(found.recording, verdicts, coarser)
         count = len(self.claims)
         return Evaluation(
-            scene, verdicts[:count], (*scene.notes, *found.warnings), explained(found.plan), found.steps,
-            found.recording, verdicts[count:], early=found.early, chosen=chosen,
-        )  # fmt: skip
+            scene,
+            verdicts[:count],
+            (*scene.notes, *found.warnings),
+            explained(found.plan),
+            found.steps,
+            found.recording,
+            verdicts[count:],
+            early=found.early,
+            chosen=chosen,
+        )
 
     def _with_steps(self, scene: Scene, errors: Errors = "all") -> tuple[Scene, Coarser | None, str]:
         """The scene with steps that reach its accuracy, what coarser ones gave, and a line that says so.
@@ -154,9 +161,18 @@ class Pattern:
                     raise Interrupted from None
             verdicts, trace = finish(partial(self._estimated, coarser), writer, path, early)
         return Result(
-            scene, verdicts, warnings, explained(plan), steps, path, trace,
-            early=early, seconds=seconds, chosen=chosen, replaced=replaced,
-        )  # fmt: skip
+            scene,
+            verdicts,
+            warnings,
+            explained(plan),
+            steps,
+            path,
+            trace,
+            early=early,
+            seconds=seconds,
+            chosen=chosen,
+            replaced=replaced,
+        )
 
 
 class Prepared:
@@ -168,9 +184,13 @@ class Prepared:
     """
 
     def __init__(
-        self, scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: Flavour,
-        values: Sequence[str], measures: Sequence[str] = (),
-    ):  # fmt: skip
+        self,
+        scene: str | Path | Scene,
+        overrides: dict[str, Any] | None,
+        flavour: Flavour,
+        values: Sequence[str],
+        measures: Sequence[str] = (),
+    ):
         if not isinstance(values, list | tuple) or not all(isinstance(signal, str) for signal in values):
             raise LoomfmuError(f'values = {shown(values)} is not a list such as ["belt.margin"]')
         self._values, self._flavour = tuple(values), flavour
@@ -207,9 +227,13 @@ class Prepared:
                 raise LoomfmuError(f"{scene.name}: {too_many}; take fewer revolutions or steps") from None
 
     def run(
-        self, set: dict[str, Any] | None = None, *, output: str | Path | None = None,
-        progress: bool = False, overwrite: bool = False,
-    ) -> Result:  # fmt: skip
+        self,
+        set: dict[str, Any] | None = None,
+        *,
+        output: str | Path | None = None,
+        progress: bool = False,
+        overwrite: bool = False,
+    ) -> Result:
         """Run with these values, record and judge; as `loomfmu.run`."""
         with self._turn:
             pattern, scene = self._ready(set)

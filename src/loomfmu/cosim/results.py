@@ -64,7 +64,7 @@ class Judged:
             f"{heading(self.scene)}: {summary}",
             *([notebook.table(HEADINGS, [each.row for each in self.claims])] if self.claims else []),
             *map(notebook.line, notes),
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, repr=False)

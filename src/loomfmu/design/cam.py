@@ -181,11 +181,17 @@ def design_cam(
     with np.errstate(divide="ignore"):
         carrier_curvature_radius = 1.0 / curvature
     return Cam(
-        law=law, lowest_radius=low, highest_radius=high, roller_radius=roller, law_on_roller=law_on_roller,
-        angle=angle, profile=offset if law_on_roller else carrier, path=path,
+        law=law,
+        lowest_radius=low,
+        highest_radius=high,
+        roller_radius=roller,
+        law_on_roller=law_on_roller,
+        angle=angle,
+        profile=offset if law_on_roller else carrier,
+        path=path,
         curvature_radius=carrier_curvature_radius - (roller if law_on_roller else 0.0),
         pressure_angle=np.arctan2(turned, np.sum(normal * path, axis=1)),
-    )  # fmt: skip
+    )
 
 
 def _radius(law: Law, low: float, high: float, angle: Floats) -> tuple[Floats, Floats, Floats]:

@@ -13,9 +13,14 @@ from .quantities import Quantity, read, whole
 from .rocker_cam import RockerCam
 
 COLUMNS = (
-    "cam_angle_deg", "profile_x_mm", "profile_y_mm", "cutter_x_mm", "cutter_y_mm", "pressure_angle_deg",
+    "cam_angle_deg",
+    "profile_x_mm",
+    "profile_y_mm",
+    "cutter_x_mm",
+    "cutter_y_mm",
+    "pressure_angle_deg",
     "curvature_radius_mm",
-)  # fmt: skip
+)
 TABLE = starts_with("a table of a cam", ",".join(COLUMNS).encode(), suffix=".csv")
 DRAWING = starts_with("a DXF drawing", b"  0\nSECTION\n", suffix=".dxf")
 STRAIGHT = 1e4  # mm: an arc of a larger radius is written as a line
@@ -107,10 +112,23 @@ def gcode(
     radii = f"{1e3 * cam.lowest_radius:.3f} to {1e3 * cam.highest_radius:.3f}"
     lines = [
         f"(cutter radius {1e3 * cam.roller_radius:.3f}, cam radii {radii})",
-        "G21 G90 G64 G17 G40 G49", f"F{feed:g}", "T1 M6", "M3 M8", f"S{spindle:g}",
-        f"G0 X{x:.4f} Y{y:.4f}", "#1=0", f"M98 P1 L{passes}", "G0 Z5", "M30",
-        "O1", "G1 Z#1", *(str(move) for move in moves), f"#1=[#1-{1e3 * depth:g}]", "M99", "",
-    ]  # fmt: skip
+        "G21 G90 G64 G17 G40 G49",
+        f"F{feed:g}",
+        "T1 M6",
+        "M3 M8",
+        f"S{spindle:g}",
+        f"G0 X{x:.4f} Y{y:.4f}",
+        "#1=0",
+        f"M98 P1 L{passes}",
+        "G0 Z5",
+        "M30",
+        "O1",
+        "G1 Z#1",
+        *(str(move) for move in moves),
+        f"#1=[#1-{1e3 * depth:g}]",
+        "M99",
+        "",
+    ]
     return "\n".join(lines)
 
 

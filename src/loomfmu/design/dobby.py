@@ -118,9 +118,7 @@ def hook_angle(
     rho, phi, eta = read("reach", reach), read("place", place), read("place", base)
     f, c, b = (read("link", length) for length in (frame, link, hook))
     s = sqrt(rho * rho + f * f - 2.0 * rho * f * sin(phi + eta))
-    return (
-        pi - _corner(f, s, rho, "ADK") - _corner(c, s, b, "DMK") + eta - _corner(b, c, s, "DMK")
-    )  # fmt: skip
+    return pi - _corner(f, s, rho, "ADK") - _corner(c, s, b, "DMK") + eta - _corner(b, c, s, "DMK")
 
 
 def _corner(one: float, other: float, opposite: float, triangle: str) -> float:

@@ -80,9 +80,14 @@ def guided_joint(
         raise LoomfmuError("these places put the joint on the rocker's pivot: there is no rocker")
     along = np.unwrap(np.arctan2(joints[:, 1], joints[:, 0]))
     return Guidance(
-        float(joint[0]), float(joint[1]), float(arms[0]), hypot(*(joint - places[0])),
-        tuple(float(each) for each in along), float(np.ptp(along)), float(np.max(np.abs(arms - arms[0]))),
-    )  # fmt: skip
+        float(joint[0]),
+        float(joint[1]),
+        float(arms[0]),
+        hypot(*(joint - places[0])),
+        tuple(float(each) for each in along),
+        float(np.ptp(along)),
+        float(np.max(np.abs(arms - arms[0]))),
+    )
 
 
 def _turned(vector: Floats, angle: float) -> Floats:
@@ -157,9 +162,15 @@ def beat_up_linkage(
             " the arm"
         )
     return {
-        "crank_length": crank, "coupler_length": coupler, "rocker_length": length, "crank_x": x, "crank_y": y,
-        "arm_length": arm, "rod_length": rod, "reed_height": height,
-    }  # fmt: skip
+        "crank_length": crank,
+        "coupler_length": coupler,
+        "rocker_length": length,
+        "crank_x": x,
+        "crank_y": y,
+        "arm_length": arm,
+        "rod_length": rod,
+        "reed_height": height,
+    }
 
 
 def _frame_angle(psi: float, given: Quantity | None, transmission_angle: Quantity | None) -> float:

@@ -52,8 +52,9 @@ class Loads:
 class Weave:
     """A dobby at a constant shaft speed, and frames that change at every weave."""
 
-    def __init__(self, dobby: DobbyDrive, frames: list[tuple[int, HealdFrame]], warp: float, front: float,
-                 back: float):  # fmt: skip
+    def __init__(
+        self, dobby: DobbyDrive, frames: list[tuple[int, HealdFrame]], warp: float, front: float, back: float
+    ):
         self.dobby, self.frames = dobby, frames
         self.warp, self.front, self.back = warp, front, back
 
@@ -113,10 +114,16 @@ def dobby_loads(
     3.949
     """
     weave = _weave(
-        law, read("speed_reduction", speed_reduction), read("speed", speed), read("stroke", stroke),
-        read("frame_mass", frame_mass), read("gravity", gravity), read("rotor_inertia", rotor_inertia),
-        whole("rising", rising, 0), whole("falling", falling, 0),
-    )  # fmt: skip
+        law,
+        read("speed_reduction", speed_reduction),
+        read("speed", speed),
+        read("stroke", stroke),
+        read("frame_mass", frame_mass),
+        read("gravity", gravity),
+        read("rotor_inertia", rotor_inertia),
+        whole("rising", rising, 0),
+        whole("falling", falling, 0),
+    )
     weave.warp = read("warp_tension", warp_tension)
     weave.front, weave.back = read("warp_length", front_length), read("warp_length", back_length)
     step = TURN / PLACES
@@ -129,9 +136,16 @@ def dobby_loads(
 
 
 def _weave(
-    law: str, reduction: float, speed: float, stroke: float, mass: float, gravity: float, inertia: float,
-    rising: int, falling: int,
-) -> Weave:  # fmt: skip
+    law: str,
+    reduction: float,
+    speed: float,
+    stroke: float,
+    mass: float,
+    gravity: float,
+    inertia: float,
+    rising: int,
+    falling: int,
+) -> Weave:
     """A dobby with its slow point at the shaft angle 0, and frames in plain weave."""
     if law not in LAWS:
         raise LoomfmuError(f"law = {law!r} must be one of {listed(LAWS, 'or')}")
@@ -142,9 +156,12 @@ def _weave(
     frames = []
     for count, pegs in ((rising, 0b10), (falling, 0b01)):
         frame = HealdFrame(
-            stroke=stroke, frame_mass=mass, gravity=gravity, inputs_at_step_end=True,
+            stroke=stroke,
+            frame_mass=mass,
+            gravity=gravity,
+            inputs_at_step_end=True,
             follow_lift=dobby.law == SPLINE_CAM,
-        )  # fmt: skip
+        )
         frame.pattern = (pegs, 0, 0, 0, 0, 0, 0, 0)
         frames += [(count, frame)] if count else []
     return Weave(dobby, frames, 0.0, 1.0, 1.0)
@@ -163,18 +180,24 @@ def _peak(load: Callable[[float], float], sizes: list[float], step: float) -> Pe
         if here < max(before, after) or 2.0 * here - min(before, after) <= abs(found.value):
             continue
         crest = minimize_scalar(
-            lambda x: -abs(load(x)), bounds=(max(place - 1, 0) * step, (place + 1) * step), method="bounded",
+            lambda x: -abs(load(x)),
+            bounds=(max(place - 1, 0) * step, (place + 1) * step),
+            method="bounded",
             options={"xatol": WITHIN},
-        )  # fmt: skip
+        )
         if -crest.fun > abs(found.value):
             found = Peak(load(float(crest.x)), float(crest.x))
     return found
 
 
 def least_loaded(
-    law: str = "sloped_sine", load: str = "rotor_torque", *, lowest: float = 0.0, highest: float = 0.8,
+    law: str = "sloped_sine",
+    load: str = "rotor_torque",
+    *,
+    lowest: float = 0.0,
+    highest: float = 0.8,
     **given: Quantity | int,
-) -> float:  # fmt: skip
+) -> float:
     """Speed reduction zeta at which a load's peak is least.
 
     Args:

@@ -162,9 +162,13 @@ def clearance_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
     """
     _refuse(others, "clearance", "length_factor")
     return _solve(
-        "guide clearance", "clearance", speed,
-        lambda value: safe_speed(machine, head, clearance=value, **others).speed, 0.0, 0.8e-3,
-    )  # fmt: skip
+        "guide clearance",
+        "clearance",
+        speed,
+        lambda value: safe_speed(machine, head, clearance=value, **others).speed,
+        0.0,
+        0.8e-3,
+    )
 
 
 def mass_for(speed: Quantity, machine: str, **others: Any) -> float:
@@ -179,9 +183,13 @@ def stiffness_for(speed: Quantity, machine: str, head: str = "G6300 left", **oth
     """Smallest bending stiffness with which the belt is safe at a speed [N m2]; see `clearance_for`."""
     _refuse(others, "stiffness")
     return _solve(
-        "bending stiffness", "stiffness", speed,
-        lambda value: safe_speed(machine, head, stiffness=value, **others).speed, 1e-3, 100.0,
-    )  # fmt: skip
+        "bending stiffness",
+        "stiffness",
+        speed,
+        lambda value: safe_speed(machine, head, stiffness=value, **others).speed,
+        1e-3,
+        100.0,
+    )
 
 
 def _refuse(given: dict[str, Any], sought: str, instead: str = "") -> None:

@@ -110,10 +110,17 @@ def design_rocker_cam(
     with np.errstate(divide="ignore"):
         radius = 1.0 / curvature - roller
     return RockerCam(
-        law=law, distance=apart, arm=length, roller_radius=roller, angle=angle, swing_angle=psi,
-        profile=_points(centre - roller * normal), path=_points(centre), curvature_radius=radius,
+        law=law,
+        distance=apart,
+        arm=length,
+        roller_radius=roller,
+        angle=angle,
+        swing_angle=psi,
+        profile=_points(centre - roller * normal),
+        path=_points(centre),
+        curvature_radius=radius,
         pressure_angle=np.arctan2(tilt.imag, tilt.real),
-    )  # fmt: skip
+    )
 
 
 def _check_swing(start: float, span: float) -> None:

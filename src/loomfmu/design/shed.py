@@ -108,10 +108,12 @@ def stream_heights(
     gaps = {
         name: read("gap", gap)
         for name, gap in (
-            ("entry_upper", entry_upper), ("entry_lower", entry_lower), ("exit_upper", exit_upper),
+            ("entry_upper", entry_upper),
+            ("entry_lower", entry_lower),
+            ("exit_upper", exit_upper),
             ("exit_lower", exit_lower),
         )
-    }  # fmt: skip
+    }
     for name, gap in gaps.items():
         if gap > room:
             raise LoomfmuError(
@@ -150,6 +152,4 @@ def control_points(
     if len(places) != 4 or any(later <= earlier for earlier, later in pairwise(row)):
         shown = ", ".join(f"{degrees(place):.7g}" for place in places)
         raise LoomfmuError(f"angles = {shown} deg: give four that rise between 0 and 720 deg")
-    return row, [
-        0.0, heights.exit_lower, heights.entry_upper, heights.exit_upper, heights.entry_lower, 0.0
-    ]  # fmt: skip
+    return row, [0.0, heights.exit_lower, heights.entry_upper, heights.exit_upper, heights.entry_lower, 0.0]

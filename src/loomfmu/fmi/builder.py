@@ -182,9 +182,13 @@ def _rows(component: type[Component]) -> str:
     lines = []
     for reference, variable in enumerate(variables_of(component), start=FIRST_REFERENCE):
         row = (
-            variable.name, FMI_TYPES[variable.type], variable.causality, *variable.limits, variable.display,
+            variable.name,
+            FMI_TYPES[variable.type],
+            variable.causality,
+            *variable.limits,
+            variable.display,
             units.unit(variable.display).factor,
-        )  # fmt: skip
+        )
         lines.append(f"        {reference}: _Row{row!r},")
     return "\n".join(lines)
 

@@ -40,8 +40,10 @@ def cache_directory() -> Path:
         # Python's own logging brings it to the standard error, if nothing else is set up
         logging.getLogger("loomfmu.cache").warning(
             "loomfmu: the cache %s %s; using a temporary one, which every run fills anew;"
-            " set LOOMFMU_CACHE to a folder that only you can write to", usual, reason,
-        )  # fmt: skip
+            " set LOOMFMU_CACHE to a folder that only you can write to",
+            usual,
+            reason,
+        )
         return _new_one()
     return usual
 

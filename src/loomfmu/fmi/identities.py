@@ -18,9 +18,16 @@ from .native.platforms import SHIPPED, stamp
 
 PACKAGE = Path(__file__).parents[1]
 PARTS = (
-    "components", "fmi", "machines", "physics",
-    "arrays.py", "declarations.py", "units.py", "variables.py", "version.py",
-)  # fmt: skip
+    "components",
+    "fmi",
+    "machines",
+    "physics",
+    "arrays.py",
+    "declarations.py",
+    "units.py",
+    "variables.py",
+    "version.py",
+)
 KINDS = (
     ".py",
     ".c",

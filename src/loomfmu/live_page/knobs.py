@@ -72,9 +72,17 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
         return Knob(key, port.description, targets, float(started), choices=choices)
     shown = "" if port.display == "1" else port.display
     return Knob(
-        key, port.description, targets, float(started), float(low), float(high), shown,
-        units.unit(port.display).factor, port.kind == "Integer", doubts=doubts,
-    )  # fmt: skip
+        key,
+        port.description,
+        targets,
+        float(started),
+        float(low),
+        float(high),
+        shown,
+        units.unit(port.display).factor,
+        port.kind == "Integer",
+        doubts=doubts,
+    )
 
 
 def _port(scene: Scene, known: set[str], key: str, where: str) -> tuple[Port, tuple[str, ...]]:

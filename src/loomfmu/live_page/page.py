@@ -41,9 +41,14 @@ PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PR
 Rows = dict[str, tuple[int, Variable]]  # the variables of the module, by name, with their numbers
 POLICY = " 'wasm-unsafe-eval'"
 SCRIPTS = (
-    "live_steps.js", "live.js", "live_rules.js", "live_curves.js", "live_latches.js", "live_judge.js",
+    "live_steps.js",
+    "live.js",
+    "live_rules.js",
+    "live_curves.js",
+    "live_latches.js",
+    "live_judge.js",
     "live_claims.js",
-)  # fmt: skip
+)
 
 
 def write(
@@ -162,21 +167,23 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
         lifts = {frame: lift_of(frame, str(arguments.get("lifted_by", "")), trace) for frame in frames}
         estimated = math.isfinite(verdict.error)
         read = [*signals_of(scene, claim), *shaft_angle(scene), *lifts.values()]
-        found.append({
-            **arguments,
-            "kind": table["kind"],
-            "sense": verdict.sense,
-            "signal": verdict.signal,
-            "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
-            "parts": sorted({*(name.partition(".")[0] for name in read), *claim.parameter_owners()}),
-            "lifts": lifts,
-            "shown": {"factor": verdict.displayed(1.0), "unit": unit},
-            "native": {
-                "holds": verdict.holds or verdict.distance >= 0.0,
-                "worst": verdict.worst,
-                "error": verdict.error if estimated else 0.0,
-                "coarse": NO_VALUE in verdict.note,
-                "met": verdict.decided and verdict.distance == 0.0,
-            },
-        })  # fmt: skip
+        found.append(
+            {
+                **arguments,
+                "kind": table["kind"],
+                "sense": verdict.sense,
+                "signal": verdict.signal,
+                "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
+                "parts": sorted({*(name.partition(".")[0] for name in read), *claim.parameter_owners()}),
+                "lifts": lifts,
+                "shown": {"factor": verdict.displayed(1.0), "unit": unit},
+                "native": {
+                    "holds": verdict.holds or verdict.distance >= 0.0,
+                    "worst": verdict.worst,
+                    "error": verdict.error if estimated else 0.0,
+                    "coarse": NO_VALUE in verdict.note,
+                    "met": verdict.decided and verdict.distance == 0.0,
+                },
+            }
+        )
     return found

@@ -44,8 +44,10 @@ def texts(spec: str, directory: Path = Path()) -> dict[str, str]:
     """The texts of a component's file and of the neighbours that it imports, by names from the directory."""
     base = (directory / _split(spec)[0]).parent
     named = Path(_split(spec)[0]).parent
-    return {(named / path.relative_to(base.resolve())).as_posix(): text for path, text in
-            with_texts(spec, directory)[1].items()}  # fmt: skip
+    return {
+        (named / path.relative_to(base.resolve())).as_posix(): text
+        for path, text in with_texts(spec, directory)[1].items()
+    }
 
 
 def with_texts(spec: str, directory: Path) -> tuple[type[Component], Texts]:

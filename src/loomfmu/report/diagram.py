@@ -62,15 +62,22 @@ def section(subject: Subject) -> Section | None:
         straight(occasions.rows, each, its, claims, elsewhere) for each, its in zip(drawn, marks, strict=True)
     ]
     html = template("diagram.html.j2").render(
-        width=WIDTH, height=height, square=SQUARE, left=LEFT, right=WIDTH - RIGHT, top=TOP - 8.0,
-        centre=CENTRE, outer=OUTER + 8.0, inner=INNER - 8.0,
+        width=WIDTH,
+        height=height,
+        square=SQUARE,
+        left=LEFT,
+        right=WIDTH - RIGHT,
+        top=TOP - 8.0,
+        centre=CENTRE,
+        outer=OUTER + 8.0,
+        inner=INNER - 8.0,
         straight=[svg(each) for each in drawings],
         round=[svg(round_(occasions.rows, each, its)) for each, its in zip(drawn, marks, strict=True)],
         tables=[table(occasions.rows, each) for each in drawn],
         numbers=[[n for n, place in shown.items() if place == k] for k in range(len(drawn))],
         legend=_legend(occasions.rows, None if subject.live else drawings),
         coarse=math.degrees(subject.gap) if subject.gap > COARSE else 0.0,
-    )  # fmt: skip
+    )
     data = {"shown": shown, "left": LEFT, "right": WIDTH - RIGHT, "centre": CENTRE}
     scripts: tuple[str, ...] = ("diagram.js",)
     if subject.live:
@@ -84,8 +91,11 @@ def _layout(rows: Sequence[Row]) -> dict[str, Any]:
     width = (OUTER - INNER) / len(rows)
     return {
         "rows": [asdict(row) for row in rows],
-        "top": TOP, "row": ROW, "outer": OUTER, "width": width,
-    }  # fmt: skip
+        "top": TOP,
+        "row": ROW,
+        "outer": OUTER,
+        "width": width,
+    }
 
 
 def write(

@@ -138,8 +138,14 @@ def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], d
         summaries.append((label, *numbers))
     instance, _, variable = name.partition(".")
     about = source.description(name)
-    row = {"name": name, "instance": instance, "variable": variable, "unit": "" if unit == "1" else unit,
-           "about": about, "summaries": summaries}  # fmt: skip
+    row = {
+        "name": name,
+        "instance": instance,
+        "variable": variable,
+        "unit": "" if unit == "1" else unit,
+        "about": about,
+        "summaries": summaries,
+    }
     bounds = [
         {"value": each.bound / factor, "text": f"bound {each.shown(each.bound)}", "holds": each.holds}
         for each in subject.trace.verdicts
@@ -158,8 +164,11 @@ def _along(subject: Subject, trace: Trace) -> dict[str, Any]:
     """How time follows the shaft angle in a trace: its curves lie along the angle if a shaft turns."""
     places = np.unique(np.linspace(0, trace.rows - 1, min(trace.rows, ALONG)).round().astype(np.int64))
     turns = trace.turns
-    return {"turns": turns, "times": _packed(trace.time[places]),
-            "positions": _packed((trace.shaft_angle if turns else trace.time)[places])}  # fmt: skip
+    return {
+        "turns": turns,
+        "times": _packed(trace.time[places]),
+        "positions": _packed((trace.shaft_angle if turns else trace.time)[places]),
+    }
 
 
 def _packed(values: Floats) -> str:

@@ -33,7 +33,8 @@ def section(subject: Subject) -> Section:
         facts = [(label, shown.get(label, text)) for label, text in facts]
     facts.insert(1, ("Samples", f"{subject.trace.rows}"))
     return Section(
-        "provenance", "The scene\u2019s own run" if subject.live else "The run",
+        "provenance",
+        "The scene\u2019s own run" if subject.live else "The run",
         template("provenance.html.j2").render(
             live=subject.live,
             facts=facts,
@@ -42,7 +43,7 @@ def section(subject: Subject) -> Section:
             fmus=_fmus(attributes),
             scene=str(attributes.get("scene", "")),
         ),
-    )  # fmt: skip
+    )
 
 
 def _given(trace: Trace, key: str, text: Any) -> str:

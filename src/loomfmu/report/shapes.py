@@ -17,11 +17,24 @@ Point = tuple[float, float]
 Anchor = Literal["start", "middle", "end"]
 # for files, in which no style sheet chooses: the colours of Okabe and Ito on white, and a violet
 COLOURS = {
-    "weft": "#0072b2", "transfer": "#f0e442", "brake": "#9966ff", "belt": "#e69f00", "risk": "#d55e00",
-    "buckled": "#1a1a1a", "shed": "#56b4e9", "dwell": "#009e73",
-    "change": "#d4d4d4", "reed": "#a8578a", "lock": "#5c5c5c", "curve": "#1a1a1a", "line": "#d4d4d4",
-    "holds": "#006d4f", "fails": "#b34700", "text": "#1a1a1a", "faint": "#5c5c5c",
-}  # fmt: skip
+    "weft": "#0072b2",
+    "transfer": "#f0e442",
+    "brake": "#9966ff",
+    "belt": "#e69f00",
+    "risk": "#d55e00",
+    "buckled": "#1a1a1a",
+    "shed": "#56b4e9",
+    "dwell": "#009e73",
+    "change": "#d4d4d4",
+    "reed": "#a8578a",
+    "lock": "#5c5c5c",
+    "curve": "#1a1a1a",
+    "line": "#d4d4d4",
+    "holds": "#006d4f",
+    "fails": "#b34700",
+    "text": "#1a1a1a",
+    "faint": "#5c5c5c",
+}
 
 
 @dataclass(frozen=True)
@@ -132,9 +145,15 @@ def _plot(axes: Any, each: Shape | Text, order: int) -> None:
         align = {"start": "left", "middle": "center", "end": "right"}[each.anchor]
         halo = [patheffects.withStroke(linewidth=2.0, foreground="#ffffff")]
         axes.text(
-            *each.place, each.text, color=colour, ha=align, va="baseline", fontsize=9, zorder=order,
+            *each.place,
+            each.text,
+            color=colour,
+            ha=align,
+            va="baseline",
+            fontsize=9,
+            zorder=order,
             path_effects=halo,
-        )  # fmt: skip
+        )
         return
     points = np.array(each.points)
     if each.filled:

@@ -27,10 +27,15 @@ def draw(found: Influences) -> Any:
         places = np.arange(len(each.keys))
         for number, (name, error) in enumerate(bars):
             axes.barh(
-                places + (number - 0.5) * 0.38, each.indices[name], 0.36, color=COLOURS[number],
-                xerr=each.indices[error] if error else None, ecolor="#444444", capsize=2,
+                places + (number - 0.5) * 0.38,
+                each.indices[name],
+                0.36,
+                color=COLOURS[number],
+                xerr=each.indices[error] if error else None,
+                ecolor="#444444",
+                capsize=2,
                 label=f"{name}: {WORDS[name]}",
-            )  # fmt: skip
+            )
         axes.set_yticks(places, each.keys, fontsize=8)
         axes.set_title(fill(each.words, LONGEST), fontsize=8)
         axes.tick_params(axis="x", labelsize=8)

@@ -116,10 +116,20 @@ def _parse(text: str, path: Path) -> SweepPlan:
     values = _values(head.scene, tables.get("values", []), [*grid, *sample])
     request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
     plan = SweepPlan(
-        title=head.title, name=path.stem, text=text, path=head.path, scene=head.scene,
-        flavour=head.flavour, fixed=head.fixed, grid=tuple(grid), sample=tuple(sample), values=tuple(values),
-        traces=_traces(tables.get("traces", NO_TRACES if wanted else {})), map=request, sensitivity=wanted,
-    )  # fmt: skip
+        title=head.title,
+        name=path.stem,
+        text=text,
+        path=head.path,
+        scene=head.scene,
+        flavour=head.flavour,
+        fixed=head.fixed,
+        grid=tuple(grid),
+        sample=tuple(sample),
+        values=tuple(values),
+        traces=_traces(tables.get("traces", NO_TRACES if wanted else {})),
+        map=request,
+        sensitivity=wanted,
+    )
     if plan.rows > MOST:
         raise LoomfmuError(f"{plan.rows} combinations; the limit is {MOST}")
     return plan

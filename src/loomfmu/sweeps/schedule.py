@@ -81,9 +81,13 @@ class Schedule:
 
 
 def run_batches(
-    scene: Scene, settings: Callable[[range], list[dict[str, Any]]], job: Job, left: Iterable[range],
-    pool: Pool, store: Callable[[range, Batch], None],
-) -> None:  # fmt: skip
+    scene: Scene,
+    settings: Callable[[range], list[dict[str, Any]]],
+    job: Job,
+    left: Iterable[range],
+    pool: Pool,
+    store: Callable[[range, Batch], None],
+) -> None:
     """Run all rows that are left, each with its settings, and store each batch as it is done.
 
     Raises what a worker raised unless a row caused it.

@@ -32,9 +32,12 @@ INDICES = {
     "morris": (("mu_star", "mu_star_conf"), ("sigma", ""), ("mu", "")),
 }
 WORDS = {
-    "S1": "share of the variance by it alone", "ST": "share of the variance with its interactions",
-    "mu_star": "mean change over its range", "sigma": "spread of that change", "mu": "signed mean",
-}  # fmt: skip
+    "S1": "share of the variance by it alone",
+    "ST": "share of the variance with its interactions",
+    "mu_star": "mean change over its range",
+    "sigma": "spread of that change",
+    "mu": "signed mean",
+}
 
 
 @dataclass(frozen=True)
@@ -204,6 +207,4 @@ def _influence(wanted: Sensitivity, name: str, table: Any, shares: Floats) -> In
         note = f"no indices: no value in {missing} of {len(values)} rows"
     elif np.ptp(values) <= SAME * np.max(np.abs(values)):
         note = "depends on none of them"
-    return Influence(
-        name, words, label, keys, {} if note else wanted.indices(values, shares), note
-    )  # fmt: skip
+    return Influence(name, words, label, keys, {} if note else wanted.indices(values, shares), note)

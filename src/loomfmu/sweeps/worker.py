@@ -171,9 +171,14 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
     first = None
     for claim, verdict in zip(found.scene.claims, found.claims, strict=True):
         values += ClaimResult(
-            verdict.holds, _finite(verdict.worst), _finite(verdict.bound), _finite(verdict.distance),
-            verdict.note or None, verdict.decided, _finite(verdict.error),
-        )  # fmt: skip
+            verdict.holds,
+            _finite(verdict.worst),
+            _finite(verdict.bound),
+            _finite(verdict.distance),
+            verdict.note or None,
+            verdict.decided,
+            _finite(verdict.error),
+        )
         if not verdict.holds and first is None:
             first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims

@@ -89,11 +89,14 @@ def compare(
         (each for each in found if isinstance(each, Difference)), key=lambda each: -each.relative
     )
     changes = (  # causes before effects
-        *_values(one, two, values[0], values[1], allowed), *_claims(one, two, allowed), *_status(one, two),
-        *meeting.extent(), *(each for each in found if isinstance(each, Change)),
+        *_values(one, two, values[0], values[1], allowed),
+        *_claims(one, two, allowed),
+        *_status(one, two),
+        *meeting.extent(),
+        *(each for each in found if isinstance(each, Change)),
         *(Change("signal", name, "recorded", "missing") for name in kept[0] if name not in kept[1]),
         *(Change("signal", name, "missing", "recorded") for name in kept[1] if name not in kept[0]),
-    )  # fmt: skip
+    )
     notes = [*_notes(one, two)]
     if unclear := [each for each in found if isinstance(each, _Unclear)]:
         share, reason = _doubt(unclear)
@@ -105,9 +108,15 @@ def compare(
         notes.append(f"{len(unclear)} more signals may differ by less than can be seen: {reason}")
     names = (str(one.given), str(two.given))
     return Comparison(
-        names, len(common), meeting.how, allowed.share, tuple(differences), changes, tuple(notes),
+        names,
+        len(common),
+        meeting.how,
+        allowed.share,
+        tuple(differences),
+        changes,
+        tuple(notes),
         _earliest(one, differences),
-    )  # fmt: skip
+    )
 
 
 def _earliest(trace: Trace, differences: Sequence[Difference]) -> Difference | None:
@@ -183,9 +192,15 @@ def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Differen
         return _Unclear(signal, float(np.max(gap[unclear])) / (scale or 1.0)) if np.any(unclear) else None
     row, worst = int(beyond[0]), int(beyond[np.argmax(gap[beyond])])
     return Difference(
-        signal, unit, trace.display(signal), meeting.place(row), (float(a[row]), float(b[row])),
-        float(gap[worst]), scale, meeting.place(worst),
-    )  # fmt: skip
+        signal,
+        unit,
+        trace.display(signal),
+        meeting.place(row),
+        (float(a[row]), float(b[row])),
+        float(gap[worst]),
+        scale,
+        meeting.place(worst),
+    )
 
 
 def _is_real(trace: Trace, signal: str) -> bool:

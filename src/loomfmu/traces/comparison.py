@@ -70,18 +70,23 @@ class Difference:
         """The difference as a row of a table."""
         values = (self.shown(value) for value in self.values)
         return (
-            self.signal, str(self.first), *values, self.shown(self.largest), f"{self.relative:.3g}",
+            self.signal,
+            str(self.first),
+            *values,
+            self.shown(self.largest),
+            f"{self.relative:.3g}",
             str(self.at),
-        )  # fmt: skip
+        )
 
     @property
     def entry(self) -> tuple[str, ...]:
         """The difference in parts, where the terminal has no room for a table."""
         signal, first, one, two, largest, relative, at = self.row
         return (
-            f"signal {signal}", f"first at {first}: A {one}, B {two}",
+            f"signal {signal}",
+            f"first at {first}: A {one}, B {two}",
             f"most at {at}: by {largest} (relative {relative})",
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True)

@@ -60,9 +60,10 @@ class Trace(Signals):
             [notebook.table(HEADINGS, [verdict.row for verdict in self.verdicts])] if self.judged else []
         )
         return notebook.block(
-            f"{self.heading} ({self.given}, {self.status})", *verdicts,
+            f"{self.heading} ({self.given}, {self.status})",
+            *verdicts,
             f"<details><summary>{count}</summary>{signals}</details>",
-        )  # fmt: skip
+        )
 
     @property
     def path(self) -> Path:

@@ -19,9 +19,16 @@ from loomfmu.physics.rotor_laws.plateau import plateau_peaks
 from loomfmu.physics.rotor_laws.rotor import rotor_law
 
 LAWS = (
-    "uniform", "harmonic_ends", "sloped_line", "sloped_sine", "slotted_levers", "noncircular_gears",
-    "spline_cam", "table", "plateau",
-)  # fmt: skip
+    "uniform",
+    "harmonic_ends",
+    "sloped_line",
+    "sloped_sine",
+    "slotted_levers",
+    "noncircular_gears",
+    "spline_cam",
+    "table",
+    "plateau",
+)
 NUMBER = {name: number for number, name in enumerate(LAWS, start=1)}
 ROTORS = [name for name in LAWS if name != "spline_cam"]
 FRAME = 6.0  # travel of the frame over the height of the warp

@@ -282,9 +282,12 @@ def test_a_smooth_stop_does_not_fail_at_its_bound_wherever_it_lies_between_sampl
         return np.maximum(20.0 + share - t, 0.0)
 
     trace = drawn(
-        tmp_path, lambda t: 0.16 * t, lambda t: -(left(t) ** power), lambda t: power * left(t) ** (power - 1),
+        tmp_path,
+        lambda t: 0.16 * t,
+        lambda t: -(left(t) ** power),
+        lambda t: power * left(t) ** (power - 1),
         np.arange(41.0),
-    )  # fmt: skip
+    )
     found = judge(trace, kind="below", signal="a.x", bound=0.0)
     assert found.word == "undecided"
     assert abs(found.distance) <= found.error
@@ -792,8 +795,10 @@ def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Tr
     assert zero and zero.distance >= 0.0 and math.isnan(zero.relative_distance)
     assert zero.as_dict()["relative_distance"] is None
     assert [each.shown_distance for each in (margin, zero, short)] == [
-        f"{100.0 * margin.relative_distance:+.4g} %", f"{zero.distance:+.4g} m", "-"
-    ]  # fmt: skip
+        f"{100.0 * margin.relative_distance:+.4g} %",
+        f"{zero.distance:+.4g} m",
+        "-",
+    ]
     coarse = judge(loom(16), kind="lowest_margin", bound=-100.0)
     assert not coarse and coarse.worst > coarse.bound and math.isnan(coarse.distance)
 

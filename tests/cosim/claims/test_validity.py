@@ -65,9 +65,13 @@ def test_the_end_of_a_run_in_which_it_is_not_known_is_no_more_known(
 
 @pytest.mark.parametrize(
     ("window", "word"),
-    [(["0 deg", "10 deg"], "holds"), (["25.5 deg", "36 deg"], "holds"), (["0 deg", "12 deg"], "undecided"),
-     (["15 deg", "18 deg"], "undecided")],
-)  # fmt: skip
+    [
+        (["0 deg", "10 deg"], "holds"),
+        (["25.5 deg", "36 deg"], "holds"),
+        (["0 deg", "12 deg"], "undecided"),
+        (["15 deg", "18 deg"], "undecided"),
+    ],
+)
 def test_a_window_in_which_it_is_known_is_judged(trace: Trace, window: list[str], word: str) -> None:
     verdict = judge(trace, kind="above", signal="a.x", bound="-1 m", window=window)
     assert verdict.word == word

@@ -44,8 +44,11 @@ def test_a_built_fmu_is_what_its_file_says(name: str, flavour: str) -> None:
     assert (fmu.name, fmu.ports, fmu.fmi) == (read.name, read.ports, read.fmi)
     assert read.component is fmu.component
     assert (fmu.trusted, fmu.single, fmu.fixed_step, fmu.needs_tool) == (
-        read.trusted, read.single, read.fixed_step, read.needs_tool,
-    )  # fmt: skip
+        read.trusted,
+        read.single,
+        read.fixed_step,
+        read.needs_tool,
+    )
 
 
 @pytest.mark.parametrize(("flavour", "fmi"), [("live", 2), ("native", 2), ("native", 3)])

@@ -44,9 +44,14 @@ def ending(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     ("text", "instance", "velocity"), [(SECOND, "motor", "flange_w"), (THIRD, "shaft", "velocity")]
 )
 def test_the_trace_goes_as_far_as_the_fmu(
-    ending: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    text: str, instance: str, velocity: str, stepped: str,
-) -> None:  # fmt: skip
+    ending: tuple[Path, str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    text: str,
+    instance: str,
+    velocity: str,
+    stepped: str,
+) -> None:
     if stepped == "in Python":
         monkeypatch.setattr(steppers, "library_of", lambda _source: None)
     place, end = ending
@@ -74,9 +79,13 @@ def test_the_trace_goes_as_far_as_the_fmu(
     ],
 )
 def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
-    ending: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str],
-    head: str, bound: float, word: str,
-) -> None:  # fmt: skip
+    ending: tuple[Path, str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    head: str,
+    bound: float,
+    word: str,
+) -> None:
     place, end = ending
     (place / "x.toml").write_text(f'{head}title = "M"\n' + SECOND + CLAIM.format("motor.flange_w", bound))
     status = int(word != "holds")

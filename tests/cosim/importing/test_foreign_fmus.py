@@ -125,9 +125,14 @@ def test_integers_booleans_and_enumerations_come_through(place: Path, tmp_path: 
 def test_names_and_units_are_ours_where_they_can_be(place: Path, tmp_path: Path) -> None:
     trace = ran(place, MOTOR, tmp_path).trace
     assert set(trace) == {
-        "motor.flange_phi", "motor.flange_w", "motor.flange_a", "motor.time_", "motor.steps",
-        "motor.at_speed", "motor.winding",
-    }  # fmt: skip
+        "motor.flange_phi",
+        "motor.flange_w",
+        "motor.flange_a",
+        "motor.time_",
+        "motor.steps",
+        "motor.at_speed",
+        "motor.winding",
+    }
     assert (trace.unit("motor.flange_w"), trace.rate("motor.flange_phi")) == ("rad/s", "motor.flange_w")
     assert (trace.unit("motor.flange_phi"), trace.display("motor.flange_phi")) == ("rad", "deg")
     assert (trace.unit("motor.winding"), trace.display("motor.winding")) == ("K", "K")

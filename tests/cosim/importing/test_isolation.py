@@ -208,8 +208,9 @@ def test_the_processes_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
     (tmp_path / "tmp").mkdir()
     ours = subprocess.Popen(
         [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
-        cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
-    )  # fmt: skip
+        cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
+    )
     results, temporary = tmp_path / "results", tmp_path / "tmp"
     until(lambda: list(results.glob("motor.h5.*.partial")) and list(temporary.glob("loomfmu-*")))
     ours.kill()
@@ -291,8 +292,11 @@ def test_the_command_outlives_an_fmu_that_ends_its_process(
     (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
     done = subprocess.run(
         [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         f"loomfmu: motor {how} before the run was finished; isolated = true keeps the trace up to there\n"
@@ -304,8 +308,11 @@ def test_exit_in_a_script_is_a_failure(tmp_path: Path) -> None:
     (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
     done = subprocess.run(
         [sys.executable, "-c", "import loomfmu; loomfmu.run('motor.toml')"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         "loomfmu: an FMU ended the process (exit) before the run was finished, one of motor;"
@@ -321,12 +328,24 @@ def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
         (tmp_path / "motor.toml").write_text(MOTOR + claim)
         done = [
             subprocess.run(
-                [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml", "--set", f"isolated={isolated}",
-                 "--output", f"{bound}_{isolated}.h5"],
-                cwd=tmp_path, capture_output=True, text=True, check=False,
+                [
+                    sys.executable,
+                    "-m",
+                    "loomfmu.cli",
+                    "run",
+                    "motor.toml",
+                    "--set",
+                    f"isolated={isolated}",
+                    "--output",
+                    f"{bound}_{isolated}.h5",
+                ],
+                cwd=tmp_path,
+                capture_output=True,
+                text=True,
+                check=False,
             )
             for isolated in ("true", "false")
-        ]  # fmt: skip
+        ]
         assert [each.returncode for each in done] == [status] * 2, done[1].stderr
         printed = [
             [line for line in each.stdout.splitlines() if "us each" not in line and "trace: " not in line]
@@ -347,8 +366,10 @@ def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
     (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
     running = subprocess.Popen(
         [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
-        cwd=tmp_path, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     until(lambda: list((tmp_path / "results").glob("motor.h5.*.partial")))
     for _ in range(2):
         time.sleep(0.5)  # the first must have arrived
@@ -404,9 +425,13 @@ def test_of_a_process_that_an_fmu_has_forked_one_goes_on(tmp_path: Path, text: s
     misbehaving(tmp_path, "FORK", where)
     (tmp_path / "scene.toml").write_text(text.replace('"0.2 s"', '"0.055 s"'))
     done = subprocess.run(
-        [sys.executable, "-m", "loomfmu.cli", "run", "scene.toml"], cwd=tmp_path, capture_output=True,
-        text=True, check=False, timeout=120,
-    )  # fmt: skip
+        [sys.executable, "-m", "loomfmu.cli", "run", "scene.toml"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("trace: ") == 1
     assert os.listdir(tmp_path / "results") == ["scene.h5"]

@@ -44,9 +44,12 @@ def test_a_scene_that_claims_the_belts_margin_alone_needs_two_fmus() -> None:
     needed = needed_for(margin())
     assert set(needed.scene.instances) == {"weft", "belt"}
     assert needed.fetched == {
-        ("weft", "travel"), ("weft", "velocity"), ("weft", "acceleration"),
-        ("belt", "margin"), ("belt", "lowest_margin"),
-    }  # fmt: skip
+        ("weft", "travel"),
+        ("weft", "velocity"),
+        ("weft", "acceleration"),
+        ("belt", "margin"),
+        ("belt", "lowest_margin"),
+    }
     assert set(needed.shafts) == {"shaft"}
 
 
@@ -172,7 +175,8 @@ def test_without_a_request_nothing_runs() -> None:
 def test_what_a_grid_saves_or_costs_is_reported(taken: int, scouted: int, expected: str) -> None:
     whole = SimpleNamespace(instances={"a": 1}, steps=100)
     plan: Any = SimpleNamespace(
-        scene=whole, pruned=SimpleNamespace(scene=whole, skipped=()),
+        scene=whole,
+        pruned=SimpleNamespace(scene=whole, skipped=()),
         grid=SimpleNamespace(steps=taken, scouted=scouted, notes=()),
-    )  # fmt: skip
+    )
     assert explained(plan) == (expected,)

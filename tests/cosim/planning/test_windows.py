@@ -183,8 +183,9 @@ def test_a_pull_between_two_coarse_steps_is_not_overlooked() -> None:
     found = loomfmu.evaluate(scenes.parse(text, directory=SIMS), set={"grid": "windows", "revolutions": 1})
     fine = loomfmu.evaluate(
         scenes.parse(text, directory=SIMS),
-        set={"grid": "uniform", "steps_per_revolution": 72000, "revolutions": 1}, flavour="native",
-    )  # fmt: skip
+        set={"grid": "uniform", "steps_per_revolution": 72000, "revolutions": 1},
+        flavour="native",
+    )
     assert found.claims[0].worst == pytest.approx(fine.claims[0].worst, abs=1e-8)
 
 

@@ -34,12 +34,13 @@ CHANGED = "WL800-3600, G6300 left, weave 10/01/10/01, 600 rev/min; belt.guide_cl
         ({"heald_2.pattern": "1"}, LOOM.replace("10/01/10", "10/1/10") + "; heald_2.pattern = 1"),
         ({"belt.guide_clearance": 5e-4}, f"{LOOM}; belt.guide_clearance = 0.5 mm"),
         ({"belt.head_mass": "120 g", "revolutions": 1}, f"{LOOM}; belt.head_mass = 120 g, revolutions = 1"),
-        ({"weft.machine": "WL800-3600"},
-         f"WL800-3600 and {LOOM}; weft.machine = WL800-3600"),
-        ({"loom.weave": "/".join(10 * ["11111111"])},
-         LOOM.replace("10/01/10/01", "of 10 frames and 8 picks")),
+        ({"weft.machine": "WL800-3600"}, f"WL800-3600 and {LOOM}; weft.machine = WL800-3600"),
+        (
+            {"loom.weave": "/".join(10 * ["11111111"])},
+            LOOM.replace("10/01/10/01", "of 10 frames and 8 picks"),
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_heading_says_what_the_values_are(overrides: dict[str, Any], said: str) -> None:
     assert heading(scenes.load(DEMO, overrides)) == said
 

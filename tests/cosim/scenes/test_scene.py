@@ -275,7 +275,7 @@ def test_an_instance_that_names_no_machine_counts_by_its_values() -> None:
         (LOOM, {"shaft.machine": "WL450-3600"}, "shaft.machine: a MainShaft has no machine"),
         ("[shaft]", {"machine": "WL450-3600"}, "machine: the scene has no WeftInsertion, BeltMonitor or"),
     ],
-)  # fmt: skip
+)
 def test_a_machine_that_cannot_be_set_is_refused(text: str, given: dict[str, object], said: str) -> None:
     with pytest.raises(LoomfmuError) as raised:
         scenes.parse(text, overrides=given)
@@ -331,14 +331,20 @@ DOUBT = 'is read as 480 rad/s = 4583.662 rev/min; write "480 rev/min" if that is
 @pytest.mark.parametrize(
     ("text", "given", "note"),
     [
-        (LOOM + "[shaft]\nspeed = 480\n", {}, f'shaft.speed = 480 {DOUBT}'),
-        (LOOM, {"shaft.speed": "480"}, f'shaft.speed = 480 {DOUBT}'),
-        (LOOM, {"belt.head_mass": 95},
-         'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant'),
-        (LOOM + '[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n', {},
-         f'inputs.weft.shaft_velocity = 480 {DOUBT}'),
+        (LOOM + "[shaft]\nspeed = 480\n", {}, f"shaft.speed = 480 {DOUBT}"),
+        (LOOM, {"shaft.speed": "480"}, f"shaft.speed = 480 {DOUBT}"),
+        (
+            LOOM,
+            {"belt.head_mass": 95},
+            'belt.head_mass = 95 is read as 95 kg = 95000 g; write "95 g" if that is meant',
+        ),
+        (
+            LOOM + '[inputs]\n"weft.shaft_velocity" = [[0, 480]]\n[wires]\n"weft.shaft_velocity" = false\n',
+            {},
+            f"inputs.weft.shaft_velocity = 480 {DOUBT}",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_number_that_was_meant_in_another_unit_is_doubted(
     text: str, given: dict[str, object], note: str
 ) -> None:
@@ -348,12 +354,19 @@ def test_a_number_that_was_meant_in_another_unit_is_doubted(
 @pytest.mark.parametrize(
     "given",
     [
-        {"shaft.speed": "4583 rpm"}, {"shaft.speed": "480 rad/s"}, {"shaft.speed": 30.0},
-        {"shaft.speed": 120}, {"shaft.speed": -70.0}, {"belt.guide_clearance": 1e-3}, {"belt.head_mass": 0.2},
+        {"shaft.speed": "4583 rpm"},
+        {"shaft.speed": "480 rad/s"},
+        {"shaft.speed": 30.0},
+        {"shaft.speed": 120},
+        {"shaft.speed": -70.0},
+        {"belt.guide_clearance": 1e-3},
+        {"belt.head_mass": 0.2},
         {"dobby.slow_point": 1.5},
-        {"damper.spring_stiffness": 1000.0}, {"damper.spring_stiffness": 0.0}, {"heald.stroke": 0.3},
+        {"damper.spring_stiffness": 1000.0},
+        {"damper.spring_stiffness": 0.0},
+        {"heald.stroke": 0.3},
     ],
-)  # fmt: skip
+)
 def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
     assert scenes.parse(LOOM, overrides=given).notes == ()
 
@@ -361,21 +374,29 @@ def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
 @pytest.mark.parametrize(
     ("claim", "note"),
     [
-        ({"kind": "below", "signal": "belt.deflection", "bound": 2},
-         "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
-         ' write "2 mm" if that is meant'),
-        ({"kind": "dwell", "heald": "heald_1", "at_least": 85},
-         "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
-         ' write "85 deg" if that is meant'),
-        ({"kind": "rapier_in_open_shed", "head_height": 18},
-         "claim 'rapier_in_open_shed': head_height = 18 is read as 18 m = 18000 mm;"
-         ' write "18 mm" if that is meant'),
-        ({"kind": "below", "signal": "belt.deflection", "bound": "2 mm", "window": ["210 deg", "150 deg"]},
-         "claim 'below': window = [210 deg, 150 deg] covers 300 deg, through 360 deg;"
-         ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
-         " if this one is meant"),
+        (
+            {"kind": "below", "signal": "belt.deflection", "bound": 2},
+            "claim 'below' of belt.deflection: bound = 2 is read as 2 m = 2000 mm;"
+            ' write "2 mm" if that is meant',
+        ),
+        (
+            {"kind": "dwell", "heald": "heald_1", "at_least": 85},
+            "claim 'dwell': at_least = 85 is read as 85 rad = 4870.141 deg;"
+            ' write "85 deg" if that is meant',
+        ),
+        (
+            {"kind": "rapier_in_open_shed", "head_height": 18},
+            "claim 'rapier_in_open_shed': head_height = 18 is read as 18 m = 18000 mm;"
+            ' write "18 mm" if that is meant',
+        ),
+        (
+            {"kind": "below", "signal": "belt.deflection", "bound": "2 mm", "window": ["210 deg", "150 deg"]},
+            "claim 'below': window = [210 deg, 150 deg] covers 300 deg, through 360 deg;"
+            ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
+            " if this one is meant",
+        ),
     ],
-)  # fmt: skip
+)
 def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, Any], note: str) -> None:
     scene = replace(scenes.parse(LOOM), claims=[claim])
     assert checked_claims(scene).notes == (note,)
@@ -419,7 +440,7 @@ def test_what_is_set_anew_is_doubted_anew() -> None:
             " these would fit: 2.5 or 2.511111111",
         ),
     ],
-)  # fmt: skip
+)
 def test_a_duration_that_is_not_whole_steps_is_refused(text: str, said: str) -> None:
     with pytest.raises(LoomfmuError) as raised:
         scenes.parse(text)
@@ -463,9 +484,13 @@ def test_what_is_recorded_has_its_rates_with_it(tmp_path: Path) -> None:
     text = 'revolutions = 0.1\nrecord = ["heald_1.lift"]\n' + LOOM
     with traced(scenes.parse(text), tmp_path) as trace:
         assert set(trace) == {
-            "shaft.angle", "shaft.velocity", "shaft.acceleration",
-            "heald_1.lift", "heald_1.velocity", "heald_1.acceleration",
-        }  # fmt: skip
+            "shaft.angle",
+            "shaft.velocity",
+            "shaft.acceleration",
+            "heald_1.lift",
+            "heald_1.velocity",
+            "heald_1.acceleration",
+        }
     with traced(scenes.parse("record = []\n" + LOOM), tmp_path) as trace:
         assert set(trace) == {"shaft.angle", "shaft.velocity", "shaft.acceleration"}
 

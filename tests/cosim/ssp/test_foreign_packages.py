@@ -81,9 +81,14 @@ def package(directory: Path, **changed: str) -> Path:
     motor = motor2(directory).read_bytes()
     spaces = " ".join(f'xmlns:{key}="{NAMESPACES[key]}"' for key in ("ssd", "ssc", "ssv", "ssm", "osp"))
     parts = {
-        "namespaces": spaces, "other": "", "connection": "", "experiment": 'startTime="0" stopTime="0.2"',
-        "algorithm": ALGORITHM, "more": "", "transformed": "",
-    } | changed  # fmt: skip
+        "namespaces": spaces,
+        "other": "",
+        "connection": "",
+        "experiment": 'startTime="0" stopTime="0.2"',
+        "algorithm": ALGORITHM,
+        "more": "",
+        "transformed": "",
+    } | changed
     parts["drive"] = DRIVE.format(**parts)
     path = directory / "elsewhere.ssp"
     with zipfile.ZipFile(path, "w") as archive:

@@ -256,14 +256,21 @@ def edited(path: Path, target: Path, member: str, *changes: tuple[str, str]) -> 
 
 def test_what_another_tool_has_changed_in_it_holds(demo: Path, tmp_path: Path) -> None:
     path = edited(
-        demo, tmp_path / "edited.ssp", "resources/belt.ssv", ('"0.1105" unit="kg"', '"221" unit="g"'),
+        demo,
+        tmp_path / "edited.ssp",
+        "resources/belt.ssv",
+        ('"0.1105" unit="kg"', '"221" unit="g"'),
         ('<ssc:Unit name="kg">', f'{GRAM}<ssc:Unit name="kg">'),
-    )  # fmt: skip
+    )
     path = edited(
-        path, tmp_path / "again.ssp", "SystemStructure.ssd",
-        ('startElement="weft" startConnector="acceleration" endElement="belt" endConnector="acceleration"',
-         'endElement="weft" endConnector="acceleration" startElement="belt" startConnector="acceleration"'),
-    )  # fmt: skip
+        path,
+        tmp_path / "again.ssp",
+        "SystemStructure.ssd",
+        (
+            'startElement="weft" startConnector="acceleration" endElement="belt" endConnector="acceleration"',
+            'endElement="weft" endConnector="acceleration" startElement="belt" startConnector="acceleration"',
+        ),
+    )
     trace = run(path, output=tmp_path / "edited.h5").trace
     expected = run(DEMO, set=SHORT | {"belt.head_mass": 0.221}, output=tmp_path / "expected.h5").trace
     # 221 g is 0.221 kg to the rounding of one product; start and end of a connection tell no direction
@@ -282,15 +289,21 @@ def test_a_package_of_the_form_before_is_still_read(demo: Path, tmp_path: Path) 
     rest = text[text.index("</loomfmu:Scene>") :]
     end = rest[len("</loomfmu:Scene>") :].replace("</ssc:Annotation>", "", 1)
     path = edited(
-        demo, tmp_path / "before.ssp", "SystemStructure.ssd",
+        demo,
+        tmp_path / "before.ssp",
+        "SystemStructure.ssd",
         (ours[: ours.index("</loomfmu:Scene>")] + rest, end),
         ("</ssd:DefaultExperiment>", f"</ssd:DefaultExperiment><ssd:Annotations>{ours}</ssd:Annotations>"),
-    )  # fmt: skip
+    )
     path = edited(
-        path, tmp_path / "old.ssp", "resources/dobby.ssv",
-        ("</ssv:Parameters>",
-         '<ssv:Parameter name="law"><ssv:Integer value="2"/></ssv:Parameter></ssv:Parameters>'),
-    )  # fmt: skip
+        path,
+        tmp_path / "old.ssp",
+        "resources/dobby.ssv",
+        (
+            "</ssv:Parameters>",
+            '<ssv:Parameter name="law"><ssv:Integer value="2"/></ssv:Parameter></ssv:Parameters>',
+        ),
+    )
     assert [element.tag.rpartition("}")[2] for element in structure(path)][-1] == "Annotations"
     after = run(path, output=tmp_path / "after.h5")
     expected = run(DEMO, set=SHORT | {"dobby.law": "harmonic_ends"}, output=tmp_path / "expected.h5")

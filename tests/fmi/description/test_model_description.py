@@ -53,8 +53,11 @@ def test_head(name: str) -> None:
     experiment = root.find("DefaultExperiment")
     assert experiment is not None
     assert experiment.attrib == {
-        "startTime": "0", "stopTime": "1.0", "tolerance": "1e-06", "stepSize": "0.0001",
-    }  # fmt: skip
+        "startTime": "0",
+        "stopTime": "1.0",
+        "tolerance": "1e-06",
+        "stepSize": "0.0001",
+    }
     categories = {category.attrib["name"] for category in root.findall("LogCategories/Category")}
     assert categories == {"logStatusWarning", "logStatusDiscard", "logStatusError"}
     assert categories == {category for category, _description in CATEGORIES.values()}

@@ -60,9 +60,12 @@ def test_every_machine_and_head_is_there_with_its_values_and_units(name: str, tm
 def test_a_host_applies_one(machine: str, tmp_path: Path) -> None:
     given = read(unpacked("WeftInsertion", tmp_path)[machine])
     found = fmpy.simulate_fmu(
-        str(fmus.of_component("WeftInsertion").path), stop_time=1e-3, output_interval=1e-3,
-        start_values={key: value[1] for key, value in given.items()}, output=["stroke"],
-    )  # fmt: skip
+        str(fmus.of_component("WeftInsertion").path),
+        stop_time=1e-3,
+        output_interval=1e-3,
+        start_values={key: value[1] for key, value in given.items()},
+        output=["stroke"],
+    )
     there = COMPONENTS["WeftInsertion"](**parameters("WeftInsertion", machine=machine))
     assert there.initialize(0.0) == 0
     assert found["stroke"][-1] == there.stroke
@@ -73,6 +76,7 @@ def test_pyssp_reads_them(tmp_path: Path) -> None:
     with ssv.SSV(unpacked("BeltMonitor", tmp_path)["G6300 left"]) as found:
         (mass,) = found.parameters
         assert (mass["name"], mass["type_value"].parameter) == (
-            "head_mass", {"value": "0.1105", "unit": "kg"},
-        )  # fmt: skip
+            "head_mass",
+            {"value": "0.1105", "unit": "kg"},
+        )
         found.__check_compliance__()

@@ -101,8 +101,11 @@ def test_the_wrapper_lets_go_of_its_state_once(
     done = subprocess.run(
         [sys.executable, "-c", script, str(witness), *paths],
         env=os.environ | {"LD_PRELOAD": str(witness)},
-        capture_output=True, text=True, timeout=100, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (status, "")
 
 

@@ -499,8 +499,11 @@ def test_in_fmpy_a_wrong_value_fails_and_says_why_even_without_logging(name: str
     script = BAD.replace("{wrong}", f"{{{name!r}: {WRONG[name]}}}")
     done = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", script, str(fmus.of_component(name).path)],
-        capture_output=True, text=True, timeout=300, check=True,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
     function = "fmi2DoStep" if name == "BeltMonitor" else "fmi2ExitInitializationMode"
     failed = [line for line in done.stdout.splitlines() if not line.startswith("Warning: missing input")]
     assert failed == [function] * 2  # a run that ends early would look like a result
@@ -627,10 +630,15 @@ def test_a_state_that_cannot_be_is_refused_even_with_a_proper_checksum(live: Ope
     at = dict(zip(instance.fmu.ports, map(int, places), strict=False))
     nan, far = struct.pack("<d", math.nan), struct.pack("<d", -1e300)
     for place, value in (
-        (36, b"\x03"), (37, nan), (37, struct.pack("<d", 1e16)),  # mode and time
-        (at["thread_count"], bytes(8)), (at["lift"], far), (at["tension"], nan),
-        (at["pending"], far), (at["elapsed"], far),  # states: with these the moments were summed for ever
-    ):  # fmt: skip
+        (36, b"\x03"),
+        (37, nan),
+        (37, struct.pack("<d", 1e16)),  # mode and time
+        (at["thread_count"], bytes(8)),
+        (at["lift"], far),
+        (at["tension"], nan),
+        (at["pending"], far),
+        (at["elapsed"], far),  # states: with these the moments were summed for ever
+    ):
         forged = body[:place] + value + body[place + len(value) :]
         data = forged + zlib.crc32(forged).to_bytes(4, "little")
         state = instance.slave.deSerializeFMUstate(data)

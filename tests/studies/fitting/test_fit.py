@@ -255,14 +255,16 @@ def test_warnings_of_the_scene_and_of_ranges_are_printed(
     ("vary", "said"),
     [
         (["belt.head_mass=0.1kg..0.2kg"], "belt.head_mass changes none of the measured signals"),
-        (["belt.bending_stiffness=0.1..0.4", "belt.prescribed_length_factor=0.5..2"],
-         "cannot tell belt.bending_stiffness and belt.prescribed_length_factor apart"),
+        (
+            ["belt.bending_stiffness=0.1..0.4", "belt.prescribed_length_factor=0.5..2"],
+            "cannot tell belt.bending_stiffness and belt.prescribed_length_factor apart",
+        ),
         (["belt.prescribed_length_factor=2..0.5"], "is empty"),
         (["belt.prescribed_length_factor=0.5..2", "belt.prescribed_length_factor=0.5..2"], "is varied twice"),
         (["belt.length_faktor=0.5..2"], "length_factor"),
         ([], "name at least one parameter"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_fitted_is_refused(tmp_path: Path, vary: list[str], said: str) -> None:
     rows = [(length, BENT / (0.8 * length) ** 2 + 0.1 * length) for length in np.linspace(0.3, 0.9, 9)]
     scene, data = written(tmp_path, rows)

@@ -157,8 +157,10 @@ def test_an_interval_narrower_than_the_scan_is_found_where_the_distance_touches_
     with prepare(parse(text)) as loom:
         best = minimize_scalar(
             lambda rpm: -loom.evaluate({"shaft.speed": f"{rpm} rpm"}).claims[0].worst,
-            bounds=(270.0, 295.0), method="bounded", options={"xatol": 1e-7},
-        )  # fmt: skip
+            bounds=(270.0, 295.0),
+            method="bounded",
+            options={"xatol": 1e-7},
+        )
     longest = -float(best.fun)
     scene = parse(text.replace("214 deg", f"{math.degrees(longest - 1e-5)!r} deg"))
     found = limit(scene, vary="shaft.speed=100rpm..400rpm")
@@ -259,7 +261,7 @@ def test_a_claim_that_cannot_be_judged_says_why() -> None:
         ({"vary": ["shaft.speed", "shaft.speed=1..2"]}, "shaft.speed and shaft.speed both set shaft.speed"),
         ({"vary": ["shaft.speed", "heald.stroke"], "rows": 1}, "rows = 1 must be a whole number from 2 to"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_searched_is_refused_in_one_line(given: dict[str, Any], said: str) -> None:
     short = {"steps_per_revolution": 90, "revolutions": 1}
     with pytest.raises(LoomfmuError) as raised:

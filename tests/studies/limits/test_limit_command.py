@@ -15,8 +15,17 @@ DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
 DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
 QUICK = ["--points", "5", "--set", "revolutions=1"]
 SPEED = ["limit", DEMO, "--vary", "shaft.speed", "--from", "300rpm", "--to", "900rpm", *QUICK]
-BOTH = ["limit", DEMO, "--vary", "shaft.speed=300rpm..900rpm", "--vary", "belt.guide_clearance=0.2mm..0.8mm",
-        "--rows", "3", *QUICK]  # fmt: skip
+BOTH = [
+    "limit",
+    DEMO,
+    "--vary",
+    "shaft.speed=300rpm..900rpm",
+    "--vary",
+    "belt.guide_clearance=0.2mm..0.8mm",
+    "--rows",
+    "3",
+    *QUICK,
+]
 
 
 @pytest.fixture(autouse=True)
@@ -129,8 +138,11 @@ def test_limits_are_written_as_a_table(capsys: pytest.CaptureFixture[str]) -> No
     with Path("limits.csv").open() as file:
         first, second = csv.DictReader(file)
     assert (first["claim"], first["begins"], first["unit"], first["jumps"]) == (
-        "the belt keeps a margin of 10 %", "to fail", "rev/min", "false"
-    )  # fmt: skip
+        "the belt keeps a margin of 10 %",
+        "to fail",
+        "rev/min",
+        "false",
+    )
     safe = design.safe_speed("WL680-3600", clearance="0.3 mm").speed * 30.0 / math.pi
     assert float(first["value"]) == pytest.approx(safe * math.sqrt(0.9), rel=1e-9)
     assert float(second["value"]) == pytest.approx(safe, rel=1e-9)

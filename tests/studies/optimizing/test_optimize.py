@@ -48,9 +48,7 @@ def test_the_best_value_for_a_wanted_speed_is_that_of_the_closed_form(
     tmp_path: Path, key: str, low: str, high: str, expected: object
 ) -> None:
     text = f'maximise = "{key}"\n[ranges]\n"{key}" = ["{low}", "{high}"]'
-    path = study(
-        tmp_path, text, alone(tmp_path, SAFE), f'{EXACT}"shaft.speed" = "650 rpm"\n{QUICK}'
-    )  # fmt: skip
+    path = study(tmp_path, text, alone(tmp_path, SAFE), f'{EXACT}"shaft.speed" = "650 rpm"\n{QUICK}')
     found = optimize(path, processes=1)
     # that claims are kept 1e-9 inside, and 1e-9 of the extreme between samples
     assert found.values[key] == pytest.approx(expected(), rel=1e-8)  # type: ignore[operator]
@@ -99,10 +97,15 @@ def test_of_two_claims_that_bind_together_neither_is_worth_anything_alone(tmp_pa
 def test_a_safety_distance_is_kept(tmp_path: Path) -> None:
     text = 'maximise = "shaft.speed"\n[ranges]\n"shaft.speed" = ["400 rpm", "900 rpm"]\n'
     scene = alone(tmp_path, SAFE)
-    for number, (safety, expected) in enumerate([
-        (f"safety = '5 %'\n{text}", 1.0 / 1.05),
-        (f"{text}[safety]\n'{SAFE}' = '30 rpm'", 1.0 - 30.0 * RPM / design.safe_speed("WL680-3600").speed),
-    ]):  # fmt: skip
+    for number, (safety, expected) in enumerate(
+        [
+            (f"safety = '5 %'\n{text}", 1.0 / 1.05),
+            (
+                f"{text}[safety]\n'{SAFE}' = '30 rpm'",
+                1.0 - 30.0 * RPM / design.safe_speed("WL680-3600").speed,
+            ),
+        ]
+    ):
         found = optimize(
             study(tmp_path, safety, scene, EXACT + QUICK), processes=1, output=tmp_path / str(number)
         )
@@ -232,8 +235,12 @@ def test_the_command_prints_and_writes_what_it_finds(
     assert "646.8" in said  # 681.804 sqrt(0.9); with 90 steps the lowest margin is off by some 1e-5
     directory = Path("results/study")
     assert sorted(each.name for each in directory.iterdir()) == [
-        "best.png", "best.toml", "designs.csv", "runs.jsonl", "study.json"
-    ]  # fmt: skip
+        "best.png",
+        "best.toml",
+        "designs.csv",
+        "runs.jsonl",
+        "study.json",
+    ]
     with (directory / "designs.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert {"shaft.speed [rev/min]", "dobby.law", "holds", "error"} < set(rows[0])

@@ -79,7 +79,7 @@ def test_the_table_of_a_scene_is_what_the_command_searches(
         (["belt.guide_clearance=0.5mm..0.2mm"], "is empty"),
         (["heald.stroke=10mm..98mm"], r"heald\.stroke = 10 mm: .*clear_shed"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_searched_is_refused(vary: list[str], said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
         tolerances(DEMO, vary=vary, set=FAST)

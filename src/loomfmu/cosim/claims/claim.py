@@ -112,10 +112,19 @@ class Claim(ABC):
         return Landings([], [])
 
     def verdict(
-        self, trace: Signals, text: str, signal: str, bound: float, worst: float, time: float, *notes: str,
-        holds: bool | None = None, unit: tuple[str, str] | None = None, sense: int | None = None,
+        self,
+        trace: Signals,
+        text: str,
+        signal: str,
+        bound: float,
+        worst: float,
+        time: float,
+        *notes: str,
+        holds: bool | None = None,
+        unit: tuple[str, str] | None = None,
+        sense: int | None = None,
         unknown: Sequence[Stretch] | None = None,
-    ) -> Verdict:  # fmt: skip
+    ) -> Verdict:
         """The verdict, with the place on the shaft at its time.
 
         Unless `holds` says so, the worst value decides. Without one, NaN, a claim is undecided. So is one
@@ -146,10 +155,20 @@ class Claim(ABC):
         note = "; ".join(dict.fromkeys(note for note in notes if note))
         claim = f"{self.name}: {text}" if self.name else text
         return Verdict(
-            claim, signal, bool(holds) and decided, bound, worst, *(unit or self.unit), time, angle,
-            revolution, note, sense=sense or self.sense, error=math.nan if decided else math.inf,
+            claim,
+            signal,
+            bool(holds) and decided,
+            bound,
+            worst,
+            *(unit or self.unit),
+            time,
+            angle,
+            revolution,
+            note,
+            sense=sense or self.sense,
+            error=math.nan if decided else math.inf,
             decided=decided,
-        )  # fmt: skip
+        )
 
 
 def _judges(trace: Signals, verdict: Verdict) -> bool:

@@ -29,11 +29,26 @@ FILES = (
 
 
 Kind = Literal[  # for editors and type checkers; a test holds it to the classes
-    "above", "below", "belt_deflection", "clear_shed", "dwell", "dwell_contains", "energy_balance",
-    "heald_blows", "locks_in_time", "lowest_margin", "motor_power", "nip_holds", "peak_load",
-    "rapier_in_open_shed", "reed_clear_of_rapier", "speed_fluctuation", "stop_contacts",
-    "transfer_in_time", "transfer_speed",
-]  # fmt: skip
+    "above",
+    "below",
+    "belt_deflection",
+    "clear_shed",
+    "dwell",
+    "dwell_contains",
+    "energy_balance",
+    "heald_blows",
+    "locks_in_time",
+    "lowest_margin",
+    "motor_power",
+    "nip_holds",
+    "peak_load",
+    "rapier_in_open_shed",
+    "reed_clear_of_rapier",
+    "speed_fluctuation",
+    "stop_contacts",
+    "transfer_in_time",
+    "transfer_speed",
+]
 
 
 def judge(trace: Signals, *, kind: Kind, **arguments: Any) -> Verdict:

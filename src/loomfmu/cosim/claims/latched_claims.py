@@ -40,8 +40,12 @@ class BeltDeflection(Claim):
     belt: str = argument(Name(), "belt_motion")
 
     needs = (
-        "belt.deflection", "belt.largest_deflection", "belt.largest_at_risk", "belt.folded", "belt.too_long",
-    )  # fmt: skip
+        "belt.deflection",
+        "belt.largest_deflection",
+        "belt.largest_at_risk",
+        "belt.folded",
+        "belt.too_long",
+    )
     sense, unit, grid = AT_MOST, LENGTH, NOTHING
 
     def judge(self, trace: Signals) -> Verdict:

@@ -235,9 +235,16 @@ class NipHolds(Claim):
         high = ratio - self.at_least > self.at_most - ratio
         notes = (most.note, held.note, *((drafting.note, holding.note) if not self.at_samples else ()))
         return self.verdict(
-            trace, text, signal, self.at_most if high else self.at_least, ratio, most.time, *notes,
-            holds=self.at_least - SAME <= ratio <= self.at_most + SAME, sense=AT_MOST if high else AT_LEAST,
-        )  # fmt: skip
+            trace,
+            text,
+            signal,
+            self.at_most if high else self.at_least,
+            ratio,
+            most.time,
+            *notes,
+            holds=self.at_least - SAME <= ratio <= self.at_most + SAME,
+            sense=AT_MOST if high else AT_LEAST,
+        )
 
 
 class LocksInTime(Claim):
@@ -272,6 +279,14 @@ class LocksInTime(Claim):
             f"{self.lock}.in_time is known only at the samples: the lock does not follow shaft.velocity"
         )
         return self.verdict(
-            trace, "torque margin", signal, 0.0, float(margin[place]), float(trace.time[place]), note,
-            holds=not len(late), unit=ONE, sense=AT_LEAST,
-        )  # fmt: skip
+            trace,
+            "torque margin",
+            signal,
+            0.0,
+            float(margin[place]),
+            float(trace.time[place]),
+            note,
+            holds=not len(late),
+            unit=ONE,
+            sense=AT_LEAST,
+        )

@@ -48,10 +48,18 @@ class Bounded(Claim, kind=False):
         worst, floor = self.sense * found.value, self.sense * limit
         nowhere = within == [] and bool(unknown)
         verdict = self.verdict(
-            trace, text, self.signal, limit, found.value, found.time, note, found.note,
+            trace,
+            text,
+            self.signal,
+            limit,
+            found.value,
+            found.time,
+            note,
+            found.note,
             holds=nowhere or self.sense * found.sure >= floor,
-            unit=(trace.unit(self.signal), trace.display(self.signal)), unknown=unknown,
-        )  # fmt: skip
+            unit=(trace.unit(self.signal), trace.display(self.signal)),
+            unknown=unknown,
+        )
         if not verdict or self.sense * found.possible >= floor:
             return verdict
         # the bound lies within what the curve between the samples may be off

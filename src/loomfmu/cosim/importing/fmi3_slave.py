@@ -66,9 +66,11 @@ class Fmi3Slave(Slave):
 
     def _open(self) -> Any:
         slave = FMU3Slave(
-            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            guid=self.fmu.guid,
+            unzipDirectory=str(self.fmu.directory),
+            modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
-        )  # fmt: skip
+        )
         slave.instantiate(loggingOn=self.fmu.trusted, logMessage=self._log_3)
         return slave
 

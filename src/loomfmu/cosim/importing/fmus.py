@@ -255,14 +255,20 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
     _check_runnable(path, description)
     kind = description.coSimulation
     return Fmu(
-        name=description.modelName, ports=ports, fmi=fmi, ours=ours, trusted=trusted,
+        name=description.modelName,
+        ports=ports,
+        fmi=fmi,
+        ours=ours,
+        trusted=trusted,
         single=kind.canBeInstantiatedOnlyOncePerProcess,
-        fixed_step=not kind.canHandleVariableCommunicationStepSize, needs_tool=kind.needsExecutionTool,
-        component=component, unsupported=unsupported_outputs(description),
+        fixed_step=not kind.canHandleVariableCommunicationStepSize,
+        needs_tool=kind.needsExecutionTool,
+        component=component,
+        unsupported=unsupported_outputs(description),
         given=Unpacked(
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
-    )  # fmt: skip
+    )
 
 
 def _first_line(error: Exception) -> str:

@@ -56,9 +56,11 @@ class ForeignSlave(Slave):
 
     def _open(self) -> Any:
         slave = FMU2Slave(
-            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            guid=self.fmu.guid,
+            unzipDirectory=str(self.fmu.directory),
+            modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
-        )  # fmt: skip
+        )
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = _logger
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
@@ -69,9 +71,14 @@ class ForeignSlave(Slave):
         self._callbacks = callbacks
         slave.callbacks = callbacks
         slave.component = slave.fmi2Instantiate(
-            self.name.encode(), fmi2CoSimulation, self.fmu.guid.encode(), _resources(self.fmu).encode(),
-            ctypes.byref(callbacks), fmi2False, fmi2False,
-        )  # fmt: skip
+            self.name.encode(),
+            fmi2CoSimulation,
+            self.fmu.guid.encode(),
+            _resources(self.fmu).encode(),
+            ctypes.byref(callbacks),
+            fmi2False,
+            fmi2False,
+        )
         if slave.component is None:
             raise LoomfmuError("no reason given")
         return slave

@@ -77,9 +77,13 @@ class Process:
             (self._folder / "path").write_text(json.dumps(list(places)))
             self._popen = subprocess.Popen(
                 [sys.executable, "-c", SCRIPT, str(theirs), str(answers)],
-                stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT, cwd=self._folder,
-                pass_fds=(theirs, answers), start_new_session=True,
-            )  # fmt: skip
+                stdin=subprocess.DEVNULL,
+                stdout=printed,
+                stderr=subprocess.STDOUT,
+                cwd=self._folder,
+                pass_fds=(theirs, answers),
+                start_new_session=True,
+            )
         except OSError as error:
             for pipe in pipes:
                 os.close(pipe)

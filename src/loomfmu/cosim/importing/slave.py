@@ -113,9 +113,11 @@ class Slave(Logged):
         # live FMUs say there why they fail, for hosts without FMI's logging: here it is in `messages`
         logging.getLogger("loomfmu.live").addHandler(_unheard)
         slave = FMU2Ours(
-            guid=self.fmu.guid, unzipDirectory=str(self.fmu.directory), modelIdentifier=self.fmu.identifier,
+            guid=self.fmu.guid,
+            unzipDirectory=str(self.fmu.directory),
+            modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
-        )  # fmt: skip
+        )
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
@@ -131,9 +133,14 @@ class Slave(Logged):
         slave.callbacks = self._callbacks
         resources = unquote((self.fmu.directory.absolute() / "resources").as_uri())
         slave.component = slave.fmi2Instantiate(
-            self.name.encode(), fmi2CoSimulation, self.fmu.guid.encode(), resources.encode(),
-            ctypes.byref(self._callbacks), fmi2False, fmi2True,
-        )  # fmt: skip
+            self.name.encode(),
+            fmi2CoSimulation,
+            self.fmu.guid.encode(),
+            resources.encode(),
+            ctypes.byref(self._callbacks),
+            fmi2False,
+            fmi2True,
+        )
         if slave.component is None:
             raise LoomfmuError("no reason given")
 

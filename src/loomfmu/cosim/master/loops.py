@@ -131,9 +131,14 @@ class Loop:
 
 
 def iteration(
-    actions: Mapping[str, Sequence[Action]], lagged: Sequence[Wire], slots: Sequence[int], memory: Memory,
-    time: ctypes.c_double, size: ctypes.c_double, compiled: bool | None = None,
-) -> Stepper:  # fmt: skip
+    actions: Mapping[str, Sequence[Action]],
+    lagged: Sequence[Wire],
+    slots: Sequence[int],
+    memory: Memory,
+    time: ctypes.c_double,
+    size: ctypes.c_double,
+    compiled: bool | None = None,
+) -> Stepper:
     """A stepper that repeats the part of each step that lies on a loop; in C where `stepper` would be.
 
     `actions` are those of the instances in their order, `slots` where the values on the `lagged` wires are.
@@ -172,12 +177,26 @@ class CompiledIteration(CompiledStepper):
         rollbacks = [found for slave in self._slaves if (found := slave.rollback())]
         self._rollbacks = (Rollback * len(self._slaves))(*rollbacks)
         self._struct = _Loop(
-            loop.first, loop.end, ctypes.addressof(self._rollbacks), len(self._rollbacks),
-            self._slots.ctypes.data, len(self._slots), MOST_EXCHANGES, FEW, STALLS, ORDERS,
-            TOLERANCE, SMALL, ROUNDING, FLAT,
-            self._solver.differences.ctypes.data, self._solver.largest.ctypes.data,
-            self._solver.inverse.ctypes.data, self._room.ctypes.data, self._integers.ctypes.data,
-        )  # fmt: skip
+            loop.first,
+            loop.end,
+            ctypes.addressof(self._rollbacks),
+            len(self._rollbacks),
+            self._slots.ctypes.data,
+            len(self._slots),
+            MOST_EXCHANGES,
+            FEW,
+            STALLS,
+            ORDERS,
+            TOLERANCE,
+            SMALL,
+            ROUNDING,
+            FLAT,
+            self._solver.differences.ctypes.data,
+            self._solver.largest.ctypes.data,
+            self._solver.inverse.ctypes.data,
+            self._room.ctypes.data,
+            self._integers.ctypes.data,
+        )
         super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
 
     def _stopped(

@@ -152,9 +152,15 @@ class Master:
         signals.begin()
         calls = self._prepared()
         start = Start(
-            self.slaves, calls.inputs, calls.outputs, self.scene.wires, self.lagged, self.slots,
-            signals.reals, signals.integers,
-        )  # fmt: skip
+            self.slaves,
+            calls.inputs,
+            calls.outputs,
+            self.scene.wires,
+            self.lagged,
+            self.slots,
+            signals.reals,
+            signals.integers,
+        )
         start.make()
         self._start_warnings = start.warnings
         self._growth = Growth(self.lagged, signals.real_slots(self.lagged))
@@ -188,9 +194,12 @@ class Master:
             for name, slave in self.slaves.items()
         }
         memory = Memory(
-            signals.reals, signals.integers, signals.driven_slots(real=True),
-            signals.driven_slots(real=False), self.interrupted,
-        )  # fmt: skip
+            signals.reals,
+            signals.integers,
+            signals.driven_slots(real=True),
+            signals.driven_slots(real=False),
+            self.interrupted,
+        )
         if self.lagged and self.scene.coupling == ITERATED:
             slots = signals.real_slots(self.lagged)
             return iteration(actions, self.lagged, slots, memory, self._time, self._size, self._compiled)

@@ -107,9 +107,14 @@ class Memory:
 
 
 def stopped(
-    actions: Sequence[Action], status: int | None, span: Span, step: int, memory: Memory, reals: Floats,
+    actions: Sequence[Action],
+    status: int | None,
+    span: Span,
+    step: int,
+    memory: Memory,
+    reals: Floats,
     integers: Integers,
-) -> Advanced:  # fmt: skip
+) -> Advanced:
     """What comes of a step one of whose calls had a status that is not OK; that call and those after it."""
     try:
         ended = take(actions, float(span.starts[step]), float(span.ends[step]), status)
@@ -188,9 +193,14 @@ class CompiledStepper:
     """Makes the same calls in C; `loop` is where `struct loop` of stepper.c is, if a part is repeated."""
 
     def __init__(
-        self, library: Path, actions: Sequence[Action], memory: Memory, time: ctypes.c_double,
-        size: ctypes.c_double, loop: int | None = None,
-    ):  # fmt: skip
+        self,
+        library: Path,
+        actions: Sequence[Action],
+        memory: Memory,
+        time: ctypes.c_double,
+        size: ctypes.c_double,
+        loop: int | None = None,
+    ):
         # Python's lock is kept, unless a third-party FMU may have threads that log
         ours = all(action.slave.fmu.trusted for action in actions)
         self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
@@ -209,13 +219,17 @@ class CompiledStepper:
             call.silent = ctypes.addressof(action.slave.silent_of(action.call.name))
         foreign = next((each.slave for each in actions if not each.slave.fmu.trusted), None)
         self._plan = _Plan(
-            ctypes.addressof(self._calls), len(actions),
-            memory.reals.ctypes.data, len(memory.reals),
-            memory.integers.ctypes.data, len(memory.integers),
+            ctypes.addressof(self._calls),
+            len(actions),
+            memory.reals.ctypes.data,
+            len(memory.reals),
+            memory.integers.ctypes.data,
+            len(memory.integers),
             *(part for slots in self._driven for part in (slots.ctypes.data, len(slots))),
-            ctypes.addressof(memory.interrupted), loop,
+            ctypes.addressof(memory.interrupted),
+            loop,
             ctypes.addressof(foreign.environment.content) if foreign else None,
-        )  # fmt: skip
+        )
         self._outcome = _Outcome()
 
     def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
@@ -263,9 +277,12 @@ def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path |
 
 
 def stepper(
-    actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double,
+    actions: Sequence[Action],
+    memory: Memory,
+    time: ctypes.c_double,
+    size: ctypes.c_double,
     compiled: bool | None = None,
-) -> Stepper:  # fmt: skip
+) -> Stepper:
     """The compiled stepper where it is available and fits the FMUs, unless `compiled` chooses one.
 
     Raises LoomfmuError where the compiled one is required and not available.

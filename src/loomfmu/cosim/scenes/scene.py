@@ -173,9 +173,13 @@ def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
 
 
 def assemble(
-    tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire], name: str, text: str,
+    tables: dict[str, Any],
+    instances: dict[str, Instance],
+    wires: list[Wire],
+    name: str,
+    text: str,
     directory: Path,
-) -> Scene:  # fmt: skip
+) -> Scene:
     """A scene of wired instances, with what else the tables of its text say."""
     times = times_of(tables)
     drives = drives_of(instances, wires, tables.get("inputs", {}))

@@ -138,9 +138,13 @@ def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
 def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
     """The values of an instance, those of an enumeration as the names of its items."""
     document = root(
-        "ssv:ParameterSet", "ssv", "ssc", version="1.0", name=SET_NAME,
+        "ssv:ParameterSet",
+        "ssv",
+        "ssc",
+        version="1.0",
+        name=SET_NAME,
         generationTool=f"loomfmu {__version__}",
-    )  # fmt: skip
+    )
     listed = SubElement(document, "ssv:Parameters")
     units: dict[str, Definition] = {}
     for name, value in values.items():
@@ -164,15 +168,20 @@ def _parameter_set(instance: Instance, values: dict[str, Value]) -> Element:
 def _structure(scene: Scene, sources: dict[str, str], files: Files) -> Element:
     prefixes = ("ssd", "ssc", "osp", "oms", "loomfmu")
     document = root(
-        "ssd:SystemStructureDescription", *prefixes, version="1.0", name=scene.name,
-        description=heading(scene), generationTool=f"loomfmu {__version__}",
-    )  # fmt: skip
+        "ssd:SystemStructureDescription",
+        *prefixes,
+        version="1.0",
+        name=scene.name,
+        description=heading(scene),
+        generationTool=f"loomfmu {__version__}",
+    )
     system = SubElement(document, "ssd:System", name=scene.name, description=heading(scene))
     ports = _connectors(scene)
     boxes = layout(
-        list(scene.instances), scene.wires,
+        list(scene.instances),
+        scene.wires,
         {name: ([p.name for p in ins], [p.name for p in outs]) for name, (ins, outs) in ports.items()},
-    )  # fmt: skip
+    )
     elements = SubElement(system, "ssd:Elements")
     for name in scene.instances:
         bound = f"resources/{name}.ssv" if f"resources/{name}.ssv" in files else None
@@ -205,9 +214,13 @@ def _connectors(scene: Scene) -> dict[str, tuple[list[Port], list[Port]]]:
 
 
 def _component(
-    elements: Element, name: str, source: str, ports: tuple[list[Port], list[Port]], box: Box,
+    elements: Element,
+    name: str,
+    source: str,
+    ports: tuple[list[Port], list[Port]],
+    box: Box,
     bound: str | None,
-) -> None:  # fmt: skip
+) -> None:
     component = SubElement(
         elements, "ssd:Component", name=name, type=FMU, source=source, implementation="CoSimulation"
     )
@@ -223,9 +236,13 @@ def _component(
                 SubElement(connector, f"ssc:{port.kind}", {"unit": port.unit} if stated else {})
                 SubElement(connector, "ssd:ConnectorGeometry", x=x, y=repr(round(heights[port.name], 6)))
     SubElement(
-        component, "ssd:ElementGeometry", x1=repr(box.left), y1=repr(box.bottom), x2=repr(box.right),
+        component,
+        "ssd:ElementGeometry",
+        x1=repr(box.left),
+        y1=repr(box.bottom),
+        x2=repr(box.right),
         y2=repr(box.top),
-    )  # fmt: skip
+    )
     if bound is not None:
         bindings = SubElement(component, "ssd:ParameterBindings")
         SubElement(bindings, "ssd:ParameterBinding", type=PARAMETER_SET, source=bound)
@@ -238,15 +255,20 @@ def _connections(system: Element, scene: Scene, boxes: dict[str, Box]) -> None:
     for wire in scene.wires:
         (source, output), (sink, entry) = wire.source, wire.sink
         connection = SubElement(
-            listed, "ssd:Connection", startElement=source,
-            startConnector=scene.instances[source].fmu.ports[output].own, endElement=sink,
+            listed,
+            "ssd:Connection",
+            startElement=source,
+            startConnector=scene.instances[source].fmu.ports[output].own,
+            endElement=sink,
             endConnector=scene.instances[sink].fmu.ports[entry].own,
-        )  # fmt: skip
+        )
         points = bends(wire, boxes)
         SubElement(
-            connection, "ssd:ConnectionGeometry", pointsX=" ".join(map(repr, points[0])),
+            connection,
+            "ssd:ConnectionGeometry",
+            pointsX=" ".join(map(repr, points[0])),
             pointsY=" ".join(map(repr, points[1])),
-        )  # fmt: skip
+        )
 
 
 def _master(system: Element, scene: Scene) -> None:
@@ -254,9 +276,12 @@ def _master(system: Element, scene: Scene) -> None:
     (annotation,) = _annotations(system, OMS)
     information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
     SubElement(
-        information, "oms:FixedStepMaster", description="oms-ma", stepSize=_plain(scene.step_size),
+        information,
+        "oms:FixedStepMaster",
+        description="oms-ma",
+        stepSize=_plain(scene.step_size),
         relativeTolerance=repr(DEFAULT_TOLERANCE),
-    )  # fmt: skip
+    )
 
 
 def _experiment(document: Element, scene: Scene) -> None:
@@ -268,9 +293,7 @@ def _experiment(document: Element, scene: Scene) -> None:
     algorithm = SubElement(step, "osp:Algorithm")
     SubElement(algorithm, "osp:FixedStepAlgorithm", baseStepSize=repr(_whole_nanoseconds(scene.step_size)))
     if scene.step is None:
-        times = {
-            "revolutions": repr(scene.periods), "steps_per_revolution": repr(scene.steps_per_period)
-        }  # fmt: skip
+        times = {"revolutions": repr(scene.periods), "steps_per_revolution": repr(scene.steps_per_period)}
     else:
         times = {"duration": repr(scene.periods), "step": repr(scene.step)}
     SubElement(ours, "loomfmu:Scene", times).text = scene.text

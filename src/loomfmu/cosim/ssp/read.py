@@ -94,9 +94,12 @@ class _Reader:
         path = self.package.path
         made = assemble(tables, instances, wires, path.stem, written or "", path.parent)
         made = replace(
-            made, package=path, package_sha256=self.package.sha256, notes=(*self.notes, *made.notes),
+            made,
+            package=path,
+            package_sha256=self.package.sha256,
+            notes=(*self.notes, *made.notes),
             overrides=dict(overrides),
-        )  # fmt: skip
+        )
         check_free(made, changed)
         return replace(made, notes=(*made.notes, *without_effect(instances, changed)))
 

@@ -104,9 +104,12 @@ class _Parser:
         return "".join(parts)
 
     def ends(self, closing: str) -> bool:
-        return not self.token or self.token in (closing, ")", "]") or self.token in "+-=,;:<>/" or (
-            self.token in OPERATORS
-        )  # fmt: skip
+        return (
+            not self.token
+            or self.token in (closing, ")", "]")
+            or self.token in "+-=,;:<>/"
+            or (self.token in OPERATORS)
+        )
 
     def product(self, closing: str) -> str:
         """Factors side by side, divided where a slash follows."""

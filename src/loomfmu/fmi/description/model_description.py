@@ -68,9 +68,13 @@ def log_and_experiment(root: Element, component: type[Component]) -> None:
         SubElement(categories, "Category", name=category, description=description)
     end, step_size = component.experiment
     SubElement(
-        root, "DefaultExperiment", startTime="0", stopTime=repr(end), tolerance=repr(DEFAULT_TOLERANCE),
+        root,
+        "DefaultExperiment",
+        startTime="0",
+        stopTime=repr(end),
+        tolerance=repr(DEFAULT_TOLERANCE),
         stepSize=repr(step_size),
-    )  # fmt: skip
+    )
 
 
 def about(component: type[Component], version: str) -> dict[str, str]:

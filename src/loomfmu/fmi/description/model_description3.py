@@ -38,9 +38,15 @@ def model_description3(component: type[Component], token: str, version: str) -> 
     for reference, variable in enumerate(variables, start=FIRST_REFERENCE):
         _variable(listed, reference, variable, name)
     SubElement(
-        listed, "Float64", name="time", valueReference=str(_time_reference(variables)),
-        causality="independent", variability="continuous", unit="s", description="Simulation time",
-    )  # fmt: skip
+        listed,
+        "Float64",
+        name="time",
+        valueReference=str(_time_reference(variables)),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+        description="Simulation time",
+    )
     _structure(root, variables)
     return text_of(root)
 
@@ -80,9 +86,11 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
         timed = () if variable.depends == () else (TIME,)
         found = sorted({references[name] for name in (*needed, *parameters, *timed)})
         SubElement(
-            structure, "Output", valueReference=str(references[variable.name]),
+            structure,
+            "Output",
+            valueReference=str(references[variable.name]),
             dependencies=" ".join(map(str, found)),
-        )  # fmt: skip
+        )
     for variable in outputs:
         SubElement(structure, "InitialUnknown", valueReference=str(references[variable.name]))
     for variable in variables:

@@ -55,9 +55,12 @@ def parameter_note(component: type[Component]) -> str:
 def _text(component: type[Component], given: ParameterSet, version: str) -> bytes:
     variables = {variable.name: variable for variable in variables_of(component)}
     root = Element(
-        "ssv:ParameterSet", {"xmlns:ssv": SSV, "xmlns:ssc": SSC}, version="1.0", name=given.name,
+        "ssv:ParameterSet",
+        {"xmlns:ssv": SSV, "xmlns:ssc": SSC},
+        version="1.0",
+        name=given.name,
         generationTool=f"loomfmu {version}",
-    )  # fmt: skip
+    )
     listed = SubElement(root, "ssv:Parameters")
     used = set()
     for variable, value in given.values.items():

@@ -21,12 +21,19 @@ def terminal_files(component: type[Component]) -> dict[str, bytes]:
     listed = SubElement(root, "Terminals")
     for terminal in component.terminals:
         element = SubElement(
-            listed, "Terminal", name=terminal.name, matchingRule="plug",
-            terminalKind=f"{KIND}.{terminal.kind}", description=terminal.description,
-        )  # fmt: skip
+            listed,
+            "Terminal",
+            name=terminal.name,
+            matchingRule="plug",
+            terminalKind=f"{KIND}.{terminal.kind}",
+            description=terminal.description,
+        )
         for member, variable in zip(terminal.members, terminal.variables, strict=True):
             SubElement(
-                element, "TerminalMemberVariable", variableName=names[variable], memberName=member,
+                element,
+                "TerminalMemberVariable",
+                variableName=names[variable],
+                memberName=member,
                 variableKind="signal",
-            )  # fmt: skip
+            )
     return {FILE: text_of(root)}

@@ -32,21 +32,40 @@ SHELL = Path(__file__).with_name("shell")
 
 OPTIONS = " ".join(ARITHMETIC)
 COMMON_FILES = (
-    "tables.h", "python_arithmetic.h", "grid.h", "instance.h", "messages.c", "instance.c", "values.c",
-    "states.c", "solver.c",
-)  # fmt: skip
+    "tables.h",
+    "python_arithmetic.h",
+    "grid.h",
+    "instance.h",
+    "messages.c",
+    "instance.c",
+    "values.c",
+    "states.c",
+    "solver.c",
+)
 PAGE = 0  # not a version of FMI: the shell of a page in a browser
 SHELL_FILES = {
     PAGE: ("page.c",),
     2: (
-        "carry.c", "fmi2.c", "fmi2_solver.c", "fmi2_values.c", "fmi2_steps.c",
-        "fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h",
+        "carry.c",
+        "fmi2.c",
+        "fmi2_solver.c",
+        "fmi2_values.c",
+        "fmi2_steps.c",
+        "fmi2TypesPlatform.h",
+        "fmi2FunctionTypes.h",
+        "fmi2Functions.h",
     ),
     3: (
-        "fmi3.c", "fmi3_solver.c", "fmi3_values.c", "fmi3_steps.c", "fmi3_absent.c",
-        "fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h",
+        "fmi3.c",
+        "fmi3_solver.c",
+        "fmi3_values.c",
+        "fmi3_steps.c",
+        "fmi3_absent.c",
+        "fmi3PlatformTypes.h",
+        "fmi3FunctionTypes.h",
+        "fmi3Functions.h",
     ),
-}  # fmt: skip
+}
 ICONS = {2: "model.png", 3: "terminalsAndIcons/icon.png"}
 COMMAND = f"cc -shared -fPIC -std=c99 {OPTIONS} -o {{name}}.so fmi{{fmi}}.c -lm"
 
@@ -105,9 +124,14 @@ def contents(component: type[Component], platforms: tuple[str, ...], fmi: int) -
 
 
 def assembled(
-    component: type[Component], token: str, documents: dict[str, bytes], code: dict[str, str],
-    platforms: tuple[str, ...], fmi: int, capabilities: dict[str, str] | None = None,
-) -> dict[str, bytes]:  # fmt: skip
+    component: type[Component],
+    token: str,
+    documents: dict[str, bytes],
+    code: dict[str, str],
+    platforms: tuple[str, ...],
+    fmi: int,
+    capabilities: dict[str, str] | None = None,
+) -> dict[str, bytes]:
     """A native FMU's files from what describes it and its C text, which is compiled."""
     name = component.__name__
     files = {

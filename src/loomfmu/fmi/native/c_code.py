@@ -148,12 +148,46 @@ def of_self(node: ast.AST) -> str:
 
 KEYWORDS = frozenset(
     (
-        "auto", "bool", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-        "enum", "extern", "false", "float", "for", "goto", "if", "inline", "int", "long", "main", "register",
-        "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "true", "typedef",
-        "union", "unsigned", "void", "volatile", "while",
+        "auto",
+        "bool",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "false",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "main",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "true",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
     )
-)  # fmt: skip
+)
 
 
 def c_name(name: str) -> str:

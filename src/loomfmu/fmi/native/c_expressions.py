@@ -62,13 +62,34 @@ COMPARISONS: dict[type[ast.cmpop], tuple[str, int]] = {
 REAL_FUNCTIONS = {
     **dict.fromkeys(
         (
-            "acos", "acosh", "asin", "asinh", "atan", "atanh", "cbrt", "cos", "cosh", "erf", "erfc", "exp",
-            "expm1", "fabs", "log", "log10", "log1p", "log2", "sin", "sinh", "sqrt", "tan", "tanh",
+            "acos",
+            "acosh",
+            "asin",
+            "asinh",
+            "atan",
+            "atanh",
+            "cbrt",
+            "cos",
+            "cosh",
+            "erf",
+            "erfc",
+            "exp",
+            "expm1",
+            "fabs",
+            "log",
+            "log10",
+            "log1p",
+            "log2",
+            "sin",
+            "sinh",
+            "sqrt",
+            "tan",
+            "tanh",
         ),
         1,
     ),
     **dict.fromkeys(("atan2", "copysign", "fmod", "pow"), 2),
-}  # fmt: skip
+}
 WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
 

@@ -27,9 +27,7 @@ MINGW = "mingw-w64.txt"  # the licence of what the compiler links into a DLL bes
 _turns = BoundedSemaphore((os.cpu_count() or 1) + 2)
 
 
-def binaries(
-    name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]
-) -> dict[str, bytes]:  # fmt: skip
+def binaries(name: str, fmi: int, code: dict[str, str], platforms: tuple[str, ...]) -> dict[str, bytes]:
     """The shared libraries by their places; in FMI 2 that of darwin64 holds both of its processors.
 
     Those that the package brings are taken if they were made of this very code.

@@ -86,9 +86,7 @@ class Part:
     problems: int
 
 
-def tables(
-    component: type[Component], token: str, parts: Sequence[Part] = (), inner_step: str = ""
-) -> str:  # fmt: skip
+def tables(component: type[Component], token: str, parts: Sequence[Part] = (), inner_step: str = "") -> str:
     """The text of model.h; `token` is the identity that a host must show.
 
     `parts` are those of a system of components, one component is a part by itself; `inner_step` is the

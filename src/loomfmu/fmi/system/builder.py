@@ -88,8 +88,11 @@ def _readme(system: System, component: type[Component], fmi: int) -> str:
         f"- `{sink}` follows a table of {len(drive.points)} points" for sink, drive in system.drives.items()
     )
     readme = README.format(
-        title=system.title, description=system.description, parts=parts,
-        wires="\n".join(filter(None, (wires, driven))), grid=f"`{STEP if system.step else STEPS}`",
+        title=system.title,
+        description=system.description,
+        parts=parts,
+        wires="\n".join(filter(None, (wires, driven))),
+        grid=f"`{STEP if system.step else STEPS}`",
         command=native.COMMAND.format(name=system.name, fmi=fmi),
-    )  # fmt: skip
+    )
     return documentation.with_table(readme, component) + documentation.names_note(component)

@@ -76,14 +76,29 @@ def _grid(system: System) -> Variable:
     """The parameter that sets the grid."""
     if system.step:
         return Variable(
-            STEP, float, "parameter", "fixed", "s", "s", system.step,
-            "Step of the components, whatever the communication step", minimum=1e-12, maximum=1e9,
-        )  # fmt: skip
+            STEP,
+            float,
+            "parameter",
+            "fixed",
+            "s",
+            "s",
+            system.step,
+            "Step of the components, whatever the communication step",
+            minimum=1e-12,
+            maximum=1e9,
+        )
     return Variable(
-        STEPS, int, "parameter", "fixed", "1", "1", system.steps,
+        STEPS,
+        int,
+        "parameter",
+        "fixed",
+        "1",
+        "1",
+        system.steps,
         f"Steps of the components in a revolution at {SPEED}, whatever the communication step",
-        minimum=1, maximum=1_000_000_000,
-    )  # fmt: skip
+        minimum=1,
+        maximum=1_000_000_000,
+    )
 
 
 def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
@@ -99,13 +114,22 @@ def _variables(system: System, part: Part, reach: Reach) -> list[Variable]:
         if causality == "output" or name in system.wires or name in system.drives:
             causality = "output" if name in system.outputs else "local"
         own = replace(
-            each, name=name, element=f"{part.name}.{each.member}", causality=causality,
-            start=each.type(part.values.get(each.name, each.start)), rate=dotted(each.rate),
-            depends=(reach(name) or _of_time(each)) if causality == "output" else None, indicator=False,
+            each,
+            name=name,
+            element=f"{part.name}.{each.member}",
+            causality=causality,
+            start=each.type(part.values.get(each.name, each.start)),
+            rate=dotted(each.rate),
+            depends=(reach(name) or _of_time(each)) if causality == "output" else None,
+            indicator=False,
             source=None,
-            lowest_of=dotted(each.lowest_of), highest_of=dotted(each.highest_of), when=dotted(each.when),
-            unless=dotted(each.unless), valid_if=dotted(each.valid_if), error=dotted(each.error),
-        )  # fmt: skip
+            lowest_of=dotted(each.lowest_of),
+            highest_of=dotted(each.highest_of),
+            when=dotted(each.when),
+            unless=dotted(each.unless),
+            valid_if=dotted(each.valid_if),
+            error=dotted(each.error),
+        )
         found.append(own)
     return found
 

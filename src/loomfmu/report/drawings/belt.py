@@ -110,8 +110,12 @@ def tracked(tracks: Tracks, name: str) -> Belt:
         tracks.add(f"{name}.tip", ["-", tail, -head], finer=finer),
         tracks.mm(bent, finer),
         tracks.add(f"{name}.travelled", ["-", mm(free), -idle - head]),
-        slope, pressed, idle, head, moving,
-    )  # fmt: skip
+        slope,
+        pressed,
+        idle,
+        head,
+        moving,
+    )
 
 
 def _steepest(tracks: Tracks, slope: str) -> float:
@@ -131,12 +135,13 @@ def width(tracks: Tracks, belt: Belt) -> Figure:
     sketch.label(reach, 90.0, "innermost", "end", (0.0, -5.0))
     sketch.label(-0.5 * (belt.idle + belt.head), 28.0, "guide", shift=(0.0, -8.0))
     return sketch.figure(
-        f"width-{belt.name}", title("Across the loom", belt.name, "belt"),
+        f"width-{belt.name}",
+        title("Across the loom", belt.name, "belt"),
         f"The rapier head on its way from the guide across the loom's width, up to {reach:.0f} mm into the"
         " shed.",
         [Value("head into the shed", belt.tip, "mm"), Value("travel", belt.travel, "mm")],
         "The axis counts mm from the end of the guide. Heights of head and guide are schematic.",
-    )  # fmt: skip
+    )
 
 
 def reached(tracks: Tracks, belt: Belt) -> float:
@@ -208,11 +213,12 @@ def between(tracks: Tracks, belt: Belt) -> Figure:
     does = f", which {'buckles' if belt.slope else 'stays straight'} in this run."
     does = "." if live or belt.moving else does
     return sketch.figure(
-        f"belt-{belt.name}", title("Belt between guide and head", belt.name, "belt"),
+        f"belt-{belt.name}",
+        title("Belt between guide and head", belt.name, "belt"),
         f"The free section of the belt between its guide and the rapier head{does}",
         [Value("free length", belt.outside, "mm"), Value("deflection", belt.deflection, "mm")],
         f"{shape} The deflection is not exaggerated. Red: outside the guide and compressed.",
-    )  # fmt: skip
+    )
 
 
 def _belt(sketch: Sketch, belt: Belt, start: float, half: float) -> None:

@@ -72,14 +72,15 @@ def drive(tracks: Tracks, name: str) -> Figure | None:
     _sector(sketch, weft, name, hub)
     _linkages(sketch, weft, link, four_bar, hub)
     return sketch.figure(
-        f"drive-{name}", title("Rapier drive", name, "weft"),
+        f"drive-{name}",
+        title("Rapier drive", name, "weft"),
         "Rapier drive: the shaft's crank moves a spherical rocker,"
         + (" a four-bar C, D, K, G," if joints else "")
         + " a sector gear and the rapier wheel, on which the belt is wound.",
         [Value("travel", tracks.mm(f"{name}.travel"), "mm")],
         "Linkage and wheel are to scale; radius of the spherical linkage, gears and place of the wheel are"
         " schematic.",
-    )  # fmt: skip
+    )
 
 
 def _cycles(tracks: Tracks, name: str, places: list[list[Place]]) -> list[Point]:

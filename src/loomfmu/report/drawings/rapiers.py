@@ -53,7 +53,8 @@ def _both(tracks: Tracks, name: str, giver: Belt, taker: Belt) -> list[Figure]:
     )
     return [
         sketch.figure(
-            f"rapiers-{name}", title("Both rapiers across the loom", name, "transfer"),
+            f"rapiers-{name}",
+            title("Both rapiers across the loom", name, "transfer"),
             "Both rapier heads on their ways from their guides to the middle of the loom, where the giver,"
             " on the left, hands the weft over to the taker.",
             [
@@ -63,13 +64,14 @@ def _both(tracks: Tracks, name: str, giver: Belt, taker: Belt) -> list[Figure]:
             f"The axis counts mm from the end of the giver's guide. Heights are schematic.{unbent}",
         ),
         near.figure(
-            f"transfer-{name}", title("The heads in mid-shed", name, "transfer"),
+            f"transfer-{name}",
+            title("The heads in mid-shed", name, "transfer"),
             "The heads of giver and taker about the middle of the loom, where they pass each other.",
             [Value("overlap", tracks.mm(f"{name}.overlap"), "mm"), Value("closing velocity", closing, "m/s")],
             "Dashed lines: the farthest reach of each head. Heights are schematic; the heads are drawn side"
             f" by side.{unbent}",
         ),
-    ]  # fmt: skip
+    ]
 
 
 def _unbent(tracks: Tracks, belt: Belt) -> str:

@@ -67,11 +67,12 @@ def beat_up(tracks: Tracks, name: str) -> Figure | None:
     sketch.joint(pin, end, arm, tip)
     sketch.tracks.add(f"{name}.back", ["-", front, mm(f"{name}.position")])
     return sketch.figure(
-        f"reed-{name}", title("Reed beat-up", name, "reed"),
+        f"reed-{name}",
+        title("Reed beat-up", name, "reed"),
         "The reed's six-bar: crank, coupler, rocker with its arm, rod, and the reed on its line.",
         [Value("reed behind its front limit", f"{name}.back", "mm")],
         "The linkage is to scale; the height of the reed is schematic.",
-    )  # fmt: skip
+    )
 
 
 def _cycle(tracks: Tracks, name: str, places: NDArray[np.float64]) -> Point:

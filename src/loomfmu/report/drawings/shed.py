@@ -36,7 +36,8 @@ def frames(tracks: Tracks) -> Figure | None:
     carriers = any(dampers.values())
     unknown = known and not trace.wires  # in traces of older versions
     return sketch.figure(
-        "frames", "Heald frames" + " with their carriers" * carriers,
+        "frames",
+        "Heald frames" + " with their carriers" * carriers,
         f"{len(names)} heald frames at their lifts"
         + (", each with its carrier between two stops." if carriers else "."),
         note=(
@@ -46,7 +47,7 @@ def frames(tracks: Tracks) -> Figure | None:
             else "Lifts are to scale; the frames are schematic."
             + " The trace does not say which carrier is in which frame: none is drawn." * bool(unknown)
         ),
-    )  # fmt: skip
+    )
 
 
 def _room(tracks: Tracks, damper: str) -> float:
@@ -106,12 +107,14 @@ def shed(tracks: Tracks, tip: str) -> Figure | None:
     tracks.add("opening", ["min", *openings])
     assumed = "" if published else " Distances along the warp are assumed: they are not in the trace."
     return sketch.figure(
-        "shed", "The shed from its side",
+        "shed",
+        "The shed from its side",
         f"The warp sheets of {len(names)} heald frames between the fell of the cloth and the healds"
-        + (", with the reed" if reeds else "") + (", and the rapier head in the shed." if tip else "."),
+        + (", with the reed" if reeds else "")
+        + (", and the rapier head in the shed." if tip else "."),
         [Value("opening at the rapier", "opening", "mm")],
         f"The sheets follow the lifts of the frames, which are drawn behind one another.{note}{assumed}",
-    )  # fmt: skip
+    )
 
 
 def _lengths(tracks: Tracks) -> tuple[float, float, bool]:

@@ -146,13 +146,16 @@ class Tracks:
     def rules(self) -> dict[str, Any]:
         """What a page needs that runs the scene itself: the rules, and one revolution of what has none."""
         return {
-            "first": 0.0, "span": self.span, "fixed": sorted(self.fixed),
+            "first": 0.0,
+            "span": self.span,
+            "fixed": sorted(self.fixed),
             "tracks": {
-                name: {"rule": track.rule} if track.rule is not None
+                name: {"rule": track.rule}
+                if track.rule is not None
                 else {"step": track.step, "frames": [np.diff(track.frames[0], prepend=0)], "shown": [0]}
                 for name, track in self.made.items()
             },
-        }  # fmt: skip
+        }
 
     def data(self) -> dict[str, Any]:
         """All frames for the page, each as differences; `shown` has the frame of each window.

@@ -35,8 +35,9 @@ def yarn(tracks: Tracks, name: str) -> Figure:
     sketch.label(BRAKE, 2.5 * unit, "brake", shift=(0.0, -6.0))
     sketch.label(eye, -2.5 * unit, "eyes", shift=(0.0, 14.0))
     return sketch.figure(
-        f"yarn-{name}", title("Weft from package to head", name, "yarn"),
+        f"yarn-{name}",
+        title("Weft from package to head", name, "yarn"),
         "The weft, drawn over its brake and eyes by the head that carries it: the giver, then the taker.",
         [Value("tension", tension, "cN"), Value("length from the brake", length, "mm")],
         "Lengths along the yarn are to scale, and both heads move to the right. Red: the weft hangs slack.",
-    )  # fmt: skip
+    )

@@ -21,16 +21,30 @@ ROWS = 11  # values of the second variable
 
 @overload
 def limit(
-    scene: str | Path | Scene, *, vary: str, from_: Any = None, to: Any = None,
-    set: dict[str, Any] | None = None, points: int = POINTS, rows: None = None, progress: bool = False,
-) -> Limits: ...  # fmt: skip
+    scene: str | Path | Scene,
+    *,
+    vary: str,
+    from_: Any = None,
+    to: Any = None,
+    set: dict[str, Any] | None = None,
+    points: int = POINTS,
+    rows: None = None,
+    progress: bool = False,
+) -> Limits: ...
 
 
 @overload
 def limit(
-    scene: str | Path | Scene, *, vary: Sequence[str], from_: Any = None, to: Any = None,
-    set: dict[str, Any] | None = None, points: int = POINTS, rows: int | None = None, progress: bool = False,
-) -> Limits | Boundary: ...  # fmt: skip
+    scene: str | Path | Scene,
+    *,
+    vary: Sequence[str],
+    from_: Any = None,
+    to: Any = None,
+    set: dict[str, Any] | None = None,
+    points: int = POINTS,
+    rows: int | None = None,
+    progress: bool = False,
+) -> Limits | Boundary: ...
 
 
 def limit(

@@ -21,9 +21,14 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
         _check(output, inputs, options.force)  # before the runs, not after them
     counts = {name: getattr(options, name) for name in ("points", "rows")}
     found = limit(
-        options.scene, vary=options.vary, from_=options.from_, to=options.to, set=overrides, progress=True,
+        options.scene,
+        vary=options.vary,
+        from_=options.from_,
+        to=options.to,
+        set=overrides,
+        progress=True,
         **{name: count for name, count in counts.items() if count is not None},
-    )  # fmt: skip
+    )
     if output is not None:  # before anything is printed
         _write(found, output, inputs, options.force)
     warn(found.warnings)

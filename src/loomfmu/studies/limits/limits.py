@@ -24,9 +24,12 @@ SAME = 1e-9  # of bound or value: a claim whose distance changes less does not d
 
 
 def limits_of(
-    loom: Prepared, span: Span, points: int, fixed: dict[str, Any] | None = None,
+    loom: Prepared,
+    span: Span,
+    points: int,
+    fixed: dict[str, Any] | None = None,
     advance: Callable[[int], None] = lambda _runs: None,
-) -> Limits:  # fmt: skip
+) -> Limits:
     """Find the limits of a prepared scene; `fixed` are values that stay, `advance` counts points."""
     if not loom.scene.claims:
         raise LoomfmuError(f"{loom.scene.name}: the scene has no claims, so there is no limit to find")
@@ -134,12 +137,14 @@ def _common(claims: Sequence[ClaimLimits], span: Span) -> tuple[Stretch, ...]:
         both = ((one, two) for one in common for two in each.ranges)
         common = [
             Stretch(
-                max(one.low, two.low), min(one.high, two.high),
+                max(one.low, two.low),
+                min(one.high, two.high),
                 each.claim if two.low > one.low else one.below,
                 each.claim if two.high < one.high else one.above,
             )
-            for one, two in both if max(one.low, two.low) < min(one.high, two.high)
-        ]  # fmt: skip
+            for one, two in both
+            if max(one.low, two.low) < min(one.high, two.high)
+        ]
     return tuple(common)
 
 

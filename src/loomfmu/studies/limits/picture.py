@@ -73,9 +73,12 @@ def _boundary(axes: Any, found: Boundary) -> None:
         alone = all(len(limits.claims[number].limits) <= 1 for limits in found.rows)
         if places:
             axes.plot(
-                *zip(*places, strict=True), "-o" if alone else "o", markersize=4,
-                color=COLOURS[number % len(COLOURS)], label=f"limit: {each.claim}",
-            )  # fmt: skip
+                *zip(*places, strict=True),
+                "-o" if alone else "o",
+                markersize=4,
+                color=COLOURS[number % len(COLOURS)],
+                label=f"limit: {each.claim}",
+            )
     for place, limits in zip(at.tolist(), found.rows, strict=True):
         for stretch in limits.ranges:
             axes.vlines(

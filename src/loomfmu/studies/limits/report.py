@@ -14,7 +14,7 @@ from .results import (
     boundary_rows,
     conclusion,
     rows,
-)  # fmt: skip
+)
 
 CSV_LIMITS = ("claim", "begins", "value", "low", "high", "unit", "jumps")
 

@@ -161,10 +161,13 @@ def _limits(each: ClaimLimits, span: Span) -> str:
     """The limits of a claim."""
     if not each.depends:
         return f"{SAME_EVERYWHERE} {span.key}"
-    return ", ".join(
-        f"jumps at {span.number(limit.value)}" if limit.jumps else span.number(limit.value)
-        for limit in each.limits
-    ) or "-"  # fmt: skip
+    return (
+        ", ".join(
+            f"jumps at {span.number(limit.value)}" if limit.jumps else span.number(limit.value)
+            for limit in each.limits
+        )
+        or "-"
+    )
 
 
 def conclusion(found: Limits) -> Iterator[str]:

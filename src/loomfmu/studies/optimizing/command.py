@@ -10,9 +10,13 @@ from .report import show
 def run(options: Any) -> int:
     """Search, print what was found, and return the exit status."""
     found = optimize(
-        options.study, processes=options.processes, output=options.output, scheduler=options.scheduler,
-        restart=options.restart, progress=True,
-    )  # fmt: skip
+        options.study,
+        processes=options.processes,
+        output=options.output,
+        scheduler=options.scheduler,
+        restart=options.restart,
+        progress=True,
+    )
     warn(found.warnings)
     show(found)
     return 0 if found else 1

@@ -80,10 +80,18 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
     picture = installed("plot")
     warnings = study.notes if picture else (*study.notes, f"no picture: {install('plot')}")
     found = Optimum(
-        study, tuple(front), len(designs), runs.ran, sum(each.allowed for each in designs),
-        sum(bool(each.error) for each in designs), _nowhere(designs, names, own), _constant(study, designs),
-        files.directory, files.picture if picture else None, warnings,
-    )  # fmt: skip
+        study,
+        tuple(front),
+        len(designs),
+        runs.ran,
+        sum(each.allowed for each in designs),
+        sum(bool(each.error) for each in designs),
+        _nowhere(designs, names, own),
+        _constant(study, designs),
+        files.directory,
+        files.picture if picture else None,
+        warnings,
+    )
     if len(study.goals) > 1:
         headings, rows = front_table(found)
         _write(files.front, [headings, *rows])

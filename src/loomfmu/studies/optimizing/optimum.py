@@ -176,22 +176,28 @@ def value_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     ]
     return goals + [
         (
-            each.key, each.varied.show(best.values[each.key]), each.text,
+            each.key,
+            each.varied.show(best.values[each.key]),
+            each.text,
             _note(found, best, each.key),
         )
         for each in found.study.variables
-    ]  # fmt: skip
+    ]
 
 
 def claim_rows(found: Optimum, best: Best) -> list[tuple[str, ...]]:
     """A row for each claim, below `CLAIMS`."""
     return [
         (
-            each.word, each.claim, each.shown(each.worst), each.shown(each.bound), each.shown_distance,
+            each.word,
+            each.claim,
+            each.shown(each.worst),
+            each.shown(each.bound),
+            each.shown_distance,
             _note(found, best, number),
         )
         for number, each in enumerate(best.verdicts)
-    ]  # fmt: skip
+    ]
 
 
 def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -211,7 +217,7 @@ def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
             ", ".join(best.binding) or "-",
         )
         for best in found.front
-    ]  # fmt: skip
+    ]
     return headings, rows
 
 

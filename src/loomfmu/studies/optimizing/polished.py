@@ -111,8 +111,9 @@ def _step_to(
     size = len(centre.x)
     bounds = [
         *((max(-reach, -each), min(reach, 1.0 - each)) for each in centre.x.tolist()),
-        (None, None), (0.0, None),
-    ]  # fmt: skip
+        (None, None),
+        (0.0, None),
+    ]
     least = _solved(np.array([*np.zeros(size + 1), 1.0]), matrix, limits, bounds)
     if least is None:
         return centre.x, centre.height(penalty), penalty

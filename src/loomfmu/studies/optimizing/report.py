@@ -19,10 +19,13 @@ def show(found: Optimum) -> None:
         )
         rows = claim_rows(found, best)
         printed.show(
-            CLAIMS, rows,
-            [(f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
-             for word, claim, worst, bound, distance, note in rows],
-        )  # fmt: skip
+            CLAIMS,
+            rows,
+            [
+                (f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
+                for word, claim, worst, bound, distance, note in rows
+            ],
+        )
     elif found.front:
         headings, rows = front_table(found)
         entries = [

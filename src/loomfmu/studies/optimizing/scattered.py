@@ -52,8 +52,15 @@ def scattered(runs: Runs, height: Height, start: Sequence[Point], budget: int, s
 
     variables = runs.study.variables
     differential_evolution(
-        goal, [(0.0, each.last) for each in variables], init=np.array(start), rng=seed, polish=False,
-        constraints=NonlinearConstraint(shortfall, -np.inf, 0.0), vectorized=True, updating="deferred",
-        integrality=[each.range is None for each in variables], tol=TIGHT,
+        goal,
+        [(0.0, each.last) for each in variables],
+        init=np.array(start),
+        rng=seed,
+        polish=False,
+        constraints=NonlinearConstraint(shortfall, -np.inf, 0.0),
+        vectorized=True,
+        updating="deferred",
+        integrality=[each.range is None for each in variables],
+        tol=TIGHT,
         maxiter=max(1, budget // len(start) - 1),
-    )  # fmt: skip
+    )

@@ -192,9 +192,17 @@ def _parse(text: str, path: Path) -> Study:
     shares, amounts = safety_of(head.scene, tables.get("safety", 0.0), required)
     signals = tuple(goal.name for goal in goals if goal.kind == "signal")
     return Study(
-        path.stem, text, head, tuple(found), tuple(goals), signals, required, shares, amounts,
+        path.stem,
+        text,
+        head,
+        tuple(found),
+        tuple(goals),
+        signals,
+        required,
+        shares,
+        amounts,
         _search(tables.get("search", {})),
-    )  # fmt: skip
+    )
 
 
 def _variables(head: Header, tables: dict[str, Any]) -> list[Variable]:

@@ -86,11 +86,15 @@ def rows(found: Tolerances) -> list[tuple[str, ...]]:
     """A row of the table for each claim, below `HEADINGS`: distances from the bound."""
     return [
         (
-            each.worst.word, each.claim, each.own.shown_distance, each.worst.shown_distance,
-            _where(each, found), _costs(each),
+            each.worst.word,
+            each.claim,
+            each.own.shown_distance,
+            each.worst.shown_distance,
+            _where(each, found),
+            _costs(each),
         )
         for each in found.claims
-    ]  # fmt: skip
+    ]
 
 
 def _where(each: WorstCase, found: Tolerances) -> str:
