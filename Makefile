@@ -1,7 +1,7 @@
 # Two commands do all the set-up: `make demo` and `make test`. Both work in .venv.
 
 PYTHON ?= python3
-BIN := .venv/bin
+BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 # what is pinned by version and hash, then this package with nothing else
 INSTALL_PINNED := $(PIP) install --no-deps --require-hashes --requirement

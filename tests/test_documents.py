@@ -30,6 +30,7 @@ README = HOUSE / "README.md"
 PAGES = [
     README,
     HOUSE / "CONTRIBUTING.md",
+    HOUSE / "SECURITY.md",
     HOUSE / "fmus" / "README.md",
     *sorted((HOUSE / "docs").glob("*.md")),
     *sorted((HOUSE / "fmus").glob("*/README.md")),

@@ -5,8 +5,11 @@ import tomllib
 from importlib import metadata
 from pathlib import Path
 
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+import loomfmu
 
 ROOT = Path(__file__).parents[1]
 PINNED = re.compile(r"^([A-Za-z0-9_.-]+)==(\S+)", re.MULTILINE)
@@ -50,3 +53,17 @@ def test_all_of_them_are_free_software() -> None:
         if any(word in " ".join(licences) for word in ("Proprietary", "Intel Simplified")):
             found.append(name)
     assert found == []
+
+
+def test_the_citation_names_this_version_and_licence() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert citation["version"] == loomfmu.__version__
+    assert (citation["license"], citation["keywords"]) == (project["license"], project["keywords"])
+
+
+def test_the_workflow_tries_every_python_that_the_package_is_for() -> None:
+    workflow = (ROOT / ".github" / "workflows" / "check.yml").read_text(encoding="utf-8")
+    matrix = yaml.safe_load(workflow)["jobs"]["test"]["strategy"]["matrix"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert f">={matrix['python'][0]}" == project["requires-python"]

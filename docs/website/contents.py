@@ -13,7 +13,7 @@ GUIDES = (
     "docs/sweeps.md", "docs/limits.md", "docs/tolerances.md", "docs/optimizing.md", "docs/fitting.md",
     "docs/python.md", "docs/importing.md", "docs/own_mechanism.md",
 )  # fmt: skip
-PROJECT = ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY.md")
+PROJECT = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "THIRD_PARTY.md")
 
 
 def sections(generated: list[str]) -> dict[str, list[str]]:
