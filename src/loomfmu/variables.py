@@ -216,6 +216,8 @@ class Component:
     keeps: ClassVar[str] = MOTION
     # how accurate its outputs are for given inputs, if it keeps a motion; they are exact to rounding if not
     accuracy: ClassVar[str] = ""
+    # the share of its numbers by which they differ from step size to step size, however short the steps
+    scatter: ClassVar[float] = 0.0
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()
     # the longest turn of the shaft [rad] whose ends show how its outputs change: inf for what is as smooth as

@@ -49,9 +49,11 @@ class Method(NamedTuple):
 PRESENT = Method((3.0, 0.5), floor=1e-12, near=0.01)
 # An extreme that a component holds is found beyond what it takes for noise of its samples.
 HELD = PRESENT._replace(floor=1e-9)
-# What has a memory loses its order to two where it hits a stop or a thread goes slack, and to one where a
-# loop carries values of the step before: then the changes are 0.6 and 1.6 times the error.
+# What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
+# 1.6 and 6 times the error.
 MEMORY = Method((6.0, 2.0), floor=1e-9, near=0.1)
+# A loop that carries values of the step before is of order one: the changes are 0.6 and 1.6 times the error.
+LAGGED = MEMORY._replace(factors=(12.0, 4.0))
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,10 @@ class Estimates:
             owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
             components = [scene.instances[name].fmu.component for name in upstream(owners, sources)]
             kept = {MOTION if each is None else each.keeps for each in components}
-            found.append(MEMORY if MOTION in kept or delayed else HELD if EXTREMES in kept else PRESENT)
+            method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
+            method = LAGGED if delayed else method
+            scatter = max(each.scatter if each else 0.0 for each in components)
+            found.append(method._replace(floor=max(method.floor, scatter)))
         return found
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
