@@ -60,7 +60,7 @@ def start(directory: Path, *, everything: bool = False) -> list[Path]:
 
 
 def _free(target: Path, path: Path) -> bool:
-    """Whether a file is empty, as a full disk may leave it, or the same as the one to be written."""
+    """Return whether a file is empty, as a full disk may leave it, or already has the text to be written."""
     return target.is_file() and target.read_bytes() in (b"", path.read_bytes())
 
 

@@ -1,4 +1,4 @@
-"""How a component declares its variables: once, and everything else is derived from it.
+"""The declarations of a component's variables, from which everything else is derived.
 
 A component is a dataclass whose fields are made by `parameter`, `input_`, `output`, `state` and `auxiliary`,
 or by `loomfmu.arrays.array` of these.

@@ -47,7 +47,7 @@ def described(error: BaseException) -> str:
 
 
 def why(error: OSError) -> str:
-    """What the system says went wrong, and what helps.
+    """Return the cause that the system states, and the remedy if one is known.
 
     >>> why(OSError(28, "No space left on device"))
     'No space left on device'
@@ -140,7 +140,7 @@ def listed(words: Iterable[object], last: str = "and") -> str:
 
 
 def signal_name(number: int) -> str:
-    """What a signal is called.
+    """Return the name of a signal.
 
     >>> signal_name(11), signal_name(37)
     ('SIGSEGV', 'signal 37')

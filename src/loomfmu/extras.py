@@ -1,4 +1,4 @@
-"""What is not installed with the package itself, but with one of its extras."""
+"""Packages that are not installed with the package itself, but with one of its extras."""
 
 from importlib.util import find_spec
 
@@ -16,7 +16,7 @@ EXTRAS = {  # the packages of each, by the names under which they are imported
 
 
 def installed(extra: str) -> bool:
-    """Whether all packages of an extra can be imported."""
+    """Return whether all packages of an extra can be imported."""
     return all(find_spec(package) is not None for package in EXTRAS[extra])
 
 

@@ -32,7 +32,7 @@ def source(path: Path) -> Path:
 
 @dataclass(frozen=True)
 class Kind:
-    """What files that we write are called, and how an existing one is known to be ours."""
+    """A kind of file that loomfmu writes: its name in messages, and a test for one that loomfmu wrote."""
 
     name: str
     ours: Callable[[Path], bool]

@@ -1,4 +1,4 @@
-"""What a mechanism of your own is made of: the names that its file imports.
+"""The names that the file of a mechanism of your own imports.
 
 Functions of `loomfmu.physics` can be imported, too: they are carried into the FMU with the rest.
 """

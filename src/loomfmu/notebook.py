@@ -1,4 +1,4 @@
-"""What a notebook shows of results: tables that take the notebook's own colours, light or dark."""
+"""Tables of results in a notebook, in the notebook's own colours, light or dark."""
 
 from collections.abc import Sequence
 

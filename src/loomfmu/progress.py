@@ -64,7 +64,7 @@ def _in_notebook(display: Callable[..., "_Handle"], title: str, total: int, done
 
 
 def _display() -> Callable[..., "_Handle"] | None:
-    """What shows something in the notebook that this process belongs to; None elsewhere."""
+    """Return IPython's `display` if this process belongs to a notebook, else None."""
     ipython = sys.modules.get("IPython")  # a notebook has imported it
     shell = ipython.get_ipython() if ipython is not None else None
     if ipython is None or not hasattr(shell, "kernel"):
@@ -75,7 +75,7 @@ def _display() -> Callable[..., "_Handle"] | None:
 
 
 class _Handle:
-    """What IPython's `display` returns for a thing that is shown and may change."""
+    """The handle that IPython's `display` returns for something that is shown and may change."""
 
     def update(self, shown: object) -> None:
         """Show this in its place."""

@@ -55,7 +55,7 @@ def _matched(config: pytest.Config) -> set[Path]:
 
 
 def _is_scene(path: Path) -> bool:
-    """Whether a TOML file is a scene; one that is not valid may be meant as one."""
+    """Return whether a TOML file is a scene; an invalid one may be meant as one."""
     import tomllib
 
     try:
@@ -100,7 +100,7 @@ class SceneFile(pytest.File):
 
     @property
     def trace_path(self) -> Path | None:
-        """Where the trace is to be kept: in folders as the scene's own."""
+        """Return the path at which to keep the trace, in the same subfolders as the scene."""
         directory = self.config.getoption(TRACES)
         if directory is None:
             return None
@@ -110,7 +110,7 @@ class SceneFile(pytest.File):
 
     @cached_property
     def kept(self) -> list[str]:
-        """What was written of a run that failed: its trace, and its report if that can be written."""
+        """Return the files of a run that failed: its trace, and its report if that can be written."""
         from .cosim.results import Result
         from .errors import LoomfmuError
         from .report import write
@@ -126,7 +126,7 @@ class SceneFile(pytest.File):
             return [*lines, f"no report:    {error}"]
 
     def failure(self, verdict: "Verdict") -> str:
-        """What an engineer needs to know of a claim that failed."""
+        """Return the facts that an engineer needs about a claim that failed."""
         warnings = [f"warning:      {text}" for text in getattr(self.outcome, "warnings", ())]
         facts = {
             "signal": verdict.signal,
@@ -180,7 +180,7 @@ class ClaimItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, None, str]:
-        """Where the test is, and what it is called."""
+        """Return the file of the test, and its name."""
         return self.path, None, f"{self.path.name}: {self.name}"
 
 

@@ -132,7 +132,7 @@ _COMMA = re.compile(r"\s*[-+]?\d*,\d")
 
 
 def canonical(name: str) -> str:
-    """What we call a unit, given a name that tools write for it.
+    """Return our name of a unit, given a name that other tools write for it.
 
     >>> canonical("rpm"), canonical("[m]"), canonical("[-]"), canonical("lx")
     ('rev/min', 'm', '1', 'lx')
@@ -193,7 +193,7 @@ def parse(quantity: str | float, target: str) -> float:
 
 
 def fitted(target: str) -> str:
-    """What a quantity must fit, as part of a message."""
+    """Return what a quantity must be convertible to, as part of a message."""
     return "a number without a unit" if target == "1" else target
 
 
@@ -202,7 +202,7 @@ class Si(float):
 
 
 def is_plain(quantity: Any) -> bool:
-    """Whether a quantity is a number without a unit, as people write it: read as SI.
+    """Return whether a quantity is a number without a unit, as people write it: read as SI.
 
     >>> is_plain("400"), is_plain(400), is_plain("400 rpm"), is_plain(None)
     (True, True, False, False)

@@ -1,4 +1,4 @@
-"""What feeds what, by names: what something depends on, directly or through others."""
+"""Dependencies by name, direct or through others."""
 
 from collections.abc import Collection, Iterable, Mapping
 
@@ -12,7 +12,7 @@ def sources_of(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
 
 
 def upstream(wanted: Iterable[str], sources: Mapping[str, Collection[str]]) -> set[str]:
-    """What is wanted, and all that feeds it, directly or through others.
+    """Return the wanted names and all that they depend on, directly or through others.
 
     >>> sorted(upstream(["c"], sources_of([("a", "b"), ("b", "c"), ("c", "d")])))
     ['a', 'b', 'c']

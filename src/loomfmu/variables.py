@@ -1,4 +1,4 @@
-"""What a component is: its declared variables, its problems and terminals, what it keeps between steps."""
+"""Components: their declared variables, problems and terminals, and the state between steps."""
 
 import math
 import re
@@ -73,12 +73,12 @@ class Variable:
 
     @property
     def member(self) -> str:
-        """How a component's source and its C call it."""
+        """The name in the component's source and in its C."""
         return self.element or self.name
 
     @property
     def settable(self) -> bool:
-        """Whether a user or a master sets it."""
+        """Return whether a user or a master sets it."""
         return self.causality in ("parameter", "input")
 
     @property
@@ -101,7 +101,7 @@ class Variable:
 
     @property
     def quantity(self) -> str:
-        """What it measures, where its unit tells: empty for a number, and for what is only kept inside."""
+        """The physical quantity by the unit; empty for plain numbers and for internal variables."""
         known = self.type is float and self.causality != "local"
         return units.QUANTITIES.get(self.unit, "") if known else ""
 
@@ -135,7 +135,7 @@ class Variable:
         return f"[{low:.7g}, {high:.7g}]" + ("" if self.display == "1" else f" {self.display}")
 
     def complaint(self, value: float | int | bool) -> str:
-        """What is wrong with that value, or an empty text."""
+        """Return the fault of a value, or an empty text."""
         low = -math.inf if self.minimum is None else self.minimum
         high = math.inf if self.maximum is None else self.maximum
         if low <= value <= high and math.isfinite(value):
@@ -185,7 +185,7 @@ class Terminal:
 
     @property
     def kind(self) -> str:
-        """What it fits."""
+        """The kind of terminal that it connects to."""
         return self.name.rpartition(".")[2]
 
     def of(self, *variables: str) -> "Terminal":
@@ -202,7 +202,7 @@ def _variable(declared: Field[Any]) -> Variable:
 
 @dataclass(slots=True)
 class Component:
-    """What every component is: declared variables, `initialize` and `step`.
+    """The base class of every component: declared variables, `initialize` and `step`.
 
     The methods of a component and the functions they call keep to the Python that also translates to
     C: floats, ints and bools, if, while and for-range, `math`, tuples for several results.

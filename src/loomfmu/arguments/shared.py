@@ -35,7 +35,7 @@ def add_set(command: argparse.ArgumentParser) -> None:
 
 
 def add_place(command: argparse.ArgumentParser, name: str) -> None:
-    """Where and on what many runs are made."""
+    """Add the options that say where many runs go and which processes make them."""
     command.add_argument("--output", metavar="DIR", help=f"folder for the results; results/{name} by default")
     command.add_argument(
         "--processes", type=int, metavar="N", help="worker processes on this machine; one per core by default"

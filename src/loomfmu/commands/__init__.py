@@ -1,1 +1,1 @@
-"""What the commands of `loomfmu` do: a function for each, which returns the exit status."""
+"""The commands of `loomfmu`: a function for each, which returns the exit status."""

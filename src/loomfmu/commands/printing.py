@@ -1,4 +1,4 @@
-"""What several commands print."""
+"""Lines that several commands print."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

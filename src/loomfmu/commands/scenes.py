@@ -68,7 +68,7 @@ def _run_here(options: argparse.Namespace) -> int:
 
 
 def _print_title(result: "Result") -> None:
-    """What was run, and how far."""
+    """Print the heading of a run and how far it went."""
     scene = result.scene
     try:
         heading, origin = result.trace.heading, result.trace.origin
@@ -87,7 +87,7 @@ def _print_title(result: "Result") -> None:
 
 
 def _print_trace(path: str) -> None:
-    """Where the trace is, and the command that summarises it."""
+    """Print the path of the trace and the command that summarises it."""
     command = "loomfmu"
     if Path(sys.argv[0]).name == command and shutil.which(command) != shutil.which(sys.argv[0]):
         command = sys.argv[0]  # it is not on the PATH, or another one is
@@ -102,7 +102,7 @@ def _page_of(trace: "Trace", path: Path, overwrite: bool) -> Path:
 
 
 def _print_pace(result: "Result") -> None:
-    """How fast the steps were, with FMUs of which flavour, and how long the command took until now."""
+    """Print the time of a step, the flavour of the FMUs and the duration of the command so far."""
     flavours = {each.fmu.flavour for each in result.scene.instances.values()} - {""}
     pace = f"{1e6 * result.seconds / result.steps:.3g} us each" if result.steps else "none"
     kind = f"{' and '.join(sorted(flavours, reverse=True))} FMUs".lstrip()

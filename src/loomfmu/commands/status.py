@@ -1,4 +1,4 @@
-"""How a command ends: its exit status, and one line on whatever goes wrong."""
+"""The end of a command: its exit status, and one line on whatever goes wrong."""
 
 import argparse
 import os
@@ -51,7 +51,7 @@ def _drop_output() -> None:
 
 
 def _reason(error: BaseException) -> str:
-    """What went wrong, in one line."""
+    """Return the cause of an error in one line."""
     if isinstance(error, LoomfmuError):
         return str(error)
     if isinstance(error, OSError):

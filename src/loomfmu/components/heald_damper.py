@@ -27,7 +27,7 @@ class HealdDamper(DamperMotion):
     """
 
     def check(self) -> int:
-        """Whether the carrier starts between its stops."""
+        """Check that the carrier starts between its stops."""
         if fabs(self.start_displacement) > self.free_travel:
             return 2
         return 0

@@ -199,7 +199,7 @@ class HealdFrame(Component):
         return by_shaft / self.rotor_ratio, by_shaft
 
     def check(self) -> int:
-        """Whether the frame holds what hangs in it."""
+        """Check that the mass of the frame includes that of its sprung parts."""
         if self.sprung_mass > self.frame_mass:
             return 2
         return 0

@@ -180,7 +180,7 @@ class ReedBeatUp(ShaftDriven):
         return crank, angle + self.arm_angle
 
     def check(self) -> int:
-        """Whether the crank turns over and the rod moves the reed to and fro, clear of all dead points."""
+        """Check that the crank makes full turns and that the rod swings the reed, clear of dead points."""
         if self.assembly == 0 or self.crank_direction == 0:
             return 4
         frame = sqrt(self.crank_x * self.crank_x + self.crank_y * self.crank_y)

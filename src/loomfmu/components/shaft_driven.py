@@ -1,4 +1,4 @@
-"""What the mechanisms share that are driven by the main shaft."""
+"""The base class of the mechanisms that the main shaft drives."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,7 +10,7 @@ from .terminals import SHAFT
 
 
 def turned_too_far(what: str) -> Problem:
-    """What is reported of an angle that is `too_far`."""
+    """Return the problem that is reported of an angle that is `too_far`."""
     return Problem(
         f"the {what} is more than 2e9 rad from zero, where rounding limits its angle to 2e-7 rad;"
         " start closer to time and angle 0"

@@ -1,4 +1,4 @@
-"""What one connection carries from component to component: `terminals` of a component are made of these."""
+"""Terminals: the variables that one connection carries from component to component."""
 
 from dataclasses import replace
 

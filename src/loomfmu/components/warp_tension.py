@@ -130,7 +130,7 @@ class WarpTension(Threads):
     def drive(
         self, duration: float, extension: float, a0: float, a1: float, a2: float, a3: float
     ) -> tuple[float, float, float, float, float, float]:
-        """What drives a thread from the last sample to this one."""
+        """Return the drive of a thread from the last sample to this one, see `thread_drive`."""
         return thread_drive(
             self.thread_stiffness, self.creep_rate * duration, self.sampled_extension, extension,
             a0, a1, a2, a3,

@@ -139,7 +139,7 @@ class WeftInsertion(ShaftDriven):
         )  # fmt: skip
 
     def check(self) -> int:
-        """Whether both linkages close over a whole turn, clear of their dead points by more than rounding."""
+        """Check that both linkages close over a whole turn, clear of dead points by more than rounding."""
         if spherical_margin(self.rocker_angle, self.crank_cone) < 1e-9:
             return 1
         if self.assembly == 0:

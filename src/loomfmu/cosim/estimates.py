@@ -81,7 +81,7 @@ class Estimates:
 
     @cached_property
     def _methods(self) -> list[Method]:
-        """How each claim's error is estimated, by what its signals depend on."""
+        """Return the method that estimates each claim's error, by the FMUs that its signals depend on."""
         scene = self._scene
         _order, lagged = step_order(scene.instances, scene.wires)
         delayed = bool(lagged) and scene.coupling != ITERATED
@@ -98,7 +98,7 @@ class Estimates:
         return found
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
-        """What some claims, counted from 0, give on coarser steps than those of a grid."""
+        """Judge some claims, counted from 0, on coarser steps than those of a grid."""
         if not wanted:
             return Coarser(wanted)
         for name, instance in scene.instances.items():

@@ -50,7 +50,7 @@ class Pattern:
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
-        """What runs the scene with only what these signals need."""
+        """Return the stepping of the scene with only the parts that these signals need."""
         key = tuple(signals)
         if key not in self._steppings:
             self._steppings[key] = Stepping(self.scene, key)
@@ -259,7 +259,7 @@ class Prepared:
         return Pattern(scene, self._values, list(map(measure, self._measures)))
 
     def _ready(self, given: dict[str, Any] | None) -> tuple[Pattern, Scene]:
-        """What runs the scene with these values. Raises LoomfmuError for a value that cannot be."""
+        """Return pattern and scene for these values. Raises LoomfmuError for a value that is not possible."""
         check_set(given)
         if not given:
             return self._base, self.scene

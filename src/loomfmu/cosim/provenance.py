@@ -1,4 +1,4 @@
-"""How a run was made, as its trace records it: enough to see what was run, and to run it again."""
+"""The provenance of a run in its trace: enough to see what was run, and to run it again."""
 
 import json
 import shlex

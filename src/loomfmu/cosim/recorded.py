@@ -28,7 +28,7 @@ LONGEST = 80  # characters of the values in the name of a file
 
 
 def usual_path(scene: Scene, ending: str = ".h5") -> Path:
-    """Where a scene's results go by default: each set of values that differ from the scene has its own name.
+    """Return the default path of a scene's results; each set of changed values has its own.
 
     Such as `results/wl680_3600_shaft.speed=700rpm.h5`. Values that do not fit into a name end with a digest.
     """
@@ -41,7 +41,7 @@ def usual_path(scene: Scene, ending: str = ".h5") -> Path:
 
 
 def written_at(path: Path) -> str:
-    """When the file of this name was written, such as 2026-03-01 14:05:09; empty if there is none."""
+    """Return when a file was written, such as 2026-03-01 14:05:09, or an empty text if there is none."""
     try:
         return str(datetime.fromtimestamp(int(path.stat().st_mtime)))
     except OSError:
@@ -107,7 +107,7 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
 
 
 def writer_of(plan: Plan, channels: list[Channel], path: Path, target: Path, flavour: str) -> TraceWriter:
-    """What writes the trace, begun."""
+    """Return a writer of the trace, with the file begun."""
     try:
         return TraceWriter(target, attributes(plan, flavour), channels, groups(plan))
     except OSError as error:

@@ -32,12 +32,12 @@ class Judged:
 
     @property
     def holds(self) -> bool:
-        """Whether every claim holds, of a run that was not cut short."""
+        """Return whether the run was not cut short and every claim holds."""
         return all(self.claims) and not self.early.cut_short
 
     @property
     def ended(self) -> str:
-        """Which FMU ended the run early, and when; empty if none did."""
+        """The FMU that ended the run early, and when; empty if none did."""
         return self.early.ended_by
 
     def check_end(self) -> None:

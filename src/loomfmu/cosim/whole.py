@@ -46,7 +46,7 @@ def export(
 
 
 def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str = "use --ssp") -> System:
-    """What a scene's components are as one. Raises LoomfmuError for what cannot be part of it.
+    """Return a scene's components as one system. Raises LoomfmuError for a scene that cannot be one.
 
     `whole` is what messages call it, `instead` what they advise.
     """

@@ -127,7 +127,7 @@ class Cam:
         return _radius(self.law, self.lowest_radius, self.highest_radius, angle)
 
     def radial_excess(self) -> Floats:
-        """How far a curve offset along the cam's radius, as in Appendix 2, lies outside the true offset [m].
+        """Return how far a curve offset along the cam's radius (Appendix 2) exceeds the true offset [m].
 
         The path if the law is the profile's, the profile if it is the roller's; at the points of that curve.
         """

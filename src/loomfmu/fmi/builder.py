@@ -36,7 +36,7 @@ NAMESPACE = uuid.uuid5(uuid.NAMESPACE_URL, "https://pypi.org/project/loomfmu")
 
 
 def folder(component: type[Component]) -> Path:
-    """Where README, icon and reference of an FMU lie: beside a file of one's own, else with the package."""
+    """Return the folder with README, icon and reference of an FMU: that of its file, or the package's."""
     package = Path(__file__).parents[1]
     home = Path(inspect.getfile(component)).parent
     if not home.is_relative_to(package / "components"):
@@ -111,7 +111,7 @@ def beside(component: type[Component], names: dict[str, str]) -> dict[str, bytes
 
 
 def _told(component: type[Component]) -> dict[str, bytes]:
-    """What is said of the variables beside the model description."""
+    """Return the files that describe the variables in addition to the model description."""
     return terminal_files(component) | parameter_files(component, __version__)
 
 
@@ -143,7 +143,7 @@ def _contents(component: type[Component]) -> dict[str, bytes]:
 
 
 def _wrapper() -> Path:
-    """Where pythonfmu is installed: its compiled wrapper is wanted, not its Python."""
+    """Return the folder of pythonfmu, for its compiled wrapper."""
     found = find_spec("pythonfmu")
     assert found is not None and found.origin is not None, "pythonfmu is installed with this package"
     return Path(found.origin).parent

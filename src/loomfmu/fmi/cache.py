@@ -1,4 +1,4 @@
-"""Where built and unpacked FMUs are kept between runs: a folder that only the user can write to."""
+"""The cache of built and unpacked FMUs: a folder that only the user can write to."""
 
 import atexit
 import logging
@@ -49,7 +49,7 @@ def cache_directory() -> Path:
 
 
 def compiler_environment() -> dict[str, str]:
-    """What the compiler is started with: it waits for ever where it cannot write its own cache."""
+    """Return the compiler's environment variables: it hangs if it cannot write its own cache."""
     if os.environ.get("ZIG_GLOBAL_CACHE_DIR"):
         return dict(os.environ)
     usual, reason = _of_user("zig")
@@ -57,7 +57,7 @@ def compiler_environment() -> dict[str, str]:
 
 
 def is_private(status: os.stat_result) -> bool:
-    """Whether only the user, or the system, can write to a file or folder; links are never private."""
+    """Return whether only the user, or the system, can write to a file or folder; never true for links."""
     if stat.S_ISLNK(status.st_mode):
         return False
     return _is_own(status) and not (ON_UNIX and status.st_mode & WRITABLE_BY_OTHERS)
@@ -83,7 +83,8 @@ def _of_user(name: str) -> tuple[Path, str]:
 
 
 def _fault(directory: Path, mend: bool = False) -> str:
-    """Why a folder cannot be a cache, empty if it can. It is made, and with `mend` closed to others."""
+    """Return why a folder cannot be a cache, or an empty text; make it, and close it to others with `mend`.
+    """
     try:
         str(directory).encode()  # FMUs get it as UTF-8
         directory.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -79,7 +79,7 @@ def made_file(kind: str, key: str, name: str, make: Callable[[], bytes]) -> Path
 
 
 def has_file(kind: str, key: str, name: str) -> bool:
-    """Whether a file was made; it may be damaged."""
+    """Return whether a file was made; it may be damaged."""
     return (cache_directory() / kind / key / name).is_file()
 
 
@@ -168,7 +168,7 @@ def _make_private(directory: Path) -> None:
 
 
 def _surplus(directory: Path | str, within: str, kinds: dict[str, int]) -> Iterator[Path]:
-    """What does not belong in a folder, is of another kind there, or is not ours alone."""
+    """Yield the paths that do not belong in a folder, are of another kind, or are not ours alone."""
     with os.scandir(directory) as found:
         for each in found:
             status, name = each.stat(follow_symlinks=False), within + each.name
@@ -218,7 +218,7 @@ def _mark_used(top: Path) -> None:
 
 @dataclass(frozen=True)
 class Contents:
-    """How many entries of a kind there are, and their size [bytes]."""
+    """The number of entries of a kind, and their size [bytes]."""
 
     kind: str
     entries: int
@@ -226,7 +226,7 @@ class Contents:
 
 
 def contents() -> list[Contents]:
-    """What is in the cache."""
+    """Return the contents of the cache by kind."""
     found = {kind: [_size(path) for path in _entries(kind)] for kind in (*KINDS, PARTIAL)}
     return [Contents(kind, len(sizes), sum(sizes)) for kind, sizes in found.items()]
 

@@ -1,4 +1,4 @@
-"""What tells one build of our own FMUs from another, computed once for a state of their sources.
+"""The identity of each build of our own FMUs, computed once for a state of their sources.
 
 Flattening and describing all components takes a third of a second; reading the files that it depends on takes
 a few milliseconds. So what was computed is kept under a digest of these files: in the package, if it brings
@@ -41,7 +41,7 @@ Identity = dict[str, str]  # "guid", and a name in the cache for each flavour
 
 
 def is_own(component: type[Component]) -> bool:
-    """Whether a component is one of this package, and not of a user's file."""
+    """Return whether a component is one of this package, and not of a user's file."""
     return component.__module__.startswith(f"{components.__name__}.")
 
 

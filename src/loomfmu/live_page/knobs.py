@@ -1,4 +1,4 @@
-"""What can be varied on a page: parameters of a scene, each over a range or over its choices."""
+"""The sliders of a page: parameters of a scene, each with its range or its choices."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -160,7 +160,7 @@ def _range(
 
 
 def _read_as(port: Port, end: str, where: str) -> str:
-    """What a number without unit is read as, or an empty text where there is nothing to mistake."""
+    """Return the value that a number without unit is read as, or an empty text if it cannot be mistaken."""
     if port.display in ("1", port.unit):
         return ""
     value = float(end)

@@ -100,7 +100,7 @@ def write(
 
 
 def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) -> dict[str, Any]:
-    """What the script needs to run the module: rows of variables, and values that it does not hold."""
+    """Return the data with which the script runs the module: rows of variables, and values that it lacks."""
     trace = subject.trace
     parameters = {name: row for name, (row, each) in rows.items() if each.settable}
     constants = {
@@ -121,7 +121,7 @@ def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) ->
 
 
 def _stepping(whole: System, trace: Trace, rows: Rows) -> dict[str, Any]:
-    """What the script needs to step no more than a value reaches.
+    """Return the data with which the script steps only the parts that a changed value affects.
 
     `samples` are the row of each signal, the number of the part that it is of, and whether it feeds another
     part; those that are not recorded come last. `reaches` are each part and those that depend on it.
@@ -150,7 +150,7 @@ def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
 
 
 def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
-    """What the script judges: the kind and the arguments of each claim, and how its values are shown.
+    """Return the claims that the script judges: kind, arguments, and the unit and format of the values.
 
     `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
     about, and `native` is the verdict on the run that the page holds, whether its bound is met exactly, and

@@ -71,7 +71,7 @@ def _check_beyond(
     noise: float,
     rows: list[dict[str, float]],
 ) -> None:
-    """Whether an extreme is at every step at least as far out as every sample so far."""
+    """Check that an extreme is at every step at least as far out as every sample so far."""
     extreme = rows[0][followed]
     for row in rows:
         extreme = best(extreme, row[followed])

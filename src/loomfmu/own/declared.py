@@ -1,4 +1,4 @@
-"""What is wrong with a component's declarations: the first thing that would go wrong later, or silently."""
+"""Faults in a component's declarations that would otherwise show later, or not at all."""
 
 import ast
 import inspect
@@ -28,7 +28,7 @@ KEYS = (*PARAMETER_SETS, "fmu", ISOLATED)
 
 
 class Fault(NamedTuple):
-    """What is wrong, and the field or method of the class where it is."""
+    """A fault, and the field or method of the class where it is."""
 
     field: str
     text: str

@@ -28,7 +28,7 @@ _loaded: dict[tuple[Path, str], tuple[type[Component], Texts]] = {}
 
 
 def is_file(spec: object) -> bool:
-    """Whether a component is named by its file, such as `cam.py` or `cam.py:PickingCam`."""
+    """Return whether a component is named by its file, such as `cam.py` or `cam.py:PickingCam`."""
     return isinstance(spec, str) and SPEC.fullmatch(spec) is not None
 
 

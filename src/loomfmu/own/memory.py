@@ -1,4 +1,4 @@
-"""Whether a component carries more from step to step than extremes, as its outputs show."""
+"""A test, by its outputs, for a component that remembers more between steps than extremes."""
 
 import sys
 from collections.abc import Iterator

@@ -47,7 +47,7 @@ def clear_stride(beyond: float, rate: float, acceleration: float, most: float, m
 def until_bar(
     position: float, rate: float, q0: float, q1: float, q2: float, q3: float, reach: float, duration: float
 ) -> tuple[float, int]:
-    """When a heald in flight first meets a bar, and which: 1 the upper one, -1 the lower one, 0 none.
+    """Return the time at which a heald in flight first meets a bar, and which: 1 upper, -1 lower, 0 none.
 
     Goes from stride to stride, each so short that no bar can be met within it, however it moves.
 
@@ -84,7 +84,7 @@ def until_bar(
 
 
 def until_free(side: int, q0: float, q1: float, q2: float, q3: float, duration: float) -> float:
-    """When a heald that rests on a bar leaves it, `side w''` turning negative; the duration if it stays.
+    """Return the time at which a heald on a bar leaves it, as `side w''` turns negative, or the duration.
 
     >>> round(until_free(1, 1.0, -2.0, 0.0, 0.0, 3.0), 12), until_free(-1, -1.0, 0.0, 0.0, 0.0, 3.0)
     (0.5, 3.0)

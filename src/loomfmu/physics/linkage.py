@@ -151,7 +151,7 @@ def four_bar_margin(
 
 
 def _within(angle: float, low: float, high: float) -> bool:
-    """Whether the angle, plus or minus whole turns, lies between low and high."""
+    """Return whether the angle, plus or minus whole turns, lies between low and high."""
     turned = (angle - low) % (2.0 * pi)
     return turned <= high - low
 

@@ -7,7 +7,7 @@ FARTHEST = 2e9
 
 
 def too_far(angle: float) -> bool:
-    """Whether an angle [rad] is so large that its rounding matters.
+    """Return whether an angle [rad] is so large that its rounding matters.
 
     >>> too_far(1e9), too_far(-3e9)
     (False, True)

@@ -207,7 +207,7 @@ def thread_growth(
 
 
 def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
-    """Whether the force has at most one extreme in the step: the right side rises or falls throughout.
+    """Return whether the force has at most one extreme in the step: its right side is monotonic.
 
     Between two extremes of the force `exp(z u) dF/du` has one too, and its derivative is `exp(z u)` times
     that of the right side. Sufficient, not necessary: the first coefficient outweighs all others.

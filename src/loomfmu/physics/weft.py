@@ -148,7 +148,7 @@ def snatch_tension(stiffness: float, density: float, speed: float) -> float:
 
 
 def moving_load(length: float, speed: float, acceleration: float, density: float, drag: float) -> float:
-    """What the yarn between brake and head adds to the tension: its inertia and drag, `q L a + k L v^2`.
+    """Return the tension that inertia and drag of the moving yarn add, `q L a + k L v^2`.
 
     Args:
         length: L [m]

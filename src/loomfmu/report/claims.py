@@ -26,7 +26,7 @@ def section(subject: Subject) -> Section:
 
 
 def _word(trace: Trace) -> str:
-    """How the outcome of a trace is marked."""
+    """Return the mark of a trace by its verdicts."""
     words = {verdict.word for verdict in trace.verdicts} if trace.judged else set()
     return "fails" if FAILS in words else "unknown" if UNDECIDED in words or not words else "holds"
 
@@ -59,7 +59,7 @@ def _row(subject: Subject, verdict: Verdict) -> dict[str, Any]:
 
 
 def _distance(verdict: Verdict) -> str:
-    """How far the worst value is from the bound, negative beyond it, and its share of the bound."""
+    """Return the distance of the worst value from the bound, negative beyond it, also as a share of it."""
     text = verdict.shown(verdict.distance)
     if text == "no value" or not verdict.bound:
         return text

@@ -29,7 +29,7 @@ MOST_DRAWN = 24  # revolutions that differ, in one report
 
 @dataclass(frozen=True)
 class Mark:
-    """Where the worst value of a claim is [rad within the revolution]."""
+    """The place of a claim's worst value [rad within the revolution]."""
 
     angle: float
     holds: bool
@@ -87,7 +87,7 @@ def section(subject: Subject) -> Section | None:
 
 
 def _layout(rows: Sequence[Row]) -> dict[str, Any]:
-    """What a script needs to draw the rows as this module does: their rules, places and sizes."""
+    """Return rules, places and sizes of the rows, with which a script draws them as this module does."""
     width = (OUTER - INNER) / len(rows)
     return {
         "rows": [asdict(row) for row in rows],
@@ -139,7 +139,7 @@ def _usual(trace: Trace, subject: Subject, numbers: range) -> int:
 
 
 def _not_drawn(subject: Subject, occasions: Occasions) -> str:
-    """Why there is no diagram of a shaft that turns; empty where there is one."""
+    """Return why there is no diagram of a shaft that turns, or an empty text if there is one."""
     if not occasions.rows:
         return f"the trace records nothing that it shows; add {EXAMPLES} to record, or leave record out"
     if subject.gap > COARSEST:
@@ -162,7 +162,7 @@ def _degrees(interval: tuple[float, float]) -> str:
 
 
 def _elsewhere(verdicts: Sequence[Verdict]) -> str:
-    """What the row of the claims says in a revolution that has none of their worst values."""
+    """Return the text of the claims' row in a revolution that has none of their worst values."""
     found = sorted({each.revolution for each in verdicts if each.revolution is not None})
     return f"worst values in revolution{'s' * (len(found) > 1)} {listed(found)}" if found else ""
 
@@ -181,7 +181,7 @@ def _title(row: Row, bar: Bar, interval: tuple[float, float]) -> str:
 
 
 def _legend(rows: Sequence[Row], drawings: Sequence[Drawing] | None) -> dict[str, str]:
-    """What the colours of drawings mean, by their labels; with None all that these rows may have."""
+    """Return the colours of drawings by their labels; with None, all that these rows may have."""
     known = {bar.label: bar.role for row in rows for bar in row.bars} | MARKS
     if drawings is None:
         return known

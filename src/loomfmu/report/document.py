@@ -70,12 +70,12 @@ def page(subject: Subject, comparison: Comparison | None = None) -> str:
 
 
 def _compared(comparison: Comparison) -> Section:
-    """What differs between the traces, as a notebook shows it."""
+    """Return the differences between the traces, as a notebook shows them."""
     return Section("comparison", "Comparison", comparison._repr_html_(), of_first=False)
 
 
 def sections(subject: Subject) -> list[Section]:
-    """What there is to show, in its order."""
+    """Return the sections that are not empty, in their order."""
     return [section for make in SECTIONS if (section := make(subject))]
 
 
@@ -105,7 +105,7 @@ def assembled(
 
 
 def _axis(subject: Subject) -> dict[str, Any]:
-    """What the cursor moves along: a few positions with their times."""
+    """Return the axis of the cursor: a few positions with their times."""
     places = _spread(len(subject.positions), CURSOR_POINTS)
     return {
         "turns": subject.turns,

@@ -1,4 +1,4 @@
-"""What happens when, over the main shaft: the rows of a timing diagram.
+"""The rows of a timing diagram: events over the angle of the main shaft.
 
 A row has intervals in which a rule is positive, and a curve between 0 and 1 that shows how it moves.
 Edges are interpolated between the samples.
@@ -46,7 +46,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Revolution:
-    """What there is of one revolution of the shaft, counted from 1: its rows along angles of 0 to 2 pi."""
+    """One revolution of the shaft, counted from 1: its rows along angles of 0 to 2 pi."""
 
     number: int
     intervals: dict[tuple[str, str], list[Interval]]
@@ -54,7 +54,7 @@ class Revolution:
     covered: Interval
 
     def same(self, other: "Revolution") -> bool:
-        """Whether nothing in a drawing would tell them apart: to a hundredth of a degree."""
+        """Return whether both would be drawn alike: to a hundredth of a degree."""
         mine, its = (
             [
                 (key, round(edge / TURN * 36000.0))
@@ -182,7 +182,7 @@ def _scaled(rule: Rule) -> Rule:
 
 
 def _from_end(heald: str) -> Rule:
-    """How far a frame is from the nearer end of its stroke."""
+    """Return the distance of a frame from the nearer end of its stroke."""
     return ["min", f"{heald}.lift", ["-", f"{heald}.stroke", f"{heald}.lift"]]
 
 
@@ -215,7 +215,7 @@ def _belt(trace: Trace, belt: str) -> Iterator[Row]:
 
 
 def _of_both(trace: Trace, travel: str, part: str) -> str:
-    """What a part of giver or taker is called, by the travel of its head; empty for one rapier alone."""
+    """Return the name of a part of giver or taker, by the travel of its head; empty for a single rapier."""
     for name, fmu in trace.fmus.items():
         for role in ("giver", "taker") if fmu == "WeftTransfer" else ():
             if travel and trace.wires.get(f"{name}.{role}_travel") == travel:

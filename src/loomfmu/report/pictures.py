@@ -87,7 +87,7 @@ def plot(
 
 
 def _title(traces: Sequence[Trace]) -> str:
-    """What was run, a line for each trace."""
+    """Return the heading of each trace, in a line each."""
     if len(traces) == 1:
         return traces[0].heading
     return "\n".join(f"{label}: {trace.heading}" for label, trace in zip(labels(traces), traces, strict=True))

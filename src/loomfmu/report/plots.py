@@ -27,7 +27,7 @@ ALONG = 2000  # points between which the page interpolates time over shaft angle
 
 @dataclass(frozen=True)
 class Outline:
-    """What a plot needs of a signal: a few of its samples, extremes among them, values in the file's unit."""
+    """The samples of a signal that a plot needs, extremes among them, in the file's unit."""
 
     places: NDArray[np.int64]
     values: Floats
@@ -113,7 +113,7 @@ def section(subject: Subject) -> Section | None:
 
 
 def _points(subject: Subject, names: list[str]) -> int:
-    """How many points each curve of such signals may have."""
+    """Return the number of points that each curve of such signals may have."""
     curves = sum(name in trace for name in names for trace in subject.traces)
     return min(MOST_POINTS, max(FEWEST_POINTS, SHARE // max(1, curves)))
 
@@ -161,7 +161,7 @@ def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], d
 
 
 def _along(subject: Subject, trace: Trace) -> dict[str, Any]:
-    """How time follows the shaft angle in a trace: its curves lie along the angle if a shaft turns."""
+    """Return time over shaft angle in a trace: its curves lie along the angle if a shaft turns."""
     places = np.unique(np.linspace(0, trace.rows - 1, min(trace.rows, ALONG)).round().astype(np.int64))
     turns = trace.turns
     return {

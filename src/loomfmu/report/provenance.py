@@ -1,4 +1,4 @@
-"""What the run was: enough to judge what it is worth, and to repeat it."""
+"""The provenance of the run: enough to judge it and to repeat it."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a report is made of: sections, each by itself, along one axis."""
+"""Sections of a report, each independent of the others, along one axis."""
 
 import json
 import math
@@ -73,7 +73,7 @@ def _plain(data: Any) -> Any:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a report is about: the traces, the first of which is the one that is judged and shown moving.
+    """The subject of a report: its traces, the first of which is judged and shown in motion.
 
     On a `live` page the FMUs themselves run: what it draws and judges then changes with each run.
 
@@ -90,7 +90,7 @@ class Subject:
 
     @cached_property
     def turns(self) -> bool:
-        """Whether a shaft turns: then positions are its angles."""
+        """Return whether a shaft turns: then positions are its angles."""
         return self.trace.turns
 
     @cached_property
@@ -108,7 +108,7 @@ class Subject:
         return float(np.max(np.diff(self.positions), initial=0.0))
 
     def position(self, verdict: Verdict) -> float | None:
-        """Where the worst value of a claim was; None if it has no place."""
+        """Return the position of a claim's worst value, or None if it has none."""
         if not math.isfinite(verdict.time):
             return None
         if not self.turns:
@@ -119,7 +119,7 @@ class Subject:
 
 
 def labels(traces: Sequence[Trace]) -> list[str]:
-    """What a legend calls traces: their files, with folders if two have the same name."""
+    """Return the names of traces in a legend: their files, with folders if two have the same name."""
     names = [trace.path.name for trace in traces]
     return [
         name if names.count(name) == 1 else str(trace.given)

@@ -103,7 +103,7 @@ def headed(
 
 
 def _swatch(role: str, x: float, y: float) -> Sequence[Point]:
-    """What stands for a role in the legend, left and bottom at a place: a triangle as of claims, or a box."""
+    """Return the swatch of a role in the legend at a place: a triangle for claims, or a box."""
     if role in ("holds", "fails"):
         return triangle(x + 6.0, y - 10.0, y, role == "holds")
     return [(x, y - 10.0), (x + 12.0, y - 10.0), (x + 12.0, y), (x, y)]

@@ -23,7 +23,7 @@ class Evaluations:
         self.warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
-        """How many runs it took."""
+        """Return the number of runs."""
         return len(self._verdicts)
 
     def at(self, *values: float) -> tuple[Verdict, ...]:

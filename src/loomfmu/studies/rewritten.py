@@ -105,7 +105,7 @@ def rewritten(scene: Scene, values: Mapping[str, Any], description: str = "") ->
 
 
 def _places(scene: Scene, key: str, value: Any) -> list[tuple[str, str, Any]]:
-    """Where a key of `--set` stands in a scene: tables, variables and what is written there."""
+    """Return the places of a `--set` key in a scene's text: tables, variables and their new values."""
     owner, _, variable = key.rpartition(".")
     if (variable in TAKERS and owner in ("", "loom")) or owner == "loom":
         return [("loom", variable, value)]

@@ -1,4 +1,4 @@
-"""What a study varies, and over which range."""
+"""The variable that a study varies, and its range."""
 
 import math
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ class Span:
 
     @property
     def key(self) -> str:
-        """What scenes call the variable."""
+        """The variable's name in scenes."""
         return self.varied.key
 
     @property
@@ -46,7 +46,7 @@ class Span:
 
     @property
     def factor(self) -> float:
-        """What a value in that unit is multiplied by to give SI."""
+        """The factor from that unit to SI."""
         return units.unit(self.varied.display).factor
 
     def at(self, share: float) -> float:
@@ -54,7 +54,7 @@ class Span:
         return float(min(max(self.low + share * (self.high - self.low), self.low), self.high))
 
     def setting(self, value: float) -> dict[str, Any]:
-        """What sets the value in a prepared scene."""
+        """Return the setting of the value in a prepared scene."""
         return {self.key: self.varied.setting(value)}
 
     def points(self, count: int) -> list[float]:
@@ -76,7 +76,7 @@ class Span:
 
 
 def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
-    """What `--vary` names, over the range that it gives or `from_` and `to` do, or a usual one.
+    """Return the variable that `--vary` names, over the given range, `from_` to `to`, or a usual one.
 
     Raises LoomfmuError for what cannot be varied, or not over that range.
     """
@@ -108,7 +108,7 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
 
 
 def warnings_of(spans: Sequence[Span], of_run: Sequence[str]) -> tuple[str, ...]:
-    """What a study warns of: ends of ranges, then what a run of its scene warns of; each once."""
+    """Return the warnings of a study: on the ends of its ranges, then those of its scene; each once."""
     return tuple(dict.fromkeys((*(doubt for span in spans for doubt in span.doubts), *of_run)))
 
 
@@ -149,7 +149,7 @@ def _usual(variable: Varied, port: Port, value: float) -> list[tuple[float, str]
 
 
 def _source(given: Sequence[float | None], usual: Sequence[str]) -> str:
-    """Where both ends of a range come from."""
+    """Return the origin of both ends of a range, in words."""
     if not usual:
         return "given"
     if any(each is not None for each in given):

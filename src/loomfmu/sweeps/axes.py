@@ -27,12 +27,12 @@ class Axis:
 
     @property
     def key(self) -> str:
-        """What the sweep file calls it."""
+        """The key in the sweep file."""
         return self.varied.key
 
     @property
     def numeric(self) -> bool:
-        """Whether its values lie on a line."""
+        """Return whether its values are numbers."""
         return self.varied.kind in ("Real", "Integer")
 
 
@@ -93,7 +93,7 @@ def grid_axis(varied: Varied, given: Any, table: str = "grid") -> Axis:
 
 
 def _doubts(varied: Varied, given: list[Any]) -> tuple[str, ...]:
-    """What is odd about values as they are written."""
+    """Return the warnings about values as they are written."""
     return tuple(filter(None, map(varied.doubt, given)))
 
 
@@ -109,7 +109,7 @@ class Range:
 
     @property
     def key(self) -> str:
-        """What files call it."""
+        """The key in files."""
         return self.varied.key
 
     def at(self, shares: Any) -> NDArray[Any]:
@@ -122,7 +122,7 @@ class Range:
         return np.asarray(np.clip(np.where(shares == 1.0, high, values), low, high))
 
     def share(self, value: float) -> float:
-        """Where a real number lies in the range, 0 to 1; the nearer end for one outside."""
+        """Return the place of a real number in the range, 0 to 1; the nearer end for one outside."""
         value = min(max(value, self.low), self.high)
         if self.logarithmic:
             return math.log(value / self.low) / math.log(self.high / self.low)

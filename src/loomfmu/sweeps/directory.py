@@ -17,7 +17,7 @@ LOCK = "lock"
 
 
 class Contents(Protocol):
-    """What a sweep or a search writes into a directory."""
+    """The files that a sweep or a search writes into a directory."""
 
     directory: Path
 
@@ -30,10 +30,10 @@ class Contents(Protocol):
         """The folders of all others."""
 
     def results(self) -> list[Path]:
-        """What is there under the names of its results."""
+        """Return the files that exist under the names of its results."""
 
     def partial(self) -> list[Path]:
-        """What one that was killed was about to write."""
+        """Return the partial files that a killed sweep or search has left."""
 
 
 @contextlib.contextmanager

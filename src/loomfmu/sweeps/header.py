@@ -1,4 +1,4 @@
-"""What files of sweeps and of searches have in common: the scene, what is fixed in it, and what varies."""
+"""The head of the files of sweeps and searches: the scene, its fixed values and its variables."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -41,7 +41,7 @@ def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
 
 
 def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -> Header:
-    """What a file says of its scene; `keys` are all that it may have, `what` names its kind.
+    """Return the head of a file; `keys` are all that it may have, `what` names its kind.
 
     Raises LoomfmuError.
     """
@@ -60,13 +60,13 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
 
 
 def _beside(path: Path, name: str) -> Path:
-    """Where a file is that another one names; relative to the current folder, for messages, if both are."""
+    """Return the path of a file that another one names; relative to the current folder if both are."""
     place = path.parent / name
     return place.resolve() if place.is_absolute() else Path(os.path.relpath(place.resolve()))
 
 
 def variables(head: Header, tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Varied]:
-    """What varies, by table and key as in "grid.shaft.speed". No two set the same, nor what is fixed."""
+    """Return the variables, by table and key as in "grid.shaft.speed". None sets what another one sets."""
     taken = {target: "set" for key in head.fixed for target in varied(head.scene, key).targets}
     found: dict[str, Varied] = {}
     for where, keys in tables.items():

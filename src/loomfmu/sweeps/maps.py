@@ -53,7 +53,7 @@ class _Scale:
 
     @property
     def edges(self) -> Floats:
-        """Where the cells around the places meet: half-way, in the logarithm if that is the scale."""
+        """The edges of the cells around the places: half-way, in the logarithm if that is the scale."""
         places = np.log(self.places) if self.logarithmic else self.places
         if len(places) == 1:
             return np.array([self.places[0] - 0.5, self.places[0] + 0.5])

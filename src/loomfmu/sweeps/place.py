@@ -1,4 +1,4 @@
-"""Where the rows of a sweep and the runs of a search are done."""
+"""The place in which the rows of a sweep and the runs of a search are computed."""
 
 import os
 from collections.abc import Iterator

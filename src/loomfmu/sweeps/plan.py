@@ -28,7 +28,7 @@ NO_TRACES = {"failures": 0, "sample": 0}  # by default of rows that only indices
 
 @dataclass(frozen=True)
 class Traces:
-    """How many rows are run again with a full trace: of those that fail, and of the others."""
+    """The numbers of rows that are run again with a full trace: of those that fail, and of the others."""
 
     failures: int = 20
     sample: int = 5
@@ -36,7 +36,7 @@ class Traces:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """What a sweep runs. Row numbers count the grid, its last axis fastest, then the points of the sample."""
+    """A sweep. Row numbers count the grid, its last axis fastest, then the points of the sample."""
 
     title: str
     name: str
@@ -77,7 +77,7 @@ class SweepPlan:
         return {axis.key: found[axis.key] for axis in self.axes}
 
     def settings(self, rows: range) -> list[dict[str, Any]]:
-        """What each of these rows sets in the scene."""
+        """Return the settings of the scene for each of these rows."""
         columns = self.columns(np.arange(rows.start, rows.stop))
         sets = [dict(self.fixed) for _ in rows]
         for axis in self.axes:
@@ -87,7 +87,7 @@ class SweepPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user is to be warned of before anything runs."""
+        """The warnings for the user before anything runs."""
         return (*self.scene.notes, *(doubt for axis in self.axes for doubt in axis.doubts))
 
     def port(self, signal: str) -> Port:
@@ -154,7 +154,7 @@ def _axes(head: Header, tables: dict[str, Any]) -> tuple[list[Axis], list[Axis]]
 
 
 def _sensitivity(head: Header, tables: dict[str, Any], columns: list[str]) -> Sensitivity:
-    """What `[sensitivity]` asks for: it has its own rows."""
+    """Return the `[sensitivity]` table, which has its own rows."""
     for other in ("grid", "sample"):
         if other in tables:
             raise LoomfmuError(f"[sensitivity] chooses the rows itself; leave out [{other}]")

@@ -1,4 +1,4 @@
-"""Where tasks are done: in this process, or in worker processes of this machine.
+"""Pools that run tasks: in this process, or in worker processes of this machine.
 
 Workers are spawned, never forked: a live FMU holds the state of the Python that it lives in. A worker has
 one task at a time and nothing else to wait for, so the end of its process says which task was its last.
@@ -38,10 +38,10 @@ class Pool(Protocol):
 
     @property
     def workers(self) -> int:
-        """How many tasks are done at a time."""
+        """The number of tasks that run at a time."""
 
     def room(self) -> int:
-        """How many more tasks it wants."""
+        """The number of further tasks that it can take."""
 
     def submit(self, task: Task) -> None:
         """Take a task."""

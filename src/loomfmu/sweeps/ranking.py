@@ -1,4 +1,4 @@
-"""Which rows are the worst, and which are run again with a full trace."""
+"""The ranking of rows: the worst, and those that are run again with a full trace."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,8 @@ DIGITS = 6  # that distinguish rows
 
 @dataclass(frozen=True)
 class Beyond:
-    """How far each row is beyond the bounds of the claims, and of which claim (counted from 0) the furthest.
+    """The distance of each row beyond the bounds of the claims, and the claim (from 0) that is furthest
+    beyond.
 
     Above 0 the claim fails. 1 is as far as the bound is from 0, the largest one where it differs from row to
     row; for a bound of 0 it is the furthest that any row is away from it, on either side. A claim that fails
@@ -25,7 +26,7 @@ class Beyond:
 
 
 def beyond(table: Any) -> Beyond:
-    """How far the rows of a sweep's table are beyond the bounds of their claims."""
+    """Return how far the rows of a sweep's table are beyond the bounds of their claims."""
     claims = len(labels_of(table))
     if not claims:
         return Beyond(np.full(table.num_rows, np.nan), np.zeros(table.num_rows, np.int64))
@@ -35,7 +36,7 @@ def beyond(table: Any) -> Beyond:
 
 
 def _distances(table: Any) -> NDArray[np.float64]:
-    """How far each row is beyond the bound of each claim: claims down, rows along."""
+    """Return how far each row is beyond the bound of each claim: claims down, rows along."""
     return np.array([_rounded(distance(table, number)) for number in range(len(labels_of(table)))])
 
 
@@ -45,7 +46,7 @@ def _rounded(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def distance(table: Any, number: int) -> NDArray[np.float64]:
-    """How far the rows are beyond the bound of one claim, counted from 0; see `Beyond`."""
+    """Return how far the rows are beyond the bound of one claim, counted from 0; see `Beyond`."""
     holds, worst, bound = (
         table[name].to_numpy() for name in claim_columns(number, "holds", "worst", "bound")
     )

@@ -1,4 +1,4 @@
-"""What the command prints of a sweep."""
+"""The lines that the command prints about a sweep."""
 
 import sys
 from typing import Any

@@ -46,7 +46,7 @@ class Sweep:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the sweep and its scene are warned of; what single rows are stands in the table."""
+        """The warnings of the sweep and of its scene; those of single rows are in the table."""
         return self.plan.notes
 
     @property
@@ -78,7 +78,7 @@ class Sweep:
 
     @property
     def holds(self) -> bool:
-        """Whether all rows could be run and all claims hold."""
+        """Return whether all rows could be run and all claims hold."""
         return self.holding == self.rows
 
     def __bool__(self) -> bool:
@@ -133,7 +133,7 @@ def sweep(
 
 
 def _fingerprint(plan: SweepPlan, job: Job) -> str:
-    """What tells a sweep from others: its text, its points, and all that its results depend on."""
+    """Return the digest of a sweep: its text, its points, and all that its results depend on."""
     digest = hashlib.sha256(f"{plan.text}\0{job.identity}".encode())
     for axis in plan.axes:  # a sample may be another with another scipy
         digest.update(repr(axis.values.tolist()).encode())

@@ -1,4 +1,4 @@
-"""Which rows run next: batches long enough to keep all workers busy and the scheduling process idle."""
+"""The schedule of rows: batches long enough to keep all workers busy and the scheduling process idle."""
 
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -113,7 +113,7 @@ def run_batches(
 
 
 def _reason(scene: Scene, died: Died) -> str:
-    """Why a row could not be run whose process has ended."""
+    """Return why a row whose process has ended could not be run."""
     inside = scene.unprotected
     who = f", with {', '.join(inside)} in it; isolated = true says which call of which FMU" if inside else ""
     return f"{died}{who}"

@@ -42,7 +42,7 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What a `[sensitivity]` table asks for; `outputs` are columns of the table of results."""
+    """A `[sensitivity]` table; `outputs` are columns of the table of results."""
 
     method: str
     samples: int
@@ -80,7 +80,7 @@ def _salib(part: str, method: str) -> Any:
 
 
 def sensitivity_of(options: dict[str, Any], ranges: Sequence[Range], columns: Sequence[str]) -> Sensitivity:
-    """What a `[sensitivity]` table asks for. Raises LoomfmuError."""
+    """Return the `[sensitivity]` table, checked. Raises LoomfmuError."""
     method = options.get("method", METHODS[0])
     if method not in METHODS:
         raise LoomfmuError(
@@ -110,7 +110,7 @@ def sensitivity_of(options: dict[str, Any], ranges: Sequence[Range], columns: Se
 
 @dataclass(frozen=True)
 class Influence:
-    """How much an output depends on each range: `indices` by name, a number for each of `keys`.
+    """The influence of each range on an output: `indices` by name, a number for each of `keys`.
 
     `note` says why there are none. Values of Morris's method are in the unit `label` of the output.
     """

@@ -44,7 +44,7 @@ class Store:
         self.bars_path = directory / "sensitivity.png"
 
     def trace_path(self, row: int) -> Path:
-        """Where the full trace of a row is."""
+        """Return the path of the full trace of a row."""
         return self.traces / f"row_{row:06d}.h5"
 
     def done(self) -> list[range]:
@@ -126,13 +126,13 @@ class Store:
         return [self.batches, self.traces]
 
     def results(self) -> list[Path]:
-        """What is there under the names of a sweep's results."""
+        """Return the files that exist under the names of a sweep's results."""
         patterns = ((self.batches, "rows_*.parquet"), (self.traces, "row_*.h5"), (self.traces, TRACE_PARTIAL))
         found = [path for folder, pattern in patterns for path in files(folder, pattern)]
         return [path for path in self.targets if path.exists()] + found
 
     def partial(self) -> list[Path]:
-        """What a sweep that was killed was about to write."""
+        """Return the partial files that a killed sweep has left."""
         patterns = ((self.directory, PARTIAL), (self.batches, PARTIAL), (self.traces, TRACE_PARTIAL))
         return [path for folder, pattern in patterns for path in files(folder, pattern)]
 

@@ -74,7 +74,7 @@ def schema_of(plan: SweepPlan, labels: tuple[Label, ...]) -> Any:
 
 
 def _for_pandas(fields: list[Any]) -> dict[str, Any]:
-    """What pandas reads Booleans by: a row that could not be run has none, which only its own type holds."""
+    """Return pandas' metadata of Booleans: a row that could not be run has none, which its own type holds."""
     booleans = [field.name for field in fields if field.type == pa.bool_()]
     about = {"pandas_type": "bool", "numpy_type": "boolean", "metadata": None}
     columns = [{"name": name, "field_name": name, **about} for name in booleans]
@@ -82,7 +82,7 @@ def _for_pandas(fields: list[Any]) -> dict[str, Any]:
 
 
 def labels_of(table: Any) -> tuple[Label, ...]:
-    """What the claims of a table or of a part of it are about."""
+    """Return the labels of the claims of a table or of a part of it."""
     return tuple(Label(**each) for each in json.loads(table.schema.metadata[b"claims"]))
 
 

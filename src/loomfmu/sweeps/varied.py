@@ -1,4 +1,4 @@
-"""What a key of a sweep stands for: which values of the scene it sets, of what type and in what unit."""
+"""The key of a sweep: the values of the scene that it sets, with their type and unit."""
 
 import math
 from collections.abc import Callable
@@ -52,7 +52,7 @@ class Varied:
 
 
 def varied(scene: Scene, key: str) -> Varied:
-    """What a key stands for in a scene. Raises LoomfmuError, naming the nearest key that there is."""
+    """Return the values that a key sets in a scene. Raises LoomfmuError, naming the nearest known key."""
     pairs = overridden(scene.instances, key, components(scene.instances))
     if not pairs[0][0]:
         return _of_scene(key)

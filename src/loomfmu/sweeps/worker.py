@@ -1,4 +1,4 @@
-"""What a worker does: evaluate rows, one after the other, in instances that it keeps.
+"""A worker, which evaluates rows one after the other, in instances that it keeps.
 
 It imports no more than a run does; tables are made where the sweep was started.
 """
@@ -29,7 +29,7 @@ _turn = threading.Lock()
 
 @dataclass(frozen=True)
 class Job:
-    """What all rows of a sweep have in common; `identity` is what the results depend on beside them."""
+    """The common settings of all rows of a sweep; `identity` is the digest of the scene and its FMUs."""
 
     path: Path
     fixed: tuple[tuple[str, Any], ...]
@@ -42,7 +42,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Label:
-    """What a claim is about: its words and signal, the unit of its values and the one to show them in."""
+    """The label of a claim: its words and signal, the unit of its values and the one to show them in."""
 
     claim: str
     signal: str
@@ -51,7 +51,7 @@ class Label:
 
 
 class ClaimResult(NamedTuple):
-    """What the result of a row has of each claim, in this order; all None if the row could not be run."""
+    """The columns that a row has for each claim, in this order; all None if the row could not be run."""
 
     holds: bool | None = None
     worst: float | None = None
@@ -78,7 +78,7 @@ class Batch:
 
 
 class Planned(Protocol):
-    """What a sweep and a search have in common: a scene, and how it is run."""
+    """A plan of a sweep or a search: a scene, and how it is run."""
 
     @property
     def path(self) -> Path:
@@ -102,7 +102,7 @@ class Planned(Protocol):
 
 
 def job_of(plan: Planned) -> Job:
-    """What workers need of a plan."""
+    """Return the job of a plan's workers."""
     known = identity(plan.scene, plan.flavour)
     return Job(plan.path.absolute(), tuple(plan.fixed.items()), plan.flavour, plan.values, known)
 
@@ -131,7 +131,7 @@ def run_rows(job: Job, settings: list[dict[str, Any]]) -> Batch:
 
 
 def _label(claim: dict[str, Any], verdict: Verdict) -> Label:
-    """What a claim is about: its name and what it judges."""
+    """Return the label of a claim: its name, or its kind and signal."""
     named = verdict.claim if claim.get("name") else called(claim, verdict)
     return Label(named, verdict.signal, verdict.unit, verdict.display_unit)
 

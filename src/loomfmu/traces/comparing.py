@@ -26,7 +26,7 @@ PROVENANCE = ("software", "flavour", "grid", "steps_per_revolution", "step")
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What counts as equal: a share of each signal's largest magnitude, or an amount for names like these."""
+    """The tolerance of a comparison: a share of each signal's largest magnitude, or an amount by name."""
 
     share: float
     absolute: Mapping[str, str | float]
@@ -36,7 +36,7 @@ class Tolerance:
             raise LoomfmuError(f"tolerance = {shown(self.share)} must be a number, 0 or more")
 
     def of(self, name: str, unit: str, scale: float, exact: bool = False) -> float:
-        """What two values of that name may differ by, in its unit; whole numbers and texts are exact."""
+        """Return by how much two values of that name may differ; whole numbers and texts are exact."""
         for pattern, amount in self.absolute.items():
             if name == pattern or fnmatch.fnmatchcase(name, pattern):
                 try:
@@ -63,7 +63,7 @@ def compare(
     ignore: Sequence[str] = (),
     over: Literal["angle", "time"] | None = None,
 ) -> Comparison:
-    """What differs between two traces, where first and by how much; true if nothing does.
+    """Return the differences between two traces, the first and the largest; true if there are none.
 
     Args:
         first, second: traces or their files
@@ -167,7 +167,7 @@ def _doubt(unclear: Sequence[_Unclear]) -> tuple[str, str]:
 
 
 def _difference(meeting: Meeting, signal: str, tolerance: Tolerance) -> Difference | Change | _Unclear | None:
-    """What differs of a signal, if anything does."""
+    """Return the difference of a signal, if any."""
     trace, other = meeting.traces
     unit, theirs = trace.unit(signal), other.unit(signal)
     factor = 1.0
@@ -284,7 +284,7 @@ def _status(first: Trace, second: Trace) -> Iterator[Change]:
 
 
 def _notes(first: Trace, second: Trace) -> Iterator[str]:
-    """What else is not the same, and may explain a difference."""
+    """Yield other differences, which may explain those of the signals."""
     mine, others = (trace.attributes for trace in (first, second))
     common = sorted(name for name in mine if name.startswith("fmu_") and name in others)
     for name in (*PROVENANCE, *(name for name in common if name.endswith("_version"))):

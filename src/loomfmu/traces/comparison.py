@@ -1,4 +1,4 @@
-"""What differs between two traces, as `compare` found it and as people read it."""
+"""The differences between two traces, as data and in words."""
 
 import math
 from collections import Counter
@@ -133,7 +133,7 @@ class Comparison:
 
     @property
     def equal(self) -> bool:
-        """Whether nothing differs."""
+        """Return whether nothing differs."""
         return bool(self)
 
     @property
@@ -170,7 +170,7 @@ class Comparison:
         return [((*head[:2], *names, *head[4:]), found) for head, found in tables if found]
 
     def _ends(self, most: int | None) -> list[str]:
-        """Where the traces begin to differ, and how many signals the table leaves out."""
+        """Return where the traces begin to differ, and how many signals the table leaves out."""
         if self.earliest is None:
             return []
         more = len(self.differences[most:]) if most is not None else 0

@@ -49,7 +49,7 @@ def _endless(path: Path, limit: str) -> LoomfmuError:
 
 
 def main(path: str, limit: int) -> int:
-    """What the process does, within a limit on its CPU time [s]."""
+    """Check a file in this process, within a limit on its CPU time [s]."""
     _limit_cpu_time(limit)
     try:
         Trace(path).check()

@@ -17,7 +17,7 @@ WHOLE = 1e-9  # of a revolution: what a sample may be beside its end
 
 
 class Signals(Protocol):
-    """What `traces.signals.Signals` has that a dataset needs."""
+    """The part of `traces.signals.Signals` that a dataset needs."""
 
     name: str
 

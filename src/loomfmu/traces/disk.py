@@ -43,7 +43,7 @@ def reserve(file: int, size: int) -> None:
 
 
 def superblock(path: Path) -> tuple[bool, bool, int]:
-    """Whether an HDF5 file is marked as open for changes, whether readers may join, and its length.
+    """Return whether an HDF5 file is marked as open for changes, whether readers may join, and its length.
 
     The marks stay when the writer is killed; the length is the one that the file says it has.
     """

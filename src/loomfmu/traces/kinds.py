@@ -1,4 +1,4 @@
-"""How the files of traces are known."""
+"""The kinds of files that traces consist of."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def _is_partial(path: Path) -> bool:
-    """Whether a run could have left a file: a kill may come when only its space is reserved."""
+    """Return whether a run may have left a file: if killed early, it has only reserved the space."""
     with path.open("rb") as file:
         return file.read(len(SIGNATURE)) in (SIGNATURE, bytes(len(SIGNATURE)))
 

@@ -1,4 +1,4 @@
-"""What the file of a trace may consist of: anything else might read other files, or fill the memory."""
+"""The allowed contents of a trace's file: anything else might read other files, or fill the memory."""
 
 from typing import Any
 
@@ -15,12 +15,12 @@ class Foreign(Exception):
 
 
 def has(group: Any, name: str) -> bool:
-    """Whether a group has something of that name, wherever it may lie."""
+    """Return whether a group has a member of that name, even one that leads to another file."""
     return bool(group.id.links.exists(name.encode()))
 
 
 def member(group: Any, name: str) -> Any:
-    """What a group has under a name. Raises Foreign for a link: it may lead to another file."""
+    """Return the member of a group by its name. Raises Foreign for a link: it may lead to another file."""
     check_link(group, name)
     return group[name]
 

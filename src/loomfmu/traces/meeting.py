@@ -1,4 +1,4 @@
-"""Where two traces are compared: at equal shaft angles, or at equal times.
+"""The places at which two traces are compared: equal shaft angles, or equal times.
 
 The samples of the trace that has fewer of them are the places. Where the other one has a sample at the same
 place, as with equal steps or half the step, the two values are compared as they are. Elsewhere its value is
@@ -30,7 +30,8 @@ ANGLE, TIME = AXES = ("angle", "time")
 
 @dataclass(frozen=True)
 class Meeting:
-    """Where two traces are compared: samples `rows` of the `base`, with the other's samples before them.
+    """The places at which two traces are compared: samples `rows` of the `base`, with the other's before
+    them.
 
     `between` is how far each place is from the sample before to the one after it, 0 at a sample.
     """
@@ -45,7 +46,7 @@ class Meeting:
 
     @property
     def same(self) -> bool:
-        """Whether both have their samples at the same places."""
+        """Return whether both have their samples at the same places."""
         return len(self.axes[0]) == len(self.axes[1]) == len(self.before) and not np.any(self.between)
 
     @property
@@ -113,7 +114,7 @@ def _column(trace: Trace, signal: str) -> NDArray[Any]:
 
 
 def _bend(axis: Floats, values: Floats) -> Floats:
-    """How far each value is from the line between its neighbours; the first and the last as those beside."""
+    """Return the distance of each value from the line between its neighbours; the ends repeat theirs."""
     if len(values) < 3:
         return np.full(len(values), np.ptp(values))
     share = (axis[1:-1] - axis[:-2]) / (axis[2:] - axis[:-2])
@@ -130,7 +131,7 @@ def _way(angle: Floats) -> int:
 
 
 def meet(first: Trace, second: Trace, over: str | None) -> Meeting:
-    """Where two traces are compared. Raises LoomfmuError if they have no place in common."""
+    """Return the places at which to compare two traces. Raises LoomfmuError if they share no range."""
     traces = (first, second)
     for trace in traces:
         if not trace.rows:
@@ -155,7 +156,7 @@ def meet(first: Trace, second: Trace, over: str | None) -> Meeting:
 
 
 def _slack(axis: Floats) -> float:
-    """What two places may differ by and still be the same."""
+    """Return the difference below which two places count as the same."""
     step = float(np.min(np.diff(axis))) if len(axis) > 1 else 0.0
     return SAME_PLACE * step + ROUNDINGS * float(np.spacing(np.max(np.abs(axis))))
 

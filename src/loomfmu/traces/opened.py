@@ -45,7 +45,7 @@ class TraceFile:
 
     @property
     def path(self) -> Path:
-        """Where the file is now."""
+        """The present path of the file."""
         return self._place.path
 
     def _open(self) -> Any:
@@ -87,7 +87,9 @@ class TraceFile:
 
 
 def is_trace(path: Path) -> bool:
-    """Whether a file is a trace by the names in it: no value is read, which damage can make endless."""
+    """Return whether a file is a trace by the names in it; values, which damage can make endless, are not
+    read.
+    """
     try:
         with _hdf5(path) as file:
             return not _lacking(file)
@@ -109,7 +111,7 @@ def _hdf5(path: Path) -> Any:
 
 
 def _damage(path: Path) -> str:
-    """Why HDF5 cannot open a file, where that can be seen; empty elsewhere."""
+    """Return why HDF5 cannot open a file, or an empty text if that is not known."""
     try:
         size, length = path.stat().st_size, superblock(path)[2]
         if not h5py.is_hdf5(path):
@@ -120,13 +122,13 @@ def _damage(path: Path) -> str:
 
 
 def _lacking(file: Any) -> str:
-    """What every trace has and a file does not; empty for a trace."""
+    """Return a required part that a file lacks, or an empty text for a trace."""
     datasets = (f"the dataset /{name}" for name in SHARED if not has(file, name))
     attributes = (f"the attribute {name!r}" for name in REQUIRED if name not in file.attrs)
     return next(iter((*datasets, *attributes)), "")
 
 
 def _state(path: Path) -> tuple[int, ...]:
-    """What tells a file from another one under its name, on every machine that shares it."""
+    """Return numbers that change with a file and are the same on every machine that shares it."""
     found = path.stat()
     return found.st_ino, found.st_size, found.st_mtime_ns

@@ -1,4 +1,4 @@
-"""Where the files of traces lie: one that a new run replaces is kept while its trace is in use.
+"""The places of the files of traces: one that a new run replaces is kept while its trace is in use.
 
 A second run of a scene writes to the name that the first one has. The first file then gets a hidden name
 beside it, which lasts as long as the `Trace` objects that read it. That costs no copy, no memory and no open
@@ -23,7 +23,7 @@ from ..files import put
 
 
 class Place:
-    """Where the file of a trace lies now; shared by all that read it."""
+    """The present place of a trace's file; shared by all that read it."""
 
     def __init__(self, path: Path):
         self.path = path
@@ -63,7 +63,7 @@ def mark() -> str:
 
 
 def abandoned(path: Path) -> list[Path]:
-    """What processes that were killed have left beside a trace: hidden older ones, and those not complete."""
+    """Return the files that killed processes have left beside a trace: hidden older ones and partial ones."""
     pattern = re.compile(rf"\.?{re.escape(path.name)}\.{_machine()}-(\d+)-[0-9a-f]{{8}}(\.partial)?")
     try:
         found = [(each, pattern.fullmatch(each.name)) for each in path.parent.iterdir()]
@@ -84,7 +84,7 @@ def _machine() -> str:
 
 
 def _runs(process: int) -> bool:
-    """Whether a process of this machine is there; Windows, where asking would end it, says yes."""
+    """Return whether a process of this machine runs; always true on Windows, where asking would end it."""
     if os.name == "nt":
         return True
     try:

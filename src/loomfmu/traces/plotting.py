@@ -18,7 +18,7 @@ Curve = tuple[Signals, str, str]  # a trace, its signal, what the legend calls i
 
 
 def plot(trace: Signals, signals: Sequence[str], over: str | None, fold: bool, axes: Any) -> Any:
-    """What `Trace.plot` does."""
+    """Plot signals for `Trace.plot`."""
     if not signals:
         raise LoomfmuError(f"{trace.name}: name at least one signal to plot")
     over = checked(trace, over, fold)
@@ -71,7 +71,7 @@ def figure(size: tuple[float, float], shown: bool = False, layout: Any = "constr
 
 
 def checked(trace: Signals, over: str | None, fold: bool) -> str:
-    """What to plot over: "angle" or "time". Raises LoomfmuError where that makes no sense."""
+    """Return the axis to plot over, "angle" or "time". Raises LoomfmuError for one that makes no sense."""
     if not len(trace.time):
         raise LoomfmuError(f"{trace.name}: the trace has no samples, so there is nothing to plot")
     if over is None:
@@ -113,7 +113,7 @@ def draw(axes: Any, curves: Sequence[Curve], over: str, fold: bool) -> None:
 
 
 def degrees() -> Any:
-    """What places the ticks of an axis in degrees."""
+    """Return a locator that places the ticks of an axis in degrees."""
     from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(nbins=12, steps=[1, 1.5, 3, 4.5, 6, 9, 10])

@@ -44,7 +44,7 @@ class Trace(Signals):
         self._texts: dict[tuple[str, str], str | None] = {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Which file it is. A copy in another process reads values when it needs them, of this file alone."""
+        """Return the file alone: a copy in another process reads values from it when it needs them."""
         return {"_file": self._file, "given": self.given, "name": self.name, "_cache": {}, "_texts": {}}
 
     def __repr__(self) -> str:
@@ -67,7 +67,7 @@ class Trace(Signals):
 
     @property
     def path(self) -> Path:
-        """Where the file is now."""
+        """The present path of the file."""
         return self._file.path
 
     def __enter__(self) -> Self:
@@ -176,13 +176,13 @@ class Trace(Signals):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What the file says of the run."""
+        """The attributes of the run in the file."""
         with self._file.opened() as file:
             return attributes(file)
 
     @property
     def heading(self) -> str:
-        """What was run: machine, head, weave and speed, then all other values that differ from the scene.
+        """The heading of the run: machine, head, weave and speed, then all other values that were set.
 
         Traces of older versions do not say; then it is the title of the scene in quotes, and what differs.
         """
@@ -203,17 +203,17 @@ class Trace(Signals):
 
     @property
     def ended_by(self) -> str:
-        """Which FMU ended the run before its time, and when; empty for one that went to its end."""
+        """The FMU that ended the run before its time, and when; empty if the run went to its end."""
         return str(self.attributes.get("ended_by", ""))
 
     @cached_property
     def cut_short(self) -> str:
-        """How far the run came, if an FMU ended it early though the scene does not allow that."""
+        """The share of the run that was made, if an FMU ended it early and the scene forbids that."""
         return str(self.attributes.get("cut_short", ""))
 
     @property
     def judged(self) -> bool:
-        """Whether the verdicts on its claims are stored with the run: it went to its end."""
+        """Return whether the verdicts are stored with the run, because it went to its end."""
         return "claims" in self.attributes
 
     @property
@@ -259,7 +259,7 @@ class Trace(Signals):
         return self._text(signal, "DISPLAY_UNIT") or self.unit(signal)
 
     def description(self, signal: str) -> str:
-        """What a signal is."""
+        """Return the description of a signal."""
         return str(self._text(signal, "COMMENT"))
 
     def plot(self, *signals: str, over: str | None = None, fold: bool = False, axes: Any = None) -> Any:
@@ -293,7 +293,7 @@ class Trace(Signals):
         return name if variable and name in self else None
 
     def is_real(self, signal: str) -> bool:
-        """Whether a signal holds real numbers; whole numbers, choices and yes or no do not vary smoothly."""
+        """Return whether a signal holds real numbers; integers, choices and booleans do not vary smoothly."""
         with self._dataset(signal) as dataset:
             return bool(dataset.dtype.kind == "f")
 

@@ -56,8 +56,8 @@ class Column(NamedTuple):
 
 
 class Early(NamedTuple):
-    """How an FMU ended a run early: which one and when, and, where the scene does not allow that, how far the
-    run came. Texts are empty where there is nothing to say.
+    """The early end of a run: which FMU ended it and when, and, if the scene does not allow that, how far it
+    came. Texts are empty if they do not apply.
     """
 
     ended_by: str = ""
@@ -90,7 +90,7 @@ class Signals(ABC):
 
     @cached_property
     def cut_short(self) -> str:
-        """How far the run came, if an FMU ended it early though the scene does not allow that."""
+        """The share of the run that was made, if an FMU ended it early and the scene forbids that."""
         return ""
 
     @abstractmethod
@@ -102,7 +102,7 @@ class Signals(ABC):
         """Display unit of a signal."""
 
     def displayed(self, signal: str) -> tuple[float, str]:
-        """What the values that people read are multiplied by to give the recorded ones, and their unit."""
+        """Return the unit that people read and the factor from it to the recorded values."""
         display = self.display(signal)
         return unit(display).factor, self.unit(signal) if display == "1" else display
 
@@ -112,12 +112,14 @@ class Signals(ABC):
 
     @property
     def turns(self) -> bool:
-        """Whether a shaft turns."""
+        """Return whether a shaft turns."""
         angle = self.shaft_angle
         return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and bool(angle[-1] > angle[0])
 
     def turned_otherwise(self, nominal: float) -> str:
-        """How far the shaft turned, if not by the nominal revolutions: a run-up takes its time from them."""
+        """Return how far the shaft turned if not by the nominal revolutions, as in a run-up; else an empty
+        text.
+        """
         if not self.turns:
             return ""
         turned = float(self.shaft_angle[-1] - self.shaft_angle[0]) / (2.0 * math.pi)
@@ -160,7 +162,7 @@ class Signals(ABC):
 
     @property
     def shared(self) -> dict[Any, Any]:
-        """What the claims on a run have in common, where it is kept: of a file it may be too large."""
+        """Data that the claims on a run share, where it is kept: that of a file may be too large."""
         return {}
 
     def to_xarray(self, *signals: str, fold: bool | int = False) -> Any:
@@ -177,7 +179,7 @@ class Signals(ABC):
         return dataset(self, signals or tuple(self), fold)
 
     def description(self, signal: str) -> str:
-        """What a signal is."""
+        """Return the description of a signal."""
         return ""
 
     def read(self, signal: str) -> NDArray[Any]:
@@ -244,7 +246,7 @@ class Recording(Signals):
 
     @property
     def shared(self) -> dict[Any, Any]:
-        """What the claims on it have in common."""
+        """Data that the claims on it share."""
         return self._shared
 
     @cached_property
@@ -255,7 +257,7 @@ class Recording(Signals):
 
     @cached_property
     def _places(self) -> tuple[int, int]:
-        """Where the times and the real values are in memory."""
+        """Return the addresses of the times and of the real values in memory."""
         return self._joined[0].ctypes.data, self._joined[2].ctypes.data
 
     def columns(self, signals: Sequence[str]) -> list[Column]:
@@ -304,7 +306,7 @@ class Recording(Signals):
         return self._channel(signal).display
 
     def description(self, signal: str) -> str:
-        """What a signal is."""
+        """Return the description of a signal."""
         return self._channel(signal).description
 
     def rate(self, signal: str) -> str | None:

@@ -82,7 +82,7 @@ class Verdict:
 
     @property
     def reason(self) -> str:
-        """Why it is undecided, as the end of a sentence; empty where the note says why."""
+        """The reason why it is undecided, as the end of a sentence; empty if the note says why."""
         if self.decided or not math.isfinite(self.worst) or self.error == math.inf:
             return ""
         known = math.isfinite(self.error)
@@ -90,7 +90,7 @@ class Verdict:
 
     @property
     def distance(self) -> float:
-        """How far the worst value is from the bound, in `unit`; negative on the wrong side of it.
+        """The distance of the worst value from the bound, in `unit`; negative on the wrong side of it.
 
         It is continuous across the bound, so a root of it is a limit. NaN where there is none: the claim has
         no value, or fails for another reason than its bound (the note says which), or the trace does not say
@@ -208,7 +208,7 @@ def _finite(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def outcome(verdicts: Iterable[Verdict]) -> str:
-    """What came of all claims in a few words, such as "1 of 6 claims fails, 1 is undecided"."""
+    """Return the outcome of all claims in a few words, such as "1 of 6 claims fails, 1 is undecided"."""
     words = [verdict.word for verdict in verdicts]
     failing, undecided = words.count(FAILS), words.count(UNDECIDED)
     parts = [f"{failing} of {len(words)} claims fail{'s' * (failing == 1)}"] * bool(failing)

@@ -58,7 +58,7 @@ class RotorLaws(LawParameters):
     )
 
     def check(self) -> int:
-        """Whether the law can be driven: the rotor goes round, and never back."""
+        """Check that the law can be driven: the rotor makes full turns and never turns back."""
         self.segment = -1
         if self.law == SLOTTED_LEVERS:
             if self.eccentricity >= self.lever_radius or self.eccentricity >= self.driven_radius:
@@ -81,7 +81,7 @@ class RotorLaws(LawParameters):
         return 0
 
     def check_cam(self) -> int:
-        """Whether the cam's points make a law; its spline and highest point."""
+        """Check that the cam's points make a law; set its spline and its highest point."""
         if self.cam_angle[0] != 0.0 or fabs(self.cam_angle[5] - 4.0 * pi) > 1e-9:
             return 4
         for index in range(5):

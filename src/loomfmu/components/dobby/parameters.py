@@ -1,4 +1,4 @@
-"""What the rotor laws of a dobby drive are given by: their parameters, and the points of their splines."""
+"""The parameters of the rotor laws of a dobby drive, and the points of their splines."""
 
 from dataclasses import dataclass
 from math import pi

@@ -1,4 +1,4 @@
-"""What the arguments of claims can be: how each is read, in which unit, within which limits.
+"""The arguments of claims: how each is read, in which unit, within which limits.
 
 A claim declares its fields by `argument`, as components declare their variables.
 """
@@ -29,7 +29,7 @@ class Argument:
         raise NotImplementedError
 
     def doubts(self, given: Any, where: str) -> Iterator[str]:
-        """What is odd about a value without a unit."""
+        """Yield a warning if a value without a unit looks wrong."""
         return iter(())
 
 
@@ -134,14 +134,14 @@ class Window(NamedTuple):
 
     @property
     def width(self) -> float:
-        """How far it reaches [rad], a whole revolution in spite of rounding."""
+        """The width of the window [rad], a whole revolution in spite of rounding."""
         width = self.end - self.start
         width = width if width > 0.0 else width % TURN
         return width if width < TURN - EMPTY else TURN
 
     @property
     def words(self) -> str:
-        """Where it is, as a verdict says it."""
+        """The window in words, for a verdict."""
         return "between {} and {}".format(*(units.show(angle, "deg") for angle in self))
 
     def __str__(self) -> str:
@@ -205,6 +205,6 @@ def argument(kind: Argument, default: Any = MISSING) -> Any:
 
 
 def argument_of(declared: Field[Any]) -> Argument:
-    """What a field of a claim was declared as."""
+    """Return the argument that a field of a claim was declared as."""
     kind: Argument = declared.metadata["argument"]
     return kind

@@ -126,7 +126,7 @@ def sign_changes(points: list[float], begin: float = 0.0, width: float = 1.0) ->
 
 
 def _sign_change(points: list[float]) -> float:
-    """Where a piece that changes its sign once does so, halved until nothing is left between."""
+    """Return the place of the only sign change of a piece, by bisection down to rounding."""
     low, high = 0.0, 1.0
     begins_negative = points[0] < 0.0
     while low < (middle := 0.5 * (low + high)) < high:

@@ -1,4 +1,4 @@
-"""What every kind of claim is: one class, which states its arguments, its signals and how it judges them."""
+"""The base class of claims: its arguments, its signals and how it is judged."""
 
 import math
 import re
@@ -28,7 +28,7 @@ EVERY_STEP, LANDINGS, NOTHING = "every step", "landings", "nothing"
 
 
 class Landings(NamedTuple):
-    """Where steps of the window grid land for a claim.
+    """Times and extremes on which steps of the window grid land for a claim.
 
     `times` are known to be looked at [s]; of each signal in `extremes` the lowest values count, or with -1
     the highest ones.
@@ -86,21 +86,21 @@ class Claim(ABC):
 
     @abstractmethod
     def judge(self, trace: Signals) -> Verdict:
-        """Whether it holds."""
+        """Return the verdict on a run."""
 
     def unseen(self, trace: Signals) -> str:
-        """What the run does not show of all that it must to be judged; an empty text if it shows that.
+        """Return what the run lacks for a judgement, or an empty text if it is complete.
 
         A claim on a loom takes a whole revolution.
         """
         return shaft.short(trace)
 
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
-        """What a verdict on a trace may be off by and runs on other steps may not show."""
+        """Return the error of a verdict that runs on other steps may not show."""
         return self.left_by_model(trace, verdict)
 
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
-        """What it may be off by whatever the steps, as a signal beside the one that is judged says."""
+        """Return the model's own error, on any steps, as the error output of the judged signal states it."""
         return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0
 
     def within(self, trace: Signals) -> list[Stretch] | None:
@@ -108,7 +108,7 @@ class Claim(ABC):
         return None
 
     def landings(self, trace: Signals) -> Landings:
-        """Where steps of the window grid must land, as far as a coarse run of its signals tells."""
+        """Return where steps of the window grid must land, as a coarse run of its signals shows."""
         return Landings([], [])
 
     def verdict(
@@ -172,5 +172,5 @@ class Claim(ABC):
 
 
 def _judges(trace: Signals, verdict: Verdict) -> bool:
-    """Whether the number of a verdict is one of its signal, which may only name where to look."""
+    """Return whether the verdict's number is a value of its signal, which may only name where to look."""
     return verdict.signal in trace and verdict.unit == trace.unit(verdict.signal)

@@ -94,7 +94,7 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
 
 
 def called(table: Mapping[str, Any], verdict: Verdict) -> str:
-    """What tables call the claim of a scene that a verdict is on: its name, or what it judges."""
+    """Return the name of a verdict's claim in tables: its own name, or its kind and signal."""
     return str(table.get("name") or f"{verdict.claim} ({verdict.signal})")
 
 

@@ -42,7 +42,7 @@ class Compiled:
         return float(self._library.value_at(self._motion, time))
 
     def survey(self) -> list[float]:
-        """What `Survey` of curves.py has."""
+        """Return the numbers of `Survey` in curves.py."""
         facts = _Facts()
         self._library.survey(self._motion, facts)
         return facts[:]

@@ -52,7 +52,7 @@ class Survey(NamedTuple):
 
     @property
     def reversed(self) -> "Survey":
-        """That of the same values with the other sign."""
+        """Return the survey of the same values with the other sign."""
         return self._replace(lowest=-self.highest, highest=-self.lowest)
 
 
@@ -82,7 +82,7 @@ class Motion:
 
     @cached_property
     def survey(self) -> Survey:
-        """What the samples show."""
+        """The survey of the samples."""
         if self._compiled:
             return Survey(*self._compiled.survey())
         finite = all(bool(np.isfinite(values).all()) for values in self.values)
@@ -94,12 +94,12 @@ class Motion:
 
     @property
     def finite(self) -> bool:
-        """Whether all values and rates are finite."""
+        """Return whether all values and rates are finite."""
         return bool(self.survey.finite)
 
     @property
     def longest(self) -> float:
-        """How far the samples are apart at most."""
+        """The largest difference of two neighbouring samples."""
         return self.survey.longest
 
     @property
@@ -138,7 +138,7 @@ class Motion:
         )
 
     def doubt(self, intervals: Integers) -> Floats:
-        """How far the polynomials on some intervals may be off, at most in the middle of each.
+        """Return the largest error of the polynomials on some intervals, reached in the middle of each.
 
         Values and rates give a cubic. Its second rates at the ends of an interval are compared with the
         recorded ones, or with those that the rates of the neighbouring samples give. A quintic with these is

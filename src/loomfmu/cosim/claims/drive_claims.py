@@ -83,7 +83,7 @@ class Load:
 
 
 class EnergyBalance(Claim):
-    """What the motor delivers is found again: in the shaft, in its mechanisms and in torques from outside.
+    """The energy that the motor delivers is found again: in the shaft, its mechanisms and outside torques.
 
     What is judged is the largest share that is missing at any sample since the start: of the work that the
     shaft and its loads exchange in a revolution, to and fro. A run whose torques are a step late does not
@@ -186,7 +186,7 @@ def _parameter(trace: Signals, name: str) -> float:
 
 
 def _slip(trace: Signals) -> float:
-    """What the shaft's velocity differs by from the integral of its acceleration, as a share of it.
+    """Return how far the shaft's velocity is from the integral of its acceleration, as a share of it.
 
     Nothing but rounding for loads whose work is known; of second order in the step for others.
     """

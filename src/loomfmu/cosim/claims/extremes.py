@@ -30,12 +30,12 @@ class Extreme(NamedTuple):
 
     @property
     def note(self) -> str:
-        """What a verdict says about it."""
+        """The note of a verdict on it."""
         return COARSE_NOTE if self.coarse else ""
 
 
 def lowest(motion: Motion, sign: float = 1.0, within: Sequence[Stretch] | None = None) -> Extreme:
-    """Where `sign` times the motion is lowest, in the whole run or in some stretches of time."""
+    """Return the lowest point of `sign` times the motion, in the whole run or in some stretches of time."""
     if not motion.finite:
         return lowest_sample(motion, sign, within)
     survey = motion.survey if sign > 0.0 else motion.survey.reversed
@@ -112,7 +112,7 @@ def lowest_sample(motion: Motion, sign: float, within: Sequence[Stretch] | None)
 
 
 def inside(time: Floats, within: Sequence[Stretch] | None) -> NDArray[np.bool_]:
-    """Which samples are in some stretches of time, or in the whole run."""
+    """Return which samples lie in some stretches of time, or in the whole run."""
     if within is None:
         return np.ones(len(time), dtype=bool)
     starts, ends = (np.array([each[end] for each in within]) for end in (0, 1))
@@ -151,7 +151,7 @@ def _pieces(motion: Motion, within: Sequence[Stretch]) -> Iterator[tuple[Integer
 
 
 def nearest(motion: Motion, level: float, within: Sequence[Stretch]) -> Extreme:
-    """How near the motion comes to a level in some stretches of time: 0 where it passes it."""
+    """Return the least distance of the motion from a level in some stretches of time, 0 if it passes it."""
     if not motion.finite:
         return Extreme(math.nan, math.nan)
     for time in motion.crossings(level):

@@ -28,7 +28,7 @@ Ends = tuple[list[Stretch], list[Stretch]]  # when a motion is at the lower end,
 
 
 class _Lifted(Claim, kind=False):
-    """What is judged by the lift of a frame's warp: the carrier's, or with "frame" that of the frame."""
+    """A claim that is judged by the lift of a frame's warp: the carrier's, or with "frame" the frame's."""
 
     heald: str = argument(Name())
     lifted_by: str = argument(Name(), "")
@@ -56,7 +56,7 @@ class _Span(_Lifted, kind=False):
     both_ways: ClassVar[bool] = False  # whether a carrier that swings as far beyond the end is not near it
 
     def _distance(self, trace: Signals) -> float:
-        """How near to an end of its stroke the frame is to be [m]."""
+        """Return how near to an end of its stroke the frame must be [m]."""
         raise NotImplementedError
 
     def _judge(self, trace: Signals, text: str, of: str) -> Verdict:
@@ -211,7 +211,7 @@ def _ends(lift: Motion, distance: float, stroke: float, both_ways: bool) -> Ends
 
 
 def _common(some: list[Stretch], others: list[Stretch], time: Floats) -> list[Stretch]:
-    """What both have in common."""
+    """Return the intersections of two lists of stretches."""
     pairs = ((max(one.start, two.start), min(one.end, two.end)) for one in some for two in others)
     return [Stretch(low, high, low > time[0] and high < time[-1]) for low, high in pairs if low < high]
 
@@ -219,7 +219,7 @@ def _common(some: list[Stretch], others: list[Stretch], time: Floats) -> list[St
 def _cut_off(
     spans: list[Stretch], turned: list[float], limit: float, repeats: bool, time: Floats
 ) -> tuple[list[tuple[float, float]], str]:
-    """What can be judged of spans that the ends of the run cut off: their lengths and starts, and a note.
+    """Return lengths and starts of the spans that the ends of the run cut off, as far as known, and a note.
 
     Such a span lasts at least as long as the run shows. If the motion repeats, the piece at the end of the
     run goes on as the one at its start does, so both make up one span, less whole revolutions of holding.
@@ -244,7 +244,7 @@ def _cut_off(
 
 
 def _repeats(lift: Motion, stroke: float, turning: Motion) -> bool:
-    """Whether the run is whole revolutions, and the frame ends as far from an end as it began."""
+    """Return whether the run is whole revolutions, and the frame ends as far from an end as it began."""
     turns = abs(float(turning.values[0][-1] - turning.values[0][0])) / TURN
     first, last = (min(abs(lift.values[0][end]), abs(stroke - lift.values[0][end])) for end in (0, -1))
     return round(turns) > 0 and abs(turns - round(turns)) < 1e-9 and abs(last - first) <= 1e-9 * stroke

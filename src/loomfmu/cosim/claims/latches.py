@@ -46,7 +46,7 @@ def latched(
 
 
 def _held(trace: Signals, latch: str, sign: float, within: Sequence[Stretch] | None) -> Iterator[_Held]:
-    """What a latch holds about each of some stretches of time, or in the whole run."""
+    """Yield the extremes that a latch holds in some stretches of time, or in the whole run."""
     time, held = trace.time, sign * trace[latch]
     near, end = SAME * float(time[-1] - time[0]), len(time) - 1
     for start, stop, _ in [Stretch(float(time[0]), float(time[-1]))] if within is None else within:
@@ -58,7 +58,7 @@ def _held(trace: Signals, latch: str, sign: float, within: Sequence[Stretch] | N
 
 
 def reached(trace: Signals, latch: str, followed: Floats, last: int = -1) -> float:
-    """When the extreme that is held at the end, or at the `last` sample that counts, was reached.
+    """Return the time of the extreme that is held at the end, or at the `last` sample that counts.
 
     It is known as well as the samples show it.
 

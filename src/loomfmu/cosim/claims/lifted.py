@@ -1,4 +1,4 @@
-"""What lifts the warp of a heald frame: the carrier on springs in it, or the frame itself."""
+"""The lift of the warp of a heald frame: that of its sprung carrier, or of the frame itself."""
 
 from collections.abc import Container, Iterator, Mapping
 from typing import Protocol

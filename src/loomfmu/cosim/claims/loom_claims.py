@@ -21,7 +21,7 @@ NEVER = "the head never enters the shed in this run"
 
 
 class _InShed(Claim, kind=False):
-    """What holds while the rapier head is in the shed, which is while its travel exceeds the idle travel."""
+    """A claim on the time while the rapier head is in the shed: its travel exceeds the idle travel."""
 
     weft: str = argument(Name(), "weft")
     belt: str = argument(Name(), "belt")
@@ -94,7 +94,7 @@ class RapierInOpenShed(_InShed):
 
 
 def _opening(frame: str, lift: str) -> str:
-    """What is judged of a frame, or of the carrier in it."""
+    """Return the name of the opening at a frame, or at the carrier in it."""
     return f"2 |{frame}.warp_height|" if lift == f"{frame}.lift" else f"2 |warp height by {lift}|"
 
 
@@ -122,7 +122,7 @@ class ReedClearOfRapier(_InShed):
 
 
 class _Transfer(Claim, kind=False):
-    """What holds of the transfer: the hand-over lasts while the heads overlap by what the hooks need."""
+    """A claim on the transfer: the hand-over lasts while the heads overlap by what the hooks need."""
 
     transfer: str = argument(Name(), "transfer")
 

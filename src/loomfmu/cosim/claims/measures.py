@@ -1,4 +1,4 @@
-"""What a run is worth by one signal: an extreme, a mean, a value at an angle, or what an output holds itself.
+"""Measures of a run by one signal: an extreme, a mean, a value at an angle, or an output that holds it.
 
 Each is a claim without a bound: its verdict has the number as the worst value, with its numerical error.
 """

@@ -1,4 +1,4 @@
-"""Where the main shaft stands in a recorded run, and when it passes an angle."""
+"""The main shaft in a recorded run: its angle over time, and the times at which it passes an angle."""
 
 import math
 
@@ -22,7 +22,7 @@ def angle(trace: Signals) -> Motion | None:
 
 
 def too_coarse(turning: Motion) -> bool:
-    """Whether the shaft turns so far between two samples that they do not tell how a loom moves."""
+    """Return whether the shaft turns too far between two samples for them to show how a loom moves."""
     return turning.longest > FARTHEST * (1.0 + SAME)
 
 
@@ -36,7 +36,7 @@ def short(trace: Signals) -> str:
 
 
 def place(turning: Motion, time: float) -> tuple[float, int]:
-    """Where the shaft stands in its revolution, and the revolution, counted from 1 the way that it turns."""
+    """Return the shaft's angle in its revolution [rad], and the number of the revolution, from 1."""
     at, first, last = turning.at(time), float(turning.values[0][0]), float(turning.values[0][-1])
     way = -1.0 if last < first else 1.0
     revolution = math.floor(way * at / TURN) - math.floor(way * first / TURN) + 1

@@ -90,7 +90,7 @@ class Bounded(Claim, kind=False):
         return self._known(trace)[0]
 
     def _known(self, trace: Signals) -> tuple[list[Stretch] | None, list[Stretch]]:
-        """When the signal is judged, None for the whole run, and when it is not known."""
+        """Return the stretches in which the signal is judged, None for all, and those where it is unknown."""
         within = None if self.window is None else shaft.times_within(trace, self.window)
         unknown = gaps(trace, self.signal, within)
         return (known_within(trace, unknown, within) if unknown else within), unknown

@@ -1,4 +1,4 @@
-"""Where a signal is not known, and how far it may be off whatever the steps: as signals beside it say."""
+"""Stretches in which a signal is not known, and errors of the model, as other outputs state both."""
 
 import math
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def gaps(trace: Signals, signal: str, within: Sequence[Stretch] | None = None) -
 
 
 def off_by(trace: Signals, verdict: Verdict, within: Sequence[Stretch] | None) -> float:
-    """How far the signal of a verdict may be off whatever the steps, as a signal beside it says.
+    """Return the error of a verdict's signal that no steps reduce, as its error output states it.
 
     That counts wherever the signal is as near to the worst value as it may be off.
     """
@@ -50,7 +50,7 @@ def off_by(trace: Signals, verdict: Verdict, within: Sequence[Stretch] | None) -
 def known_within(
     trace: Signals, without: Sequence[Stretch], within: Sequence[Stretch] | None
 ) -> list[Stretch]:
-    """What is left of some stretches of time, or of the whole run, without others."""
+    """Return some stretches of time, or the whole run, without others."""
     left = list(within) if within is not None else [Stretch(float(trace.time[0]), float(trace.time[-1]))]
     for gap in without:
         pieces = [

@@ -40,14 +40,15 @@ def file_here(component: type[Component], flavour: str, fmi: int = 2) -> Path:
 
 
 def is_here(component: type[Component], flavour: str) -> bool:
-    """Whether `file_here` has nothing to build."""
+    """Return whether `file_here` has nothing to build."""
     return bool(_brought(component, flavour, 2)) or has_file(
         *_place(component, flavour, (platforms.host(),), 2)
     )
 
 
 def is_our_build(path: Path, name: str, fmi: int) -> bool:
-    """Whether an FMU of a component's name is, in all that counts in a run, the one that we build of it.
+    """Return whether an FMU of a component's name equals, in all files that a run uses, the one that we
+    build.
 
     What a file says of its maker is no proof: another version, or someone else, may have written that.
     """
@@ -72,7 +73,7 @@ def run_files(path: Path) -> dict[str, bytes]:
 
 
 def counts_in_run(member: str) -> bool:
-    """Whether a file of an FMU counts in a run: not documents, sources and other platforms' libraries."""
+    """Return whether a run uses a file of an FMU: not documents, sources and other platforms' libraries."""
     top, _, rest = member.partition("/")
     if top == "binaries":
         return rest.partition("/")[0] in ("", fmpy.platform, fmpy.platform_tuple)

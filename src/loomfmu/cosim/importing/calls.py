@@ -60,7 +60,7 @@ class Compiled(ctypes.Structure):
 
 
 class Rollback(ctypes.Structure):
-    """How a state is saved and restored: `struct rollback` of stepper.c."""
+    """The calls that save and restore a state: `struct rollback` of stepper.c."""
 
     _fields_ = (
         ("save", ctypes.c_void_p),
@@ -84,5 +84,5 @@ class Call(NamedTuple):
 
 
 def address(function: Any) -> int | None:
-    """Where the machine code of a library's function is."""
+    """Return the address of a library function's machine code."""
     return ctypes.cast(cast(Any, getattr(function, "plain", function)), ctypes.c_void_p).value

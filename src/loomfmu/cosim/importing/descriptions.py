@@ -25,7 +25,7 @@ KINDS = {
 
 
 def is_ours(description: Any) -> bool:
-    """Whether an FMU was made by this package."""
+    """Return whether an FMU states that this package made it."""
     return (description.generationTool or "").startswith("loomfmu ")
 
 
@@ -130,7 +130,7 @@ def plain_names(names: Iterable[str], recorded: Collection[str] = ()) -> list[st
 
 
 def _rates(description: Any, names: dict[str, str], component: type[Component] | None) -> dict[str, str]:
-    """Which output is the time derivative of which: our declarations, or what the description says."""
+    """Return the outputs and their time derivatives, by our declarations or by the model description."""
     if component is not None:
         return {v.name: v.rate for v in variables_of(component) if v.rate}
     return {

@@ -39,7 +39,7 @@ def _in_vector(base_type: str) -> Any:
 
 
 class _Flags(ctypes.Structure):
-    """What `fmi3DoStep` says beside its status: `struct flags` of stepper.c."""
+    """The flags that `fmi3DoStep` returns with its status: `struct flags` of stepper.c."""
 
     _fields_ = (
         ("event", ctypes.c_bool),
@@ -197,7 +197,7 @@ class Fmi3Slave(Slave):
 
 
 def _limits(action: str, base_type: str) -> tuple[float, float]:
-    """What may pass to a variable of an FMI type, or from it to the master."""
+    """Return the least and the greatest value that a variable of an FMI type, or the master, can take."""
     if action == "Set":
         return RANGES.get(base_type, EVERYTHING)
     return EVERYTHING if _in_vector(base_type) is ctypes.c_double else CARRIED

@@ -76,12 +76,12 @@ class Fmu:
 
     @property
     def keeps(self) -> str:
-        """What it carries from step to step; unknown for a third-party FMU, so that every step counts."""
+        """The kind of state that it keeps; of a third-party FMU the fullest, so that every step counts."""
         return self.component.keeps if self.component else MOTION
 
     @property
     def built(self) -> bool:
-        """Whether it is built for a scene and not given as a file."""
+        """Return whether it is built for a scene and not given as a file."""
         return bool(self.flavour)
 
     @cached_property
@@ -106,7 +106,7 @@ class Fmu:
 
     @property
     def no_native(self) -> str:
-        """Why this FMU has no native version on this machine; empty if it has one, or was given as a file."""
+        """The reason why it has no native version here; empty if it has one or is given as a file."""
         if self.component is None or not self.built:
             return ""
         if not platforms.host():
@@ -127,7 +127,7 @@ class Fmu:
 
     @property
     def directory(self) -> Path:
-        """Where the file is unpacked."""
+        """The folder into which the file is unpacked."""
         return self.file.directory
 
     @property
@@ -137,7 +137,7 @@ class Fmu:
 
     @property
     def identifier(self) -> str:
-        """What its functions and its library are named after."""
+        """The name after which its functions and its library are named."""
         return self.file.identifier
 
     @property
@@ -158,14 +158,14 @@ class Fmu:
         raise LoomfmuError(f"{where}: {self.path} has no library for this platform, {here}; {known}")
 
     def name_of(self, variable: str) -> str:
-        """What scenes call a variable, given that name or the FMU's own."""
+        """Return the scene's name of a variable, given that name or the FMU's own."""
         if variable in self.ports:
             return variable
         return self._plain_names.get(variable, variable)
 
     @cached_property
     def _plain_names(self) -> dict[str, str]:
-        """What scenes call the variables, by the FMU's own names; the first of two that have one name."""
+        """The scene's names of the variables, by the FMU's own names; of two, the first."""
         return {port.own: port.name for port in reversed(self.ports.values())}
 
     def port(self, name: str, where: str) -> Port:

@@ -54,7 +54,7 @@ class IsolatedSlave(Slave):
 
     @property
     def alive(self) -> bool:
-        """Whether its process still runs."""
+        """Return whether its process still runs."""
         return self._process.alive
 
     # ---- exchanges
@@ -192,7 +192,7 @@ class IsolatedSlave(Slave):
         return None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
-        """What to raise for a status that is not OK, of a call in the step from `time` on."""
+        """Return the error to raise for a status other than OK, of a call in the step from `time` on."""
         if self._died is None:
             try:
                 return self._ask("failed", status, self._failed or action, time)  # type: ignore[no-any-return]

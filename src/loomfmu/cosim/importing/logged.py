@@ -1,4 +1,4 @@
-"""What an FMU complains of: its messages, and its warnings without one."""
+"""The log of an FMU: its messages, and warnings that come without one."""
 
 import ctypes
 from collections.abc import Callable
@@ -75,7 +75,7 @@ class Logged:
             each.count = 0
 
     def warnings(self) -> list[str]:
-        """What it warned of, each in one line."""
+        """Return its warnings, each in one line."""
         logged = [f"{self.name}: {text}" for status, text in self.messages if status == WARNING]
         return logged + [
             f"{self.name} returned a warning without a message in {function} at {first:.9g} s"

@@ -1,4 +1,4 @@
-"""What goes through the pipes between the master and the process of an isolated FMU.
+"""The messages between the master and the process of an isolated FMU.
 
 A message is its length in four bytes and its content. The master sends `CALLS` and the numbers of prepared
 calls, or a pickled method with its arguments; the answer is `DONE`, or a pickled `Answer`. Values do not go
@@ -32,7 +32,7 @@ def framed(content: bytes) -> bytes:
 
 
 def complete(data: bytes) -> bool:
-    """Whether what was read so far is a message."""
+    """Return whether the bytes read so far are a whole message."""
     return len(data) >= 4 and len(data) >= 4 + int.from_bytes(data[:4], "little")
 
 

@@ -25,7 +25,7 @@ BASES = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 @dataclass(frozen=True)
 class Definition:
-    """What an FMU says that a unit is: the exponents of `BASES`, and what leads to them."""
+    """The definition of a unit in an FMU: exponents of `BASES`, factor and offset."""
 
     exponents: tuple[int, ...]
     factor: float = 1.0
@@ -36,7 +36,7 @@ class Definition:
             raise ValueError(f"a unit has the factor {self.factor:g} and the offset {self.offset:g}")
 
     def agrees(self, other: "Definition") -> bool:
-        """Whether both mean the same; factors are printed with ten digits or more."""
+        """Return whether both mean the same; factors are printed with ten digits or more."""
         near = math.isclose(self.factor, other.factor, rel_tol=1e-9)
         return self.exponents == other.exponents and near and self.offset == other.offset
 
@@ -52,7 +52,7 @@ def own_definition(name: str) -> Definition:
 
 
 def own_name(name: str, definition: Definition | None) -> str:
-    """What we call a unit of an FMU, or nothing if we do not know it.
+    """Return our name of an FMU's unit, or an empty text for an unknown one.
 
     >>> own_name("m/s^2", Definition((0, 1, -2, 0, 0, 0, 0, 0))), own_name("rpm", None), own_name("lx", None)
     ('m/s2', 'rev/min', '')
@@ -111,7 +111,7 @@ class Port:
     beside: Beside = ALONE
 
     def doubt(self, given: Any, where: str) -> str:
-        """What is odd about a number without unit, as `units.doubt` tells it, or an empty text."""
+        """Return a warning about a number without unit, as `units.doubt` words it, or an empty text."""
         if self.kind != "Real" or self.unit not in units.UNITS or self.display in ("1", self.unit):
             return ""
         usual = float(self.start or self.nominal or 0.0)
@@ -213,7 +213,7 @@ def _differ(one: Port, other: Port) -> bool:
 
 
 def mismatch(source: str, origin: Port, sink: str, to: Port) -> str:
-    """Why the units of two ports do not let them be wired; nothing if they do.
+    """Return why the units of two ports prevent a wire, or an empty text if they do not.
 
     A wire converts nothing, and a unit that is not stated is not guessed.
     """

@@ -36,7 +36,7 @@ SCRIPT = (
 
 @dataclass
 class Limits:
-    """How long a call of an isolated FMU and a whole run may take [s]; `interrupted` is set by Ctrl-C."""
+    """The longest times for a call of an isolated FMU and for a whole run [s]; Ctrl-C sets `interrupted`."""
 
     step: float = 60.0
     run: float = math.inf
@@ -47,7 +47,7 @@ class Limits:
 
     @property
     def passed(self) -> str:
-        """What to say of a run that has taken too long; nothing while it has not."""
+        """Return the message for a run that takes too long, or an empty text."""
         return (
             f"the run took longer than run_timeout = {self.run:g} s" if time.monotonic() > self._end else ""
         )
@@ -106,7 +106,7 @@ class Process:
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
+        """Return whether it still runs."""
         return self._popen.poll() is None
 
     def ask(self, content: bytes, limits: Limits, action: Callable[[], str]) -> bytes:
@@ -150,7 +150,7 @@ class Process:
                 raise Died(reason + self._printed())
 
     def _died(self, action: str) -> Died:
-        """What to say of a process that answers no more."""
+        """Return the error for a process that no longer answers, and end it."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._popen.wait(GRACE)
         status = self._popen.returncode

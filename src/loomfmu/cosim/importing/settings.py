@@ -1,4 +1,4 @@
-"""How start values are set: the arguments of FMI 2.0's functions, prepared for many runs."""
+"""Start values: the arguments of FMI 2.0's setters, prepared for many runs."""
 
 import ctypes
 from collections.abc import Sequence

@@ -185,7 +185,7 @@ class Slave(Logged):
             raise FMICallException(f"{self.standard}{name}", status)
 
     def _settings_of(self, names: tuple[str, ...]) -> list[Setting]:
-        """How variables of these names are set, one call for each type; kept from run to run."""
+        """Return the calls that set variables of these names, one for each type; kept from run to run."""
         if names not in self._settings:
             self._settings = {names: settings([self.fmu.ports[name] for name in names])}
         return self._settings[names]
@@ -222,17 +222,17 @@ class Slave(Logged):
             raise self.not_restored()
 
     def not_saved(self) -> LoomfmuError:
-        """What to raise where it cannot save its state."""
+        """Return the error to raise if it cannot save its state."""
         return LoomfmuError(
             f"{self.name} cannot save its state, which an iterated loop requires: {self._reason()}"
         )
 
     def not_restored(self) -> LoomfmuError:
-        """What to raise where it cannot go back."""
+        """Return the error to raise if it cannot restore its state."""
         return LoomfmuError(f"{self.name} cannot restore a state that it saved: {self._reason()}")
 
     def rollback(self) -> Rollback | None:
-        """What saves and restores it in the compiled stepper; None where only Python can.
+        """Return the calls with which the compiled stepper saves and restores it, or None if only Python can.
 
         Raises LoomfmuError if the FMU has no such functions.
         """
@@ -255,7 +255,7 @@ class Slave(Logged):
             raise LoomfmuError(f"{self.name}: {self.fmu.path} has no {name}") from None
 
     def failed(self, status: int, action: str, time: float) -> LoomfmuError:
-        """What to raise for a status that is not OK, of a call in the step from `time` on."""
+        """Return the error to raise for a status other than OK, of a call in the step from `time` on."""
         self._note(status)
         if status == REFUSED:
             return LoomfmuError(f"{self.name} at {time:.9g} s: {self._reason()}")
@@ -268,7 +268,7 @@ class Slave(Logged):
         return LoomfmuError(f"{self.name} at {time:.9g} s: {action} returned {kind}: {reason}")
 
     def _ended(self) -> float | None:
-        """When the FMU ended the simulation, if that is why it has not made a step: ours never do."""
+        """Return the time at which the FMU ended the simulation, or None; our FMUs never do."""
         return None
 
     # ---- end

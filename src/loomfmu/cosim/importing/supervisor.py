@@ -1,4 +1,4 @@
-"""What stands between a master and the process of an isolated FMU: with it ends all that the FMU has started.
+"""The process between a master and an isolated FMU: when it ends, it ends all that the FMU has started.
 
 What an FMU starts may leave its process group and outlive its parent. On Linux it then becomes a child of the
 nearest process above that has said it takes such children, and that is this one. Elsewhere only what stays

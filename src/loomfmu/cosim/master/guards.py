@@ -1,4 +1,4 @@
-"""What keeps FMUs in this process from doing harm to it: the working directory, its end."""
+"""Protection of this process from FMUs that run in it: its working directory, its end."""
 
 import atexit
 import contextlib

@@ -124,7 +124,7 @@ class Loop:
         return list(dict.fromkeys(action.slave for action in self.actions[self.first : self.end]))
 
     def unsettled(self, time: float) -> LoomfmuError:
-        """What to raise where they do not agree in the step from `time` [s] on."""
+        """Return the error to raise if the loop does not converge in the step from `time` [s] on."""
         return LoomfmuError(
             f"loop {self.wires} did not converge at {time:.9g} s in {MOST_EXCHANGES} exchanges"
         )

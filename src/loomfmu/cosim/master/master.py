@@ -183,7 +183,7 @@ class Master:
         )
 
     def _make_stepper(self, calls: "_Calls") -> Stepper:
-        """What takes the steps: the calls of all instances in their order."""
+        """Return the stepper that makes the calls of all instances in their order."""
         signals = self._signals
         actions = {
             name: [
@@ -275,7 +275,7 @@ class Master:
             raise LoomfmuError(f"{name} at {times[sound]:.9g} s is {reals[sound, column]}")
 
     def warnings(self) -> list[str]:
-        """What the FMUs warned of."""
+        """Return the warnings of the FMUs and of the run."""
         lagged = [] if self.scene.coupling == ITERATED else self.lagged
         return (
             [line for slave in self.slaves.values() for line in slave.warnings()]

@@ -1,4 +1,4 @@
-"""Where the values of a run are, and the calls that move them between the FMUs."""
+"""The values of a run in memory, and the calls that move them between the FMUs."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
@@ -36,7 +36,7 @@ class Signals:
         self.integers = np.zeros(max(1, len(self.slots) - reals), dtype=np.int32)
 
     def _slots(self, fetched: Collection[tuple[str, str]] | None) -> dict[tuple[str, str], Slot]:
-        """Where the value of each output is: reals in one vector, integers and booleans in another.
+        """Assign a place to each output: reals in one vector, integers and booleans in another.
 
         Outputs of one instance and type are side by side in the order of their value references.
         """
@@ -63,12 +63,12 @@ class Signals:
         return slots
 
     def real_slots(self, wires: Sequence[Wire]) -> list[int]:
-        """Where the real values of some wires are."""
+        """Return the places of the real values of some wires."""
         slots = dict.fromkeys(self.slots[wire.source] for wire in wires)
         return [slot for kind, slot in slots if kind == "Real"]
 
     def driven_slots(self, *, real: bool) -> list[int]:
-        """Where the driven inputs are among the reals, or among the integers."""
+        """Return the places of the driven inputs among the reals or among the integers."""
         slots = [self.slots[drive.instance, drive.variable] for drive in self._scene.drives]
         return [slot for kind, slot in slots if (kind == "Real") is real]
 

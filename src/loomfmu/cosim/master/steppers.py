@@ -1,4 +1,4 @@
-"""What makes the prepared calls of a master, step after step: in Python, or in C at its speed.
+"""Steppers, which make the prepared calls of a master step after step: in Python, or in C.
 
 Both make the same calls in the same order on the same memory, so their results are equal to the last bit. The
 compiled one is used where its library is there or can be built; the other one is the reference, and takes
@@ -90,7 +90,7 @@ def take(actions: Iterable[Action], time: float, end: float, status: int | None 
 
 @dataclass
 class Memory:
-    """What a master shares with its stepper: values of all outputs, where driven inputs stand, the flag."""
+    """The memory that a master shares with its stepper: all outputs, driven inputs and the stop flag."""
 
     reals: Floats
     integers: Integers
@@ -115,7 +115,7 @@ def stopped(
     reals: Floats,
     integers: Integers,
 ) -> Advanced:
-    """What comes of a step one of whose calls had a status that is not OK; that call and those after it."""
+    """Make a step's calls from one with an error status on; return the steps taken and why the run ends."""
     try:
         ended = take(actions, float(span.starts[step]), float(span.ends[step]), status)
     except LoomfmuError as failure:
@@ -126,7 +126,7 @@ def stopped(
 
 
 def _at_end(failure: LoomfmuError, start: float, end: float) -> bool:
-    """Whether it is an FMU that ended the simulation at the end of a step."""
+    """Return whether an error is that of an FMU that ended the simulation at the end of a step."""
     return isinstance(failure, Ended) and math.isclose(
         failure.time, end, rel_tol=1e-9, abs_tol=1e-6 * (end - start)
     )
@@ -253,14 +253,16 @@ class CompiledStepper:
     def _stopped(
         self, place: int, status: int, span: Span, step: int, reals: Floats, integers: Integers
     ) -> Advanced:
-        """What comes of a step in which a call failed, or something else did (a negative status)."""
+        """Return the steps taken and why the run ends, after a call failed or the C code refused one (status
+        < 0).
+        """
         # a value that was not handed over is tried again by Python, which says which one it is
         known = None if status == REFUSED else status
         return stopped(self._actions[place:], known, span, step, self._memory, reals, integers)
 
 
 def _place(array: NDArray[Any]) -> Any:
-    """Where a contiguous array begins in memory, as an argument: a fifth of the cost of `ctypes.data`."""
+    """Return the address of a contiguous array as an argument, at a fifth of the cost of `ctypes.data`."""
     return ctypes.byref(ctypes.c_char.from_buffer(cast(Any, array))) if array.size else None
 
 

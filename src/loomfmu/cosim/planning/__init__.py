@@ -1,1 +1,1 @@
-"""What a run needs: the signals requested, the FMUs that can be left out, where the steps are."""
+"""The plan of a run: the requested signals, the FMUs that can be left out, and the steps."""

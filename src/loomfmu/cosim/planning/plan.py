@@ -22,7 +22,7 @@ from .requested import beside_of, output_port
 
 
 class Keeper(Protocol):
-    """What takes the blocks of a run."""
+    """A receiver of the blocks of a run."""
 
     def append(self, time: Reals, angle: Reals, reals: Reals, integers: Integers) -> None:
         """Keep a block: values along the rows, signals along the columns."""
@@ -30,7 +30,7 @@ class Keeper(Protocol):
 
 @dataclass(frozen=True)
 class Plan:
-    """How a scene is stepped: with which FMUs and on which grid."""
+    """A scene to be stepped: its FMUs, without those left out, and its grid."""
 
     scene: Scene
     pruned: Pruned
@@ -39,7 +39,7 @@ class Plan:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """What is kept."""
+        """The signals that are kept."""
         return self.pruned.signals
 
     @property
@@ -67,7 +67,7 @@ class Stepping:
 
     @cached_property
     def channels(self) -> list[Channel]:
-        """What is kept: where the master has it, and how a trace describes it."""
+        """The signals that are kept: their places in the master, and their descriptions for a trace."""
         return _channels(self._scene, self._pruned.signals, self._master)
 
     def plan(self, scene: Scene, grid: Grid) -> Plan:
@@ -159,7 +159,7 @@ class InMemory(NamedTuple):
 
 
 def early_end(plan: Plan, ended: Ended | None) -> Early:
-    """How an FMU ended a run early, if one did."""
+    """Return how an FMU ended a run early, if one did."""
     if ended is None:
         return Early()
     share = f"{100.0 * ended.time / plan.grid.stop_time:.3g} %"
@@ -168,7 +168,7 @@ def early_end(plan: Plan, ended: Ended | None) -> Early:
 
 
 def explained(plan: Plan) -> tuple[str, ...]:
-    """What a run skips and why, and what that saves."""
+    """Return what a run skips, why, and how many steps that saves."""
     kept, whole = len(plan.pruned.scene.instances), len(plan.scene.instances)
     taken, scouted = plan.grid.steps, plan.grid.scouted
     done, full = kept * taken + scouted, whole * plan.scene.steps

@@ -1,4 +1,4 @@
-"""What a run can leave out, found backwards from the requested signals.
+"""Pruning: the parts that a run leaves out, found backwards from the requested signals.
 
 An instance that no requested signal depends on is not run, an output that is not read is not fetched, and a
 main shaft of constant speed needs no FMU: its angle is a product, and what follows it can turn by itself.
@@ -122,7 +122,7 @@ def _read(scene: Scene) -> set[str]:
 
 
 def _is_constant(scene: Scene, name: str) -> bool:
-    """Whether an instance is a main shaft of constant speed that only mechanisms follow."""
+    """Return whether an instance is a main shaft of constant speed that only mechanisms follow."""
     shaft = scene.instances[name]
     if shaft.fmu.component is None or not shaft.fmu.component.unsteady:
         return False
@@ -134,7 +134,7 @@ def _is_constant(scene: Scene, name: str) -> bool:
 
 
 def _follows(scene: Scene, name: str, shaft: str) -> bool:
-    """Whether an instance takes only the motion that it follows from the shaft."""
+    """Return whether an instance takes nothing from others but the motion of the shaft."""
     follower = scene.instances[name]
     taken = {wire.sink[1]: wire.source for wire in scene.wires if wire.sink[0] == name}
     wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}

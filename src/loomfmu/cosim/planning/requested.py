@@ -197,7 +197,7 @@ def shaft_angle(scene: Scene) -> list[str]:
 
 
 def recorded(scene: Scene) -> list[str]:
-    """What the scene records, what its claims need, and the rates of that."""
+    """Return the signals that the scene records and that its claims need, with their rates."""
     driven = [f"{drive.instance}.{drive.variable}" for drive in scene.drives]
     wanted = with_rates(scene, [*shaft_angle(scene), *scene.record, *driven])
     return list(dict.fromkeys([*wanted, *judged_by(scene)]))

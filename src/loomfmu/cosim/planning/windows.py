@@ -43,7 +43,7 @@ NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for 
 
 @dataclass
 class Places:
-    """Where claims look: kinks and points to land on [s], points around them, the longest step allowed."""
+    """Places of steps: kinks and points to land on [s], points around them, the longest step allowed."""
 
     period: float
     most: float
@@ -92,7 +92,7 @@ def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
 def _scouted(
     scene: Scene, signals: Sequence[str], coarse: float, longest: float, in_memory: Scout
 ) -> tuple[Places, int]:
-    """Where the claims look, found on coarse steps, and how many steps of FMUs that took."""
+    """Return the places that the claims look at, found on coarse steps, and the FMU steps that this took."""
     places, scouted = Places(period(scene), longest, kinks(scene)), 0
     for _ in range(SCOUTS):
         points = _merged(_equal(scene, coarse), places)
@@ -113,7 +113,7 @@ def _because(why: str) -> str:
 
 
 def _unequal(needed: Scene) -> str:
-    """Why a run takes only equal steps, if so: a loop, a shaft that feels its load, a third-party FMU."""
+    """Return why a run needs equal steps (a loop, a loaded shaft, a third-party FMU), or an empty text."""
     _order, lagged = step_order(needed.instances, needed.wires)
     if lagged:
         return f"{lagged[0]} closes a loop"
@@ -279,7 +279,7 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
 
 
 def _windows(trace: Recording, scene: Scene, instance: str) -> list[tuple[float, float]]:
-    """Where all outputs that bound an instance's windows are positive, on splines through the samples."""
+    """Return the stretches in which all outputs that bound an instance's windows are positive, on splines."""
     from scipy.interpolate import CubicSpline
 
     component = scene.instances[instance].fmu.component
@@ -313,7 +313,7 @@ def _deepest(places: Places, trace: Recording, signal: str, sign: float) -> None
 
 
 def _turns(places: Places, trace: Recording, signal: str, sign: float) -> None:
-    """Where `sign` times a signal has a minimum, known to a share of the samples' distance there."""
+    """Add the minima of `sign` times a signal, each known to a share of the samples' distance there."""
     for time in _lowest_points(trace.time, sign * trace[signal]):
         place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
         places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))

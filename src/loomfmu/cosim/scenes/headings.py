@@ -1,4 +1,4 @@
-"""What a run is called: made of the values that it has, so that none that is set makes it untrue."""
+"""The heading of a run, made of the values that it has, so that values set later keep it true."""
 
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any

@@ -148,7 +148,7 @@ class Instance:
         return "", ""
 
     def _is_on(self, switch: str, fed: Collection[str], otherwise: bool) -> bool:
-        """Whether a switch is on: true, or not the first of its choices; `otherwise` if it is not known."""
+        """Return whether a switch is true, or not the first of its choices; `otherwise` if unknown."""
         value = self._start(switch, fed)
         if value is None:
             return otherwise

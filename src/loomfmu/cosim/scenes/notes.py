@@ -1,4 +1,4 @@
-"""What the user of a scene is to be warned of."""
+"""Warnings about a scene."""
 
 from collections.abc import Container, Iterable, Sequence
 
@@ -62,7 +62,7 @@ def _mixture(kind: str, fitted: list[Instance]) -> str:
 
 
 def _is(each: Instance, kind: str, name: str) -> bool:
-    """Whether an instance has the values of a published machine or head though it does not name it."""
+    """Return whether an instance has a published machine's or head's values without naming it."""
     wanted = machines.parameters(each.fmu.name, **{kind: name})
     return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
 

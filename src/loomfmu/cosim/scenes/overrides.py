@@ -57,7 +57,7 @@ def components(instances: dict[str, Instance]) -> Callable[[str], str]:
 
 
 def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) -> list[tuple[str, str]]:
-    """What a key of `--set` or of a sweep stands for, as (instance, variable).
+    """Return the variables that a key of `--set` or of a sweep sets, as (instance, variable).
 
     The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
     instances that take something of it.
@@ -87,7 +87,7 @@ def overridden(given: Iterable[str], key: str, component: Callable[[str], str]) 
 
 
 def _nearest(key: str, given: Iterable[str], component: Callable[[str], str]) -> str:
-    """What a key without an instance was probably meant to be, as the end of a message."""
+    """Return a suggestion for a key without an instance, as the end of a message."""
     variables: dict[str, list[str]] = {}  # of each of our instances, those that can be set
     for name in given:
         if component(name) in COMPONENTS:

@@ -73,7 +73,7 @@ class Scene:
         return f"<Scene {self.name}: {len(self.instances)} instances, {len(self.claims)} claims>"
 
     def isolates(self, name: str) -> bool:
-        """Whether an instance runs in a process of its own."""
+        """Return whether an instance runs in a process of its own."""
         instance = self.instances[name]
         stated = self.isolated if instance.isolated is None else instance.isolated
         return AVAILABLE and not instance.fmu.trusted if stated is None else stated

@@ -1,4 +1,4 @@
-"""What a scene's own keys say: what is recorded and claimed, tolerances, accuracy and coupling."""
+"""The scene's own keys: what is recorded and claimed, tolerances, accuracy and coupling."""
 
 import fnmatch
 from collections.abc import Iterable
@@ -34,7 +34,7 @@ def accuracy(tables: dict[str, Any], times: Times) -> float | None:
 
 
 def coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire]) -> str:
-    """How loops are closed: with an accuracy they are iterated, since a delay costs far more steps."""
+    """Return how loops are closed: with an accuracy iterated, since a delay costs far more steps."""
     if ACCURACY in tables and "coupling" not in tables:
         _order, lagged = step_order(instances, wires)
         if lagged and all(each.fmu.trusted for each in instances.values()):

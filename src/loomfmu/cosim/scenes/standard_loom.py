@@ -60,7 +60,7 @@ def stem(instance: str) -> str:
 
 
 def is_numbered(instance: str) -> bool:
-    """Whether an instance's name ends with a number, as `heald_3` does."""
+    """Return whether an instance's name ends with a number, as `heald_3` does."""
     return stem(instance) != instance
 
 
@@ -159,7 +159,7 @@ def pegs(values: Mapping[str, Any]) -> str:
 
 
 def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
-    """Where inputs such as `belt.travel` are usually wired to, by the declarations of all instances.
+    """Return the usual wires to inputs such as `belt.travel`, by the declarations of all instances.
 
     Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
     """
@@ -223,7 +223,7 @@ def _owners(sink: str, source: str) -> tuple[str, str]:
 
 
 def _renamed(name: str, owner: str, components: Mapping[str, type[Component]]) -> list[str]:
-    """What may stand for an absent instance of the standard loom: its component under a name of its own."""
+    """Return the instances that may replace an absent one of the standard loom, under other names."""
     wanted = COMPONENT_OF.get(stem(owner))
     found = (each for each, component in components.items() if component.__name__ == wanted)
     return [each for each in found if each != name and stem(each) not in COMPONENT_OF]
@@ -362,7 +362,7 @@ def shaft_inputs(component: type[Component] | None, inputs: Collection[str]) -> 
 
 
 def follows(component: type[Component] | None, values: Mapping[str, Any]) -> bool:
-    """Whether a mechanism follows a shaft, and could turn by itself instead."""
+    """Return whether a mechanism follows a shaft, and could turn by itself instead."""
     return issubclass(component or ShaftDriven, ShaftDriven) and values.get(FOLLOWING) is True
 
 
@@ -372,7 +372,7 @@ def turning(speed: float, start_angle: float) -> dict[str, float | bool]:
 
 
 def turns_alone(component: type[Component]) -> bool:
-    """Whether a mechanism has a speed of its own and no way to follow a shaft."""
+    """Return whether a mechanism has a speed of its own and no way to follow a shaft."""
     turning = any(v.causality == "parameter" and v.unit == "rad/s" for v in variables_of(component))
     return turning and not turns_others(component) and not shaft_inputs(component, ())
 
@@ -383,5 +383,5 @@ def shafts() -> list[str]:
 
 
 def turns_others(component: type[Component]) -> bool:
-    """Whether the outputs of a component are a shaft that others follow."""
+    """Return whether the outputs of a component are a shaft that others follow."""
     return any(terminal.name == SHAFT.name for terminal in _terminals(component, "output"))

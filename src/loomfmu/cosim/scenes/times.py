@@ -1,4 +1,4 @@
-"""How long a scene runs, and in which communication steps."""
+"""The duration of a scene, and its communication steps."""
 
 import math
 from dataclasses import dataclass

@@ -25,7 +25,8 @@ class Values:
         self._times = Times(scene.periods, scene.steps_per_period, scene.step)
 
     def targets(self, key: str) -> list[tuple[str, str]]:
-        """What a key sets, as (instance, variable), if it is a value; else nothing.
+        """Return the variables that a key sets, as (instance, variable), or an empty list if it is not a
+        value.
 
         Not a value is whatever may change which FMUs there are, how they are wired, which of them run, for
         how long, or what a scene warns of.
@@ -56,7 +57,7 @@ class Values:
         return free and not self._mixes(instance)
 
     def _mixes(self, instance: Instance) -> bool:
-        """Whether the scene compares its values with a machine's or a head's that others were given."""
+        """Return whether the scene compares its values with a machine or head that others name."""
         named = {kind for each in self.scene.instances.values() for kind in each.published}
         kinds = [kind for kind, takers in TAKERS.items() if instance.fmu.name in takers]
         return any(kind in named and kind not in instance.published for kind in kinds)

@@ -30,7 +30,7 @@ class Weave:
         return max(len(pegs) for pegs in self.pegs)
 
     def ends_of(self, frame: int) -> int:
-        """How many ends of a repeat of the threading a frame carries, frames counted from 1."""
+        """Return the number of ends of a threading repeat that a frame carries, frames counted from 1."""
         return self.threading.count(frame)
 
 
@@ -62,7 +62,7 @@ def parse(given: object, directory: Path) -> Weave:
 
 
 def is_wif(given: object) -> bool:
-    """Whether a weave as a scene writes it is the name of a WIF file."""
+    """Return whether a weave, as a scene writes it, is the name of a WIF file."""
     return isinstance(given, str) and given.lower().endswith(".wif")
 
 

@@ -1,4 +1,4 @@
-"""What gives the inputs of a scene their values: wires from outputs, and tables that drive them."""
+"""The sources of a scene's inputs: wires from outputs, and tables."""
 
 from collections import ChainMap
 from typing import Any

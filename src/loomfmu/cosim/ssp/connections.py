@@ -43,7 +43,7 @@ def wires_of(system: Element, instances: dict[str, Instance], names: Names) -> l
 
 
 def _causality(node: Node, instances: dict[str, Instance], names: Names) -> str:
-    """What a connector of a component is; an empty text for one of a system."""
+    """Return the causality of a component's connector, or an empty text for one of a system."""
     name = names.get(node[0])
     if name is None:
         return ""

@@ -120,7 +120,7 @@ def _place(files: Files, file: Path) -> str:
 
 
 def _values(scene: Scene, instance: Instance) -> dict[str, Value]:
-    """What is set at the start, an input driven along a table to its first value.
+    """Return the start values to set; an input driven by a table has its first value.
 
     `inputs_at_step_end` is about the master, not the loom: other tools hand over values of the step's
     start, which is its default. So it is left out unless the scene itself sets it. A choice is left out
@@ -272,7 +272,7 @@ def _connections(system: Element, scene: Scene, boxes: dict[str, Box]) -> None:
 
 
 def _master(system: Element, scene: Scene) -> None:
-    """What OMSimulator requires of a system: which of its masters steps it, and how far."""
+    """Write what OMSimulator requires of a system: the master that steps it, and the end time."""
     (annotation,) = _annotations(system, OMS)
     information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
     SubElement(

@@ -1,4 +1,4 @@
-"""Where the elements of a system are drawn: from left to right in the order they depend on each other."""
+"""The drawing of a system: its elements from left to right, each after those that it depends on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ def layout(
 
 
 def columns(names: Sequence[str], wires: Sequence[Wire]) -> dict[str, int]:
-    """How many elements stand before each one; wires that close a loop lead back.
+    """Return the column of each element, counted from 0; wires that close a loop lead back.
 
     >>> columns(["b", "a"], [Wire(("a", "y"), ("b", "u"))])
     {'a': 0, 'b': 1}

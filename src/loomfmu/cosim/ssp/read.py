@@ -164,7 +164,7 @@ class _Reader:
     # ---- the rest
 
     def _foreign_tables(self) -> dict[str, Any]:
-        """What a scene's text would say beside its instances."""
+        """Return a third-party package's settings, as the text of a scene without its instances."""
         experiment = self.root.find(full("ssd:DefaultExperiment"))
         tables: dict[str, Any] = {"title": self.root.get("name") or self.package.path.stem}
         if experiment is None:
@@ -182,13 +182,13 @@ class _Reader:
 
 
 def _our_tables(text: dict[str, Any], annotation: Element) -> dict[str, Any]:
-    """What the text of our own scene says beside its instances, with the times that it was packed with."""
+    """Return the settings of our own scene's text, with the times that it was packed with."""
     times = {key: real(annotation, key, 0.0) for key in TIMES if key in annotation.attrib}
     return {key: text[key] for key in KEPT if key in text} | times
 
 
 def _annotation(parent: Element, kind: str, content: str) -> Element | None:
-    """What an annotation of a kind holds."""
+    """Return the content of an annotation of a kind."""
     for annotation in parent.iterfind(f"{full('ssd:Annotations')}/{full('ssc:Annotation')}"):
         if annotation.get("type") == kind:
             return annotation.find(full(content))

@@ -51,7 +51,7 @@ def _values(parameters: Element) -> Iterator[Given]:
 
 
 def _mapping(binding: Element, read: Read) -> dict[str, list[str]]:
-    """Which variables each name of a set stands for; nothing where names stand for themselves."""
+    """Return the variables that each name of a set stands for; nothing if names stand for themselves."""
     place = binding.find(full("ssd:ParameterMapping"))
     if place is None:
         return {}

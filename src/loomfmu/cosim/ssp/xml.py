@@ -1,4 +1,4 @@
-"""What the writer and the reader of system packages (SSP 1.0) share: names, and units as XML."""
+"""Names and units as XML, for the writer and the reader of system packages (SSP 1.0)."""
 
 import math
 from collections.abc import Iterable

@@ -1,1 +1,1 @@
-"""What an FMU says of itself: model description, terminals, documentation, parameter sets."""
+"""The description in an FMU: model description, terminals, documentation, parameter sets."""

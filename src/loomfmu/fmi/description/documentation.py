@@ -54,7 +54,7 @@ def variable_table(component: type[Component]) -> str:
 
 
 def _names_elsewhere(component: type[Component]) -> list[str]:
-    """How tools that read the model description spell names that differ there."""
+    """Return a paragraph on the names that differ in the model description."""
     variables = variables_of(component)
     kept = [variable for variable in variables if variable.causality == "local"]
     in_rows = [v for v in variables if v.causality != "local" and v.structured != v.name]
@@ -63,7 +63,7 @@ def _names_elsewhere(component: type[Component]) -> list[str]:
 
 
 def accuracy_text(component: type[Component]) -> str:
-    """How accurate the outputs of a component are for given inputs."""
+    """Return the accuracy of a component's outputs for given inputs, in words."""
     return component.accuracy or BY_WHAT_IS_KEPT.get(component.keeps, "not stated")
 
 
@@ -105,7 +105,7 @@ def with_table(readme: str, component: type[Component]) -> str:
 
 
 def names_note(component: type[Component]) -> str:
-    """What the FMU calls variables that its README numbers; nothing where there are none."""
+    """Return a note on the FMU's names of variables that its README numbers, or an empty text."""
     numbered = [v for v in variables_of(component) if v.settable and v.structured != v.name]
     if not numbered:
         return ""
@@ -128,5 +128,5 @@ def page(title: str, markdown: str) -> bytes:
 
 
 def external_dependencies(name: str) -> bytes:
-    """What the live flavour needs of its host, as an HTML page."""
+    """Return the requirements of the live flavour on its host, as an HTML page."""
     return page(f"{name}: external dependencies", DEPENDENCIES.format(name=name))

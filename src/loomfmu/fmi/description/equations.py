@@ -181,7 +181,7 @@ def _operator(token: str) -> str:
 
 
 def _bare(shown: str) -> str:
-    """What needs no brackets above or below a line, or as a power."""
+    """Return a term without the brackets that it needs neither above or below a line nor as a power."""
     inner = re.fullmatch(r"<mrow><mo>\(</mo>(.*)<mo>\)</mo></mrow>", shown)
     depth = 0
     for bracket in re.findall(r"<mo>([()])</mo>", inner[1]) if inner else ")":

@@ -186,7 +186,7 @@ def _structure(root: Element, variables: tuple[Variable, ...]) -> None:
 
 
 def output_order(component: type[Component]) -> int:
-    """How often the outputs can be differentiated by reading the rates they are declared to have."""
+    """Return how often the outputs can be differentiated by reading their declared rates."""
     rates = {variable.name: variable.rate for variable in variables_of(component)}
     longest = 0
     for variable in variables_of(component):

@@ -24,7 +24,7 @@ head's can be applied together.
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """What is published of one machine or head, as far as it concerns one component."""
+    """The published values of a machine or head that concern one component."""
 
     file: str
     name: str
@@ -47,7 +47,7 @@ def parameter_files(component: type[Component], version: str) -> dict[str, bytes
 
 
 def parameter_note(component: type[Component]) -> str:
-    """What the documentation says of them; nothing where there are none."""
+    """Return the documentation of a component's parameter sets, or an empty text."""
     listed = "".join(f"\n- `{each.file}`: {each.name}" for each in parameter_sets(component))
     return NOTE.format(listed=f"{listed}\n") if listed else ""
 

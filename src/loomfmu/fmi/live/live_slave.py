@@ -1,4 +1,4 @@
-"""What runs a component inside a live FMU. Copied into the FMU, so it imports only what is copied beside it.
+"""The slave that runs a component inside a live FMU. Copied into the FMU, so it imports only its neighbours.
 
 pythonfmu's compiled wrapper calls the methods below by name and expects a class with a base called
 `Fmi2Slave`. Every complaint is logged and remembered: the next step, or the end of the initialization, then

@@ -1,4 +1,4 @@
-"""What a live FMU does for the sake of pythonfmu's compiled wrapper. Copied into the FMU beside its slave."""
+"""Workarounds in a live FMU for pythonfmu's compiled wrapper. Copied into the FMU beside its slave."""
 
 import atexit
 import os

@@ -30,7 +30,7 @@ def translated(system: System) -> Translation:
 
 
 def stepped(system: System) -> list[Stepped]:
-    """What the shell starts and steps: the driven inputs, then the parts."""
+    """Return the items that the shell starts and steps: the driven inputs, then the parts."""
     name = system.name
     found = [Stepped(f"{name}__start_drives", f"{name}__drive", 1)]
     for part in system.parts:
@@ -92,7 +92,7 @@ def _place(name: str) -> str:
 
 
 def _member(system: System, name: str) -> str:
-    """Where a variable `part.variable` stands in the struct."""
+    """Return the place of a variable `part.variable` in the struct."""
     owner, _, variable = name.partition(".")
     (part,) = (each for each in system.parts if each.name == owner)
     (found,) = (each for each in variables_of(part.component) if each.name == variable)

@@ -1,4 +1,4 @@
-"""What a system is made of, and its variables: those of its parts, with dotted names."""
+"""Systems: their parts, and their variables, which are those of the parts with dotted names."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ class System:
 
     @property
     def problem(self) -> Problem:
-        """What is reported where the grid has no steps."""
+        """The problem that is reported if the grid has no steps."""
         if self.step:
             return Problem("step = {step} must be greater than 0")
         return Problem(f"{SPEED} = {{{SPEED}}} must not be 0: it sets the step")
@@ -173,7 +173,7 @@ def limited(system: System, part: Part) -> list[Variable]:
 
 
 def problems_of(system: System, part: Part) -> list[Problem]:
-    """What a part reports: the problems of its component, and wired inputs outside their limits."""
+    """Return a part's problems: those of its component, and wired inputs outside their limits."""
     found = []
     names = {v.name for v in variables_of(part.component)}
     for problem in part.component.problems:

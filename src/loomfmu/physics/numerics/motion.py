@@ -193,7 +193,7 @@ def joined_area(
 
 
 def turns_of_cubic(a1: float, a2: float, a3: float) -> tuple[float, float]:
-    """Where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` turns; -1 where it does not.
+    """Return both places where a cubic `a0 + a1 u + a2 u^2 + a3 u^3` has an extreme, or -1 for none.
 
     >>> turns_of_cubic(4.0, -4.0, 0.0), turns_of_cubic(1.0, 0.0, 1.0)
     ((-1.0, 0.5), (-1.0, -1.0))

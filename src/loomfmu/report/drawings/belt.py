@@ -145,7 +145,7 @@ def width(tracks: Tracks, belt: Belt) -> Figure:
 
 
 def reached(tracks: Tracks, belt: Belt) -> float:
-    """How far the head gets into the shed [mm]."""
+    """Return how far the head gets into the shed [mm]."""
     return float(tracks.values(["highest", mm(f"{belt.name}.free_length")])) + belt.head
 
 

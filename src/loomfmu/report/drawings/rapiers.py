@@ -75,5 +75,5 @@ def _both(tracks: Tracks, name: str, giver: Belt, taker: Belt) -> list[Figure]:
 
 
 def _unbent(tracks: Tracks, belt: Belt) -> str:
-    """How far a head is in the shed if its belt is straight, as the transfer counts it [mm]."""
+    """Return the name of a track: how far a head with a straight belt is in the shed [mm]."""
     return tracks.add(f"{belt.name}.unbent", ["-", mm(f"{belt.name}.free_length"), -belt.head])

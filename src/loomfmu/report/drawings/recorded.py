@@ -1,4 +1,4 @@
-"""What a trace has of a mechanism: instances by their FMU, and a component with their parameters."""
+"""Recorded mechanisms: instances by their FMU, and a component with their parameters."""
 
 from collections.abc import Callable
 from dataclasses import fields

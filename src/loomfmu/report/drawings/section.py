@@ -45,7 +45,7 @@ def section(subject: Subject) -> Section | None:
 
 
 def still(subject: Subject) -> float:
-    """Where the claim is worst: the one that is nearest to its bound, or farthest beyond; else at 100 deg."""
+    """Return the position of the claim nearest to its bound, or farthest beyond it; else of 100 deg."""
     first, last = (float(subject.positions[place]) for place in (0, -1))
     worst = [
         (verdict.holds, verdict.distance / (abs(verdict.bound) or 1.0), position)

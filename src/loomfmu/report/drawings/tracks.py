@@ -1,4 +1,4 @@
-"""What moves: as rules, and as keyframes, few enough for a page and the same frames only once."""
+"""Moving parts as rules and as keyframes, few enough for a page and equal frames only once."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -72,13 +72,13 @@ class Tracks:
 
     @cached_property
     def _first(self) -> float:
-        """Where the first window starts."""
+        """The start of the first window."""
         first = float(self.subject.positions[0])
         return TURN * float(np.floor(first / TURN + 1e-9)) if self.subject.turns else first
 
     @cached_property
     def starts(self) -> NDArray[np.float64]:
-        """Where the windows start that are drawn."""
+        """The starts of the windows that are drawn."""
         return np.asarray(self._first + self.span * self.numbers)
 
     @cached_property
@@ -97,7 +97,7 @@ class Tracks:
         return self.trace.parameter(name)
 
     def values(self, rule: Rule) -> Any:
-        """What a rule gives at the samples, or a number; names are tracks, signals and parameters."""
+        """Return the values of a rule at the samples, or a number; it names tracks, signals, parameters."""
         trace = self.trace
 
         def of(name: str) -> Any:
@@ -144,7 +144,7 @@ class Tracks:
         return float(track.step * np.interp(share, shares, frame))
 
     def rules(self) -> dict[str, Any]:
-        """What a page needs that runs the scene itself: the rules, and one revolution of what has none."""
+        """Return the data of a page that runs the scene itself: rules, and one revolution of other tracks."""
         return {
             "first": 0.0,
             "span": self.span,
@@ -186,7 +186,7 @@ class Tracks:
 
 
 def _place(known: list[Frames], frame: Frames) -> int:
-    """Where a frame is among known ones, to which it is added unless it is there."""
+    """Return the place of a frame among known ones, after adding it if it is new."""
     for place, other in enumerate(known):
         if int(np.max(np.abs(frame - other))) <= EQUAL:
             return place

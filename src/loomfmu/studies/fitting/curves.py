@@ -41,13 +41,13 @@ class Compared:
 
     @property
     def share(self) -> float:
-        """That difference as a share of how much the measured values vary; 0 if they do not."""
+        """The difference as a share of the measured values' standard deviation; 0 if that is 0."""
         spread = float(np.std(self.measured))
         return self.rms / spread if spread else 0.0
 
     @property
     def note(self) -> str:
-        """What is to be said of the interpolation between samples."""
+        """Return a warning about the interpolation between samples, or an empty text."""
         if self.interpolation <= max(COARSE * self.rms, EXACT * float(np.max(np.abs(self.measured)))):
             return ""
         off, rest = (f"{value / self.factor:.2g} {self.unit}" for value in (self.interpolation, self.rms))
@@ -81,7 +81,7 @@ def compared(data: Measured, run: Signals, offset: float = 0.0) -> list[Compared
 
 
 def _places(data: Measured, axis: Floats, offset: float) -> Floats:
-    """Where the measured places lie on the run's own axis."""
+    """Return the measured places on the run's own axis."""
     places, one, unit = data.along, 1.0, "s"
     if data.over == "shaft_angle":
         one, unit = math.radians(1.0), "deg"

@@ -55,17 +55,17 @@ class Fit:
 
     @property
     def title(self) -> str:
-        """What was fitted: the loom without the values that were found."""
+        """The heading of the loom, without the values that were found."""
         return heading(self.scene, [each.span.key for each in self.parameters])
 
     @property
     def trusted(self) -> bool:
-        """Whether the intervals can be trusted: nothing speaks against independent residuals."""
+        """Return whether the intervals can be trusted: no test rejects independent residuals."""
         return all(each.trusted for each in self.parameters)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What sets the fitted values, for `loomfmu.run(scene, set=...)`; not the offset of the data."""
+        """The fitted values, for `loomfmu.run(scene, set=...)`; without the offset of the data."""
         return settings([each.span for each in self.parameters], [each.value for each in self.parameters])
 
     def write(self, path: str | Path, overwrite: bool = False) -> Path:

@@ -12,7 +12,7 @@ SEEN = 1e-8  # of the square of what an offset changes: as little is left where 
 
 @dataclass(frozen=True)
 class Residuals:
-    """What is left of a signal's `count` values, in the order in which they were measured.
+    """The residuals of a signal's `count` values, in the order in which they were measured.
 
     `durbin_watson` is the sum of the squared steps from one residual to the next over that of the squared
     residuals, `runs` the number of stretches of one sign; both with what independent noise gives on
@@ -36,8 +36,8 @@ class Residuals:
 
 @dataclass(frozen=True)
 class Shift:
-    """What the residuals say of an offset of the places, which is not fitted: about its size, its standard
-    error (rad or s), and the `chance` of as much where there is none.
+    """The estimate of an offset of the places that is not fitted: its size, its standard error (rad or s),
+    and the `chance` of as large a size if there is none.
 
     `moved` is what each parameter moves by, shape (p,), with an offset of 1 rad or 1 s.
     """

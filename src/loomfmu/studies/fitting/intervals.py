@@ -1,4 +1,4 @@
-"""How sure the result of a search is: intervals, correlations, and whether what remains is noise."""
+"""The uncertainty of a fit: intervals, correlations, and whether the residuals are noise."""
 
 import math
 from collections.abc import Sequence
@@ -81,7 +81,7 @@ def sure(data: Measured, spans: Sequence[Span], found: Found, loss: Loss) -> Sur
 
 
 def doubtful(residuals: Sequence[Residuals], offset: Shift | None) -> list[Residuals | Shift]:
-    """What speaks against independent residuals: where they are, something does in 5 % of cases at most."""
+    """Return the tests that reject independent residuals; together they err in at most 5 % of cases."""
     tests = 2 * len(residuals) + (offset is not None)
     found: list[Residuals | Shift] = [*residuals, *([] if offset is None else [offset])]
     return [each for each in found if each.chance < (1.0 - SURE) / tests]

@@ -125,7 +125,7 @@ def _check_places(along: Floats, columns: dict[str, Floats], over: str, rows: Se
 def _headings(
     where: str, heading: Sequence[str], scene: Scene
 ) -> tuple[str, float, dict[str, tuple[int, float]]]:
-    """What the first column is, what it is multiplied by; and of each signal its column and factor to SI."""
+    """Return the axis of the first column with its factor, and of each signal its column and factor to SI."""
     over, unit = _named(where, heading[0])
     if over not in ALONG:
         raise LoomfmuError(f"{where}: the first column is {shown(over)}, not shaft_angle or time; {FORM}")
@@ -153,7 +153,7 @@ def _named(where: str, text: str) -> tuple[str, str]:
 
 
 def _factor(where: str, name: str, stated: str, wanted: str) -> float:
-    """What values in the stated unit are multiplied by. Raises LoomfmuError for one that does not fit."""
+    """Return the factor from the stated unit. Raises LoomfmuError for a unit that does not fit."""
     misfit = f"{where}: column {name} is in {shown(stated)}, which does not fit {units.fitted(wanted)}"
     if wanted not in units.UNITS:  # a third-party FMU's own
         if stated != wanted:

@@ -14,7 +14,7 @@ USUAL = {"shaft_angle": "-2deg..2deg", "time": "-2ms..2ms"}
 
 
 def offset_of(data: Measured, text: str) -> Span:
-    """What is added to all places, within a range such as "-2ms..2ms". Raises LoomfmuError."""
+    """Return the offset of all places, within a range such as "-2ms..2ms". Raises LoomfmuError."""
     first, dots, last = text.partition("..") if isinstance(text, str) else ("", "", "")
     if not (dots and first.strip() and last.strip()):
         raise LoomfmuError(f"offset = {shown(text)} is not a range such as {USUAL[data.over]}")

@@ -27,7 +27,7 @@ def show(found: Fit) -> None:
 
 
 def remains(found: Fit) -> list[str]:
-    """What is left between measured and computed, a line for each signal."""
+    """Return the residuals in words, a line for each signal."""
     lines = []
     for each in found.curves:
         unit = "" if each.unit == "1" else f" {each.unit}"
@@ -40,7 +40,7 @@ def remains(found: Fit) -> list[str]:
 
 
 def cautions(found: Fit) -> list[str]:
-    """What to be careful about: residuals that are not noise, ends of ranges, correlations, coarse steps."""
+    """Return cautions: residuals that are not noise, ends of ranges, correlations, coarse steps."""
     lines = [
         f"{each.signal}: the fit leaves {100.0 * each.share:.3g} % of the variation of the data unexplained;"
         " check the units and the rest of the scene"
@@ -69,7 +69,7 @@ def cautions(found: Fit) -> list[str]:
 
 
 def _dependent(found: Fit) -> Iterator[str]:
-    """What speaks against independent residuals, what cannot be seen in them, and what depends on it."""
+    """Yield evidence against independent residuals, and the consequences."""
     doubts = doubtful(found.residuals, found.shift)
     for each in found.residuals:
         if each in doubts:

@@ -24,7 +24,7 @@ MEDIAN = 1.4826  # times the median size of normal errors is their standard devi
 
 
 class Found(NamedTuple):
-    """Where a search ended: shares of the ranges, shape (p,), which are at a bound, and the curves there.
+    """The end of a search: shares of the ranges, shape (p,), which are at a bound, and the curves there.
 
     `residuals`, computed less measured, are weighed, shape (n,), and so are their `slopes` by the shares,
     shape (n, p), and by an offset of the places, the `drift`.
@@ -39,7 +39,7 @@ class Found(NamedTuple):
 
 
 def settings(spans: Sequence[Span], values: Sequence[float]) -> dict[str, Any]:
-    """What sets values in a scene; an offset of the data is none of them."""
+    """Return the settings of a scene for some values, without an offset of the data."""
     pairs = zip(spans, values, strict=True)
     return {
         key: each for span, value in pairs if span.varied.targets for key, each in span.setting(value).items()
@@ -75,7 +75,7 @@ class Search:
         return Found(ended.x, ended.active_mask != 0, here.fun, here.jac, drift, curves)
 
     def _at(self, shares: Floats) -> list[Compared]:
-        """What is measured and what is computed with these parameters."""
+        """Return measured and computed values with these parameters."""
         self.runs += 1
         values = [span.at(share) for span, share in zip(self._spans, shares.tolist(), strict=True)]
         offset = sum(

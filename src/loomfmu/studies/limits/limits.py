@@ -80,7 +80,7 @@ class _Runs(Evaluations):
         return lambda value: _distance(self.at(value)[number])
 
     def depends(self, number: int, grid: Sequence[float]) -> bool:
-        """Whether a claim depends on the variable at all."""
+        """Return whether a claim depends on the variable at all."""
         verdicts = [self.at(value)[number] for value in grid]
         distances = [_distance(each) for each in verdicts]
         known = [each for each in distances if math.isfinite(each)]

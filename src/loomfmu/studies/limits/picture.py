@@ -56,7 +56,7 @@ def _distances(axes: Any, found: Limits) -> None:
 
 
 def _scale(each: ClaimLimits) -> float:
-    """What a distance is shown as a share of: the bound, or the farthest distance if the bound is 0."""
+    """Return the scale of a distance: the bound, or the farthest distance if the bound is 0."""
     known = [abs(distance) for _value, distance in each.points if np.isfinite(distance)]
     return abs(each.verdict.bound) or max(known, default=0.0) or 1.0
 

@@ -33,7 +33,7 @@ def show(found: Limits) -> None:
 
 
 def _remark(limits: str) -> str:
-    """What an entry says of limits beside the range in which the claim holds."""
+    """Return the remark on limits beside the range in which the claim holds."""
     return f"{limits}; " if "jumps" in limits or limits.startswith(SAME_EVERYWHERE) else ""
 
 

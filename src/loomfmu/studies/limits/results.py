@@ -1,4 +1,4 @@
-"""What was found about limits: as data, and as the words in which people read it."""
+"""The limits found: as data, and in words."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Stretch:
 
 @dataclass(frozen=True)
 class ClaimLimits:
-    """What was found about one claim: all its limits, ascending, and the ranges in which it holds.
+    """The limits of one claim, ascending, and the ranges in which it holds.
 
     `points` are the values that were tried and the distances there, NaN where the claim fails without one.
     `depends` is false if the distance is the same everywhere. `verdict` is the one at the scene's own value.
@@ -60,7 +60,7 @@ class ClaimLimits:
 
 @dataclass(frozen=True, repr=False)
 class Limits:
-    """How far a variable may go: for each claim, and for all; true if all hold in some range.
+    """The range of a variable for each claim and for all; true if all claims hold in some range.
 
     `ranges` are those in which all claims hold. An interval narrower than `resolution` in which a claim fails
     or holds may be missed, unless its distance shows an extreme near 0. Values are in SI.
@@ -79,7 +79,7 @@ class Limits:
 
     @property
     def depends(self) -> bool:
-        """Whether any claim depends on the variable."""
+        """Return whether any claim depends on the variable."""
         return any(each.depends for each in self.claims)
 
     def __str__(self) -> str:
@@ -111,7 +111,7 @@ class Boundary:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the scene and the ranges warn of."""
+        """The warnings of the scene and of the ranges."""
         found = (*self.second.doubts, *(each for row in self.rows for each in row.warnings))
         return tuple(dict.fromkeys(found))
 
@@ -133,14 +133,14 @@ def rows(found: Limits) -> list[tuple[str, str, str, str]]:
 
 
 def _own(each: ClaimLimits) -> str:
-    """How far a claim is from its bound at the scene's own value."""
+    """Return the distance of a claim from its bound at the scene's own value, in words."""
     distance = each.verdict.shown_distance
     word = "fails" if each.verdict.decided else each.verdict.word
     return f"{word}: {each.verdict.note or 'no value'}" if distance == "-" else distance
 
 
 def _holds(each: ClaimLimits, span: Span) -> str:
-    """Where a claim holds."""
+    """Return the ranges in which a claim holds, in words."""
     if not each.ranges:
         return "nowhere"
     if not each.limits:
@@ -171,7 +171,7 @@ def _limits(each: ClaimLimits, span: Span) -> str:
 
 
 def conclusion(found: Limits) -> Iterator[str]:
-    """What was found, in sentences."""
+    """Yield the conclusion, in sentences."""
     span = found.span
     if not found.depends:
         yield f"No claim depends on {span.key} between {span.number(span.low)} and {span.show(span.high)}."

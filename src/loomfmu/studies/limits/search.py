@@ -20,7 +20,7 @@ GOLDEN = 0.5 * (3.0 - math.sqrt(5.0))
 
 
 class Root(NamedTuple):
-    """Where a function passes 0: between `low` and `high`, at `value`, and whether it jumps there."""
+    """A root of a function: between `low` and `high`, at `value`, and whether it jumps there."""
 
     value: float
     low: float
@@ -29,7 +29,7 @@ class Root(NamedTuple):
 
 
 def holds(distance: float) -> bool:
-    """Whether a claim holds at that distance from its bound; NaN fails."""
+    """Return whether a claim holds at that distance from its bound; NaN fails."""
     return distance >= 0.0
 
 
@@ -60,7 +60,7 @@ def root(function: Function, low: float, high: float) -> Root:
 
 
 def _share(a: float, fa: float, b: float, fb: float, c: float, fc: float) -> float:
-    """Where to look next between a and b: by inverse quadratic interpolation if safe, else half-way."""
+    """Return the next place to try between a and b: by inverse quadratic interpolation if safe, else 0.5."""
     if fa in (fb, fc) or fb == fc or b == c:
         return 0.5
     xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
@@ -70,7 +70,7 @@ def _share(a: float, fa: float, b: float, fb: float, c: float, fc: float) -> flo
 
 
 def near_zero(before: float, here: float, after: float) -> bool:
-    """Whether an extreme about the middle one of three values may pass 0 between them.
+    """Return whether an extreme about the middle one of three values may pass 0 between them.
 
     The middle one is the nearest to 0 on its side. The function may go on from it for one interval as steeply
     as it came.
@@ -117,7 +117,7 @@ def touching(function: Function, low: float, middle: float, high: float) -> floa
 
 
 def _vertex(a: float, fa: float, m: float, fm: float, b: float, fb: float) -> float:
-    """Where the parabola through three points is level; NaN for a straight line."""
+    """Return the vertex of the parabola through three points; NaN for a straight line."""
     before, after = (m - a) * (fm - fb), (m - b) * (fm - fa)
     if before == after:
         return math.nan

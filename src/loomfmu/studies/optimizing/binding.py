@@ -1,5 +1,6 @@
-"""What keeps a design from being better: claims that are as near to their bounds as they may be, and ends of
-ranges; and what it would gain if they were relaxed."""
+"""Binding limits of a design: claims as near to their bounds as they may be, and ends of ranges; and the gain
+if they were relaxed.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -80,7 +81,7 @@ def _priced(here: Tangent) -> tuple[Floats, Floats, Floats]:
 
 
 def _gain(here: Tangent, room: Floats, wider: Floats) -> float:
-    """What more room at claims, or wider ranges, would gain by the tangents: others may then bind as well."""
+    """Return the gain from more room at claims or wider ranges, by the tangents: others may then bind."""
     if len(here.heights) > 1:
         return nan
     before, after = (

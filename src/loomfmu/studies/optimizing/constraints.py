@@ -1,4 +1,4 @@
-"""What a study says of the claims of its scene: which must hold, and how far from their bounds."""
+"""The constraints of a study: which claims must hold, and how far from their bounds."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +9,7 @@ from ...errors import LoomfmuError, shown, suggestion
 
 
 def names_of(scene: Scene) -> list[str]:
-    """What a study calls the claims of its scene."""
+    """Return the study's names of the claims of its scene."""
     return [str(claim.get("name") or f"claim_{number + 1}") for number, claim in enumerate(scene.claims)]
 
 
@@ -20,7 +20,7 @@ def _check_claim(name: Any, names: Sequence[str], where: str) -> None:
 
 
 def required_of(scene: Scene, given: Any) -> tuple[bool, ...]:
-    """Whether each claim must hold: all but those that are named."""
+    """Return which claims must hold: all but those that are named."""
     if not isinstance(given, list):
         raise LoomfmuError(f"except = {shown(given)} must be a list of claims by their names")
     names = names_of(scene)
@@ -32,7 +32,8 @@ def required_of(scene: Scene, given: Any) -> tuple[bool, ...]:
 def safety_of(
     scene: Scene, given: Any, required: Sequence[bool]
 ) -> tuple[tuple[float, ...], tuple[str, ...]]:
-    """How far each claim stays from its bound: a share of the bound, or a quantity in the claim's unit."""
+    """Return the distances of claims from their bounds: shares of bounds, and amounts in the claims' units.
+    """
     names = names_of(scene)
     if not scene.claims and given:
         raise LoomfmuError(f"safety = {shown(given)}, but the scene has no claims")

@@ -31,7 +31,7 @@ from .study import Study
 
 
 class Files:
-    """What a search writes into its directory."""
+    """The files that a search writes into its directory."""
 
     def __init__(self, directory: Path):
         self.directory = directory
@@ -53,12 +53,12 @@ class Files:
         return []
 
     def results(self) -> list[Path]:
-        """What is there under these names."""
+        """Return the files that exist under these names."""
         fronts = [path for path in files(self.directory, "best_*.toml") if path.stem[5:].isdigit()]
         return [path for path in self.targets if path.exists()] + fronts
 
     def partial(self) -> list[Path]:
-        """What a search that was killed was about to write."""
+        """Return the partial files that a killed search has left."""
         return files(self.directory, ".*.partial")
 
     def check(self, study: Study, own: Point) -> None:
@@ -135,7 +135,7 @@ def _constant(study: Study, designs: Sequence[Design]) -> tuple[str, ...]:
 
 
 def _nowhere(designs: Sequence[Design], names: Sequence[str], own: Sequence[Verdict]) -> tuple[str, ...]:
-    """What no design does: meet a claim or keep its safety distance, with the nearest that any came."""
+    """Return the claims, or safety distances, that no design meets, with the nearest that any came."""
     found = []
     for number, (name, verdict) in enumerate(zip(names, own, strict=True)):
         if any(each.room[number] >= 0.0 for each in designs):

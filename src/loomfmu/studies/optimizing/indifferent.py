@@ -26,7 +26,7 @@ def indifferent(runs: Runs, best: Design) -> dict[str, tuple[float, float]]:
 
 
 def _reached(runs: Runs, best: Design, place: int, end: float) -> float:
-    """How far towards an end of its range a variable may go."""
+    """Return how far towards an end of its range a variable may go."""
     shares = np.linspace(best.point[place], end, PLACES).tolist()[1:]
     good = bad = best.point[place]
     for share, fine in zip(shares, _as_good(runs, best, place, shares), strict=True):

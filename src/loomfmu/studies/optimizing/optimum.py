@@ -1,4 +1,4 @@
-"""What a search for the best design found: as data, and as the words in which people read it."""
+"""The best designs found: as data, and in words."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Optimum:
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """What keeps the first design from being better."""
+        """The limits that bind the first design."""
         return self.front[0].binding if self.front else ()
 
     @property
@@ -138,7 +138,7 @@ def _shown(goal: Goal, value: float, digits: int = 7) -> str:
 
 
 def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
-    """What relaxing a limit by 1 % is worth, in the goal's unit; an empty text where that is not known."""
+    """Return the gain from relaxing a limit by 1 %, in the goal's unit, or an empty text if unknown."""
     if not math.isfinite(limit.gain):
         return ""
     if not limit.gain > 0.0:
@@ -150,7 +150,7 @@ def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
 
 
 def _note(found: Optimum, best: Best, key: str | int) -> str:
-    """What a table says of a variable, by its name, or a claim, by its number: whether it binds, its gain."""
+    """Return a table's note on a variable, by its name, or on a claim, by its number."""
     if isinstance(key, int) and not found.study.required[key]:
         return "may fail"
     for limit in best.limits:
@@ -222,7 +222,7 @@ def front_table(found: Optimum) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
 
 
 def conclusion(found: Optimum) -> Iterator[str]:
-    """What was found, in sentences."""
+    """Yield the conclusion, in sentences."""
     if not found.front:
         yield f"None of the {found.runs} designs that were tried meets {found.study.wanted}."
         for claim in found.nowhere:
@@ -263,7 +263,7 @@ def _in_words(limit: Limit, of: str = "the end of the range of ") -> str:
 
 
 def _gains(found: Optimum, best: Best) -> Iterator[str]:
-    """What it is worth to relax each limit, in a sentence."""
+    """Yield the gain from relaxing each limit, in a sentence."""
     gains = [(_in_words(each, "the range of "), shown_gain(found, best, each)) for each in best.limits]
     if known := [f"{name} is worth {gain}" for name, gain in gains if gain]:
         yield f"Relaxed by 1 %, {listed(known)}."

@@ -106,7 +106,7 @@ def _beside(x: Floats, difference: float) -> list[Floats]:
 def _step_to(
     centre: Tangent, near: Sequence[Tangent], reach: float, penalty: float
 ) -> tuple[Floats, float, float]:
-    """Where the model is best within reach, what it promises, and the penalty that makes claims count."""
+    """Return the model's best point within reach, its prediction, and the penalty that makes claims count."""
     matrix, limits = _model(centre, near)
     size = len(centre.x)
     bounds = [

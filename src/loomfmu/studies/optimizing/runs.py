@@ -41,12 +41,12 @@ class Design:
 
     @property
     def allowed(self) -> bool:
-        """Whether all claims hold, as far from their bounds as wanted, and all goals have values."""
+        """Return whether all claims hold, as far from their bounds as wanted, and all goals have values."""
         return self.holds and bool(np.all(self.room >= 0.0)) and bool(np.all(np.isfinite(self.heights)))
 
     @property
     def shortfall(self) -> float:
-        """How far it is from being allowed, 0 if it is: the sum of what its claims lack."""
+        """The sum by which its claims fall short, 0 if the design is allowed."""
         if self.error or not np.all(np.isfinite(self.heights)):
             return 10.0 + len(self.room)
         short = float(np.sum(np.where(np.isnan(self.room), 1.0, np.maximum(0.0, -self.room))))
@@ -119,7 +119,7 @@ class Runs:
 
 
 class Measured(NamedTuple):
-    """What a design is worth: the largest of `heights` is to be small, each of `room` not negative."""
+    """The measures of a design: the largest of `heights` to minimise, `room` to keep non-negative."""
 
     heights: Floats
     room: Floats
@@ -130,7 +130,7 @@ Function = Callable[[Sequence[Floats]], list[Measured | None]]  # at several poi
 
 
 def about(runs: Runs, design: Design, pieces: Pieces) -> Function:
-    """What designs are worth that differ from one in its values within ranges, given as shares of these."""
+    """Return a function that measures designs near one, their values given as shares of their ranges."""
     places = runs.study.continuous
 
     def measured(shares: Sequence[Floats]) -> list[Measured | None]:
@@ -152,7 +152,7 @@ def about(runs: Runs, design: Design, pieces: Pieces) -> Function:
 
 @dataclass(frozen=True)
 class Limits:
-    """How far claims must stay from their bounds: shares of these, and amounts; `scales` make them alike.
+    """The distances that claims must keep from their bounds: shares of these, and amounts, with `scales`.
 
     Those that are not `required` always have room.
     """
@@ -163,7 +163,7 @@ class Limits:
     scales: Floats
 
     def room(self, holds: Sequence[bool], bounds: Floats, distances: Floats) -> Floats:
-        """How much farther each claim is from its bound than it must be, as a share of its scale."""
+        """Return how much farther each claim is from its bound than it must be, as a share of its scale."""
         rest = (distances - self.shares * np.abs(bounds) - self.amounts) / self.scales
         known = np.where(np.isnan(distances), np.where(holds, 0.0, np.nan), rest)
         return np.where(self.required, known, 1.0)

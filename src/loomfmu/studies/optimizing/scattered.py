@@ -29,7 +29,7 @@ def _number(variable: Any, share: float) -> float:
 
 
 def generation(study: Study) -> int:
-    """How many designs a generation has."""
+    """Return the number of designs in a generation."""
     return min(max(EACH * len(study.variables), FEWEST), MOST)
 
 

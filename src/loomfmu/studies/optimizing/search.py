@@ -20,7 +20,7 @@ TIE = 1e-4  # weight of the sum of all goals beside the largest: none is worse t
 
 
 def expected(study: Study) -> int:
-    """How many designs a search will run, roughly."""
+    """Return roughly how many designs a search will run."""
     if study.enumerable:
         return study.combinations
     near = EXPECTED * len(study.continuous) * min(study.combinations, POLISHED)
@@ -57,7 +57,7 @@ def searched(runs: Runs, own: Point, path: Path) -> list[Design]:
 
 
 def _spread(heights: Floats) -> Floats:
-    """How far each goal ranges, 1 where it does not."""
+    """Return the range of each goal's values, 1 if they are all equal."""
     known = np.where(np.isfinite(heights), heights, np.nan)
     with np.errstate(invalid="ignore"):
         spread = np.nan_to_num(

@@ -1,4 +1,4 @@
-"""Where a search starts: the scene's own design, how far claims must stay from their bounds, what matters."""
+"""The start of a search: the scene's own design, the claims' distances, the variables that matter."""
 
 import math
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ def _own(study: Study, variable: Variable) -> float:
 
 
 def limits_of(study: Study, verdicts: Sequence[Verdict], path: Path) -> Limits:
-    """How far claims must stay from their bounds, in the units of the verdicts on the scene's own design.
+    """Return the distances that claims must keep, in the units of the verdicts on the scene's own design.
 
     Raises LoomfmuError for an amount of another unit, or a share of a bound of 0.
     """
@@ -96,7 +96,7 @@ def check_options(runs: Runs, points: Sequence[Point], path: Path) -> None:
 
 
 def _error(runs: Runs, points: Sequence[Point]) -> str:
-    """Why none of these designs can be run; an empty text if one can. Most often the first can."""
+    """Return why none of these designs can be run, or an empty text if one can. Most often the first can."""
     (first,) = runs.at(points[:1])
     return first.error if first.error and all(each.error for each in runs.at(points)) else ""
 

@@ -28,7 +28,7 @@ MOST_GOALS = 3
 
 @dataclass(frozen=True)
 class Variable:
-    """What may vary: in a `range` of real numbers, or among `options`."""
+    """A variable of a study: in a `range` of real numbers, or among `options`."""
 
     varied: Varied
     range: Range | None
@@ -36,7 +36,7 @@ class Variable:
 
     @property
     def key(self) -> str:
-        """What the file calls it."""
+        """The key in the file."""
         return self.varied.key
 
     @property
@@ -52,7 +52,7 @@ class Variable:
 
     @property
     def text(self) -> str:
-        """What it may be."""
+        """The allowed values, in words."""
         if self.range is None and not isinstance(self.options, range):
             return " | ".join(map(self.varied.show, self.options))
         ends = (self.range.low, self.range.high) if self.range else (self.options[0], self.options[-1])
@@ -61,7 +61,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Goal:
-    """What is to be made small (`sign` 1) or large (-1).
+    """A quantity to minimise (`sign` 1) or to maximise (-1).
 
     `place` is its number among the variables, the claims or the signals of a study, as `kind` says.
     """
@@ -75,14 +75,15 @@ class Goal:
 
     @property
     def words(self) -> str:
-        """What is wanted of it."""
+        """The goal in words."""
         way = "smallest" if self.sign > 0.0 else "largest"
         return f"{way} {'distance of ' if self.kind == 'claim' else ''}{self.name}"
 
 
 @dataclass(frozen=True)
 class Study:
-    """What is searched: a scene, what may vary in it, goals, and how far claims stay from their bounds.
+    """A search for the best design: a scene, its variables, goals, and the claims' distances from their
+    bounds.
 
     `required` says of each claim whether it must hold; `shares` and `amounts` are those distances: as a share
     of its bound, and in its unit.
@@ -101,7 +102,7 @@ class Study:
 
     @property
     def title(self) -> str:
-        """What it is about."""
+        """The title."""
         return self.header.title
 
     @property
@@ -116,7 +117,7 @@ class Study:
 
     @property
     def flavour(self) -> Flavour:
-        """That of its FMUs."""
+        """The flavour of the FMUs."""
         return self.header.flavour
 
     @property
@@ -141,12 +142,12 @@ class Study:
 
     @property
     def enumerable(self) -> bool:
-        """Whether nothing but options vary, so few of them that a search can run every combination."""
+        """Return whether only options vary, so few of them that a search can run every combination."""
         return not self.continuous and self.combinations <= self.search["runs"]
 
     @property
     def wanted(self) -> str:
-        """Which claims must hold, in words."""
+        """The claims that must hold, in words."""
         free = [
             f"'{name}'"
             for name, needed in zip(names_of(self.scene), self.required, strict=True)
@@ -156,12 +157,12 @@ class Study:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user is to be warned of."""
+        """The warnings for the user."""
         doubts = (doubt for each in self.variables if each.range for doubt in each.range.doubts)
         return (*self.scene.notes, *doubts)
 
     def setting(self, values: Sequence[Value]) -> dict[str, Any]:
-        """What sets values of the variables in the scene."""
+        """Return the settings of the scene for values of the variables."""
         return {
             target: each.varied.setting(value)
             for each, value in zip(self.variables, values, strict=True)
@@ -206,7 +207,7 @@ def _parse(text: str, path: Path) -> Study:
 
 
 def _variables(head: Header, tables: dict[str, Any]) -> list[Variable]:
-    """What may vary, ranges first."""
+    """Return the variables, ranges first."""
     ranges, choices = (flattened(tables.get(name, {}), name) for name in ("ranges", "choices"))
     known = variables(head, {"ranges": ranges, "choices": choices})
     for where, each in known.items():

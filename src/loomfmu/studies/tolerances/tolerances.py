@@ -31,7 +31,9 @@ HEADINGS = ("verdict", "claim", "in the scene", "worst case", "where", "what it 
 
 @dataclass(frozen=True)
 class Cost:
-    """What a tolerance costs a claim: how much distance it gives back at the scene's own value."""
+    """The cost of a tolerance for a claim: the distance from the bound that it takes, at the scene's own
+    value.
+    """
 
     key: str
     distance: float
@@ -54,7 +56,7 @@ class WorstCase:
 
     @property
     def shared(self) -> bool:
-        """Whether it is worse than the scene, and no less so with any one value as in the scene."""
+        """Return whether it is worse than the scene even with any one value as in the scene."""
         lost = self.own.distance - self.worst.distance
         return not self.costs and lost > SAME * abs(self.worst.bound)
 
@@ -107,7 +109,7 @@ def _where(each: WorstCase, found: Tolerances) -> str:
 
 
 def _costs(each: WorstCase) -> str:
-    """What each tolerance costs, the most expensive first."""
+    """Return the cost of each tolerance in words, the most expensive first."""
     if each.shared:
         return "cost: none alone; it is as bad without any one of them"
     if not each.costs:
