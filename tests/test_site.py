@@ -32,7 +32,7 @@ def test_every_page_of_the_repository_is_on_the_site_once() -> None:
     root = contents.ROOT
     there = [
         *root.glob("*.md"),
-        *root.glob("docs/*.md"),
+        *root.glob("docs/**/*.md"),
         *root.glob("fmus/**/*.md"),
         *root.glob("results/*.md"),
     ]
@@ -40,7 +40,13 @@ def test_every_page_of_the_repository_is_on_the_site_once() -> None:
 
 
 def test_the_guides_that_are_ordered_exist() -> None:
-    for page in (contents.TOUR, *contents.GUIDES, *contents.REFERENCE, *contents.PROJECT):
+    for page in (
+        contents.TOUR,
+        *contents.GUIDES,
+        *contents.REFERENCE,
+        *contents.PROJECT,
+        *contents.CONTRIBUTING,
+    ):
         assert (contents.ROOT / page).is_file(), page
 
 

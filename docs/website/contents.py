@@ -13,7 +13,11 @@ GUIDES = (
     "docs/sweeps.md", "docs/limits.md", "docs/tolerances.md", "docs/optimizing.md", "docs/fitting.md",
     "docs/python.md", "docs/importing.md", "docs/own_mechanism.md",
 )  # fmt: skip
-PROJECT = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "THIRD_PARTY.md")
+PROJECT = ("CHANGELOG.md", "SECURITY.md", "THIRD_PARTY.md")
+CONTRIBUTING = (
+    "CONTRIBUTING.md",
+    *(f"docs/contributing/{each}.md" for each in ("architecture", "components", "tests", "words")),
+)
 
 
 def sections(generated: list[str]) -> dict[str, list[str]]:
@@ -31,6 +35,7 @@ def sections(generated: list[str]) -> dict[str, list[str]]:
         "Reference": [*REFERENCE, *generated],
         "Evidence": ["results/validation.md", "results/benchmarks.md"],
         "Project": list(PROJECT),
+        "Contributing": list(CONTRIBUTING),
     }
 
 

@@ -83,8 +83,7 @@ def _of_user(name: str) -> tuple[Path, str]:
 
 
 def _fault(directory: Path, mend: bool = False) -> str:
-    """Return why a folder cannot be a cache, or an empty text; make it, and close it to others with `mend`.
-    """
+    """Return why a folder cannot be a cache, or an empty text; make it, and with `mend` restrict it."""
     try:
         str(directory).encode()  # FMUs get it as UTF-8
         directory.mkdir(mode=0o700, parents=True, exist_ok=True)
