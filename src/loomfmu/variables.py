@@ -3,7 +3,7 @@
 import math
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import MISSING, Field, dataclass, fields, replace
 from itertools import groupby
 from typing import Any, ClassVar, NamedTuple
@@ -240,7 +240,7 @@ class Component:
         return tuple(_variable(each) for each in fields(cls))
 
     @classmethod
-    def longest_step(cls, values: Mapping[str, Any]) -> tuple[float, str]:
+    def longest_step(cls, value: Callable[[str], Any]) -> tuple[float, str]:
         """The longest step that shows how its outputs change with these parameters [s], and why."""
         return math.inf, ""
 

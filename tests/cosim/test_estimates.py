@@ -165,8 +165,20 @@ def test_the_method_follows_from_what_a_claim_depends_on() -> None:
     assert COMPONENTS["HealdDamper"].keeps == "motion"
 
 
+@pytest.mark.parametrize(("steps", "shown"), [(134, False), (799, False), (800, True)])
+def test_steps_that_do_not_show_a_ripple_leave_a_claim_undecided(steps: int, shown: bool) -> None:
+    """134, 83 and 51 steps agreed to 1 mm on a deflection that was 2 mm larger."""
+    rippling = "[shaft]\nripple_amplitude = 0.06\nripple_order = 100\n"
+    text = LOOM.format(steps=steps, bound=-1000).replace("[shaft]\n", rippling)
+    found = evaluate(parse(text)).claims[0]
+    assert found.decided is shown
+    if not shown:
+        why = "the steps are too long: the shaft ripples 100 times in a revolution; set steps_per_revolution"
+        assert why + " = 800 or more" in found.note
+
+
 def test_numbers_of_a_belt_in_motion_are_no_better_known_than_they_scatter() -> None:
-    """Energies change by up to 3e-4 from step size to step size: three runs agreed on a wrong one by chance."""
+    """Energies change by up to 3e-4 from step size to step size: three runs agreed on a wrong one."""
     text = LOOM.format(steps=93, bound=0.1).replace("[shaft]", "belt_motion = true\n[shaft]")
     claim = '[[claims]]\nkind = "below"\nsignal = "belt_motion.energy_through"\nbound = 1000\n'
     found = evaluate(parse(text + claim)).claims[-1]

@@ -1,6 +1,6 @@
 """MainShaft: the loom's main shaft, which all mechanisms follow."""
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, pi
 from typing import Any, ClassVar
@@ -44,15 +44,15 @@ class MainShaft(Component):
     acceleration: float = output("rad/s2", "Shaft acceleration", nominal=100.0)
 
     @classmethod
-    def longest_step(cls, values: Mapping[str, Any]) -> tuple[float, str]:
+    def longest_step(cls, value: Callable[[str], Any]) -> tuple[float, str]:
         """The longest step that shows a ripple of the speed, and the start-up."""
         looks = [(inf, "")]
-        if values["ripple_amplitude"]:
-            order = values["ripple_order"]
-            wave = 2.0 * pi / (abs(values["speed"]) * order)
+        if value("ripple_amplitude"):
+            order = value("ripple_order")
+            wave = 2.0 * pi / (abs(value("speed")) * order)
             looks.append((wave / WAVE, f"the shaft ripples {order} times in a revolution"))
-        if values["ramp_duration"]:
-            ramp = values["ramp_duration"]
+        if value("ramp_duration"):
+            ramp = value("ramp_duration")
             looks.append((ramp / WAVE, f"the shaft starts up in {ramp:.4g} s"))
         return min(looks)
 

@@ -45,7 +45,7 @@ def chosen(
         tried = altered(scene, steps_per_period=steps)
         trace, verdicts = judge(tried)
         if before:
-            coarser = Coarser(everything, tuple(before))
+            coarser = Coarser(everything, estimates.unshown(tried), tuple(before))
             estimated = estimates.of(trace, verdicts, coarser)
             errors = [
                 _share(verdict, claim.noise)

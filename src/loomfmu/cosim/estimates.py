@@ -7,7 +7,7 @@ velocity, would lie at the same share of a step in all of them, and equal errors
 """
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -17,8 +17,9 @@ from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
-from .master.grid import Grid, uniform
+from .master.grid import SAME, Grid, period, uniform
 from .planning.requested import signals_of
+from .planning.windows import longest_step
 from .scenes.graph import step_order
 from .scenes.keys import ITERATED, WINDOWS
 from .scenes.scene import Scene
@@ -27,6 +28,9 @@ MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
 
 NO_VALUE = "coarser steps give no value: take more steps"
+# of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left to
+# the coarsest run
+TOO_LONG = 2.0
 SHARES = (0.62, 0.38)  # of the steps: the golden ratio and its square are farthest from fractions
 
 
@@ -60,10 +64,12 @@ LAGGED = MEMORY._replace(factors=(12.0, 4.0))
 class Coarser:
     """The worst values of the claims in each coarser run, NaN where there is none.
 
-    `wanted` are the claims, counted from 0, that were judged. Without values `why` says why.
+    `wanted` are the claims, counted from 0, that were judged. Without values `why` says why. `unshown` are
+    those that no number of coarser runs can judge, since all steps are too long for them, and why.
     """
 
     wanted: Collection[int]
+    unshown: Mapping[int, str]
     values: tuple[tuple[float, ...], ...] = ()
     why: str = ""
 
@@ -80,16 +86,22 @@ class Estimates:
         self._scene, self.claims, self._run, self._signals = scene, claims, run, signals
 
     @cached_property
+    def _upstream(self) -> list[set[str]]:
+        """The instances on which the signals of each claim depend."""
+        scene = self._scene
+        sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
+        owners = ({signal.partition(".")[0] for signal in signals_of(scene, each)} for each in self.claims)
+        return [set(upstream(each, sources)) for each in owners]
+
+    @cached_property
     def _methods(self) -> list[Method]:
         """Return the method that estimates each claim's error, by the FMUs that its signals depend on."""
         scene = self._scene
         _order, lagged = step_order(scene.instances, scene.wires)
         delayed = bool(lagged) and scene.coupling != ITERATED
-        sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
         found = []
-        for claim in self.claims:
-            owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
-            components = [scene.instances[name].fmu.component for name in upstream(owners, sources)]
+        for names in self._upstream:
+            components = [scene.instances[name].fmu.component for name in names]
             kept = {MOTION if each is None else each.keeps for each in components}
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if delayed else method
@@ -99,25 +111,36 @@ class Estimates:
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
+        unshown = self.unshown(scene)
         if not wanted:
-            return Coarser(wanted)
+            return Coarser(wanted, unshown)
         for name, instance in scene.instances.items():
             # one that crashes when it is freed must not take the run with it
             if not (instance.fmu.trusted or scene.isolates(name)):
-                return Coarser(wanted, why=f"{name} runs in this process; set isolated = true")
+                return Coarser(wanted, unshown, why=f"{name} runs in this process; set isolated = true")
         values = []
         for share in SHARES:
             coarse = _coarser(scene, grid, share)
             if coarse is None:
-                return Coarser(wanted, why="it takes too few steps for coarser runs")
+                return Coarser(wanted, unshown, why="it takes too few steps for coarser runs")
             if coarse.steps * self._signals > MOST_VALUES:
-                return Coarser(wanted, why="the run is too long")
+                return Coarser(wanted, unshown, why="the run is too long")
             try:
                 values.append(self.worst(self._run(scene, coarse), wanted))
             except LoomfmuError as error:
                 if not values:
-                    return Coarser(wanted, why=f"with {share:.0%} of the steps, {error}")
-        return Coarser(wanted, tuple(values))
+                    return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
+        return Coarser(wanted, unshown, tuple(values))
+
+    def unshown(self, scene: Scene) -> dict[int, str]:
+        """The claims, counted from 0, on mechanisms that equal steps of this length do not show, and why."""
+        found = dict[int, str]()
+        shown = {name: longest_step(scene, name) for name in scene.instances}
+        for number, names in enumerate(self._upstream):
+            longest, why = min((shown[name] for name in names if shown[name][0]), default=(math.inf, ""))
+            if scene.step_size > TOO_LONG * longest:
+                found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
+        return found
 
     def near(self, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
@@ -148,6 +171,8 @@ class Estimates:
                 self._methods[number],
                 [run[number] for run in coarser.values],
             )
+        for number, why in coarser.unshown.items():
+            found[number] = _undecided(found[number], why)
         return tuple(found)
 
 
@@ -165,7 +190,7 @@ def _estimated(
     if not math.isfinite(coarser[0]):
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
-        return replace(_noted(verdict, NO_VALUE), error=math.inf, decided=False, holds=False)
+        return _undecided(verdict, NO_VALUE)
     spread = max(changes)
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
@@ -178,6 +203,17 @@ def _estimated(
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
     return replace(verdict, note="; ".join(filter(None, (verdict.note, note))))
+
+
+def _undecided(verdict: Verdict, why: str) -> Verdict:
+    return replace(_noted(verdict, why), error=math.inf, decided=False, holds=False)
+
+
+def _enough(scene: Scene, longest: float) -> str:
+    """Steps that would be short enough."""
+    if scene.step is not None:
+        return f"set step = {longest:.2g} s or less"
+    return f"set steps_per_revolution = {math.ceil(period(scene) / longest - SAME)} or more"
 
 
 def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:

@@ -128,16 +128,25 @@ def _unequal(needed: Scene) -> str:
 
 def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move and how the shaft's speed changes, and why."""
-    fine, turn = period(scene) / scene.steps_per_period, period(scene) / (2.0 * math.pi)
+    fine = period(scene) / scene.steps_per_period
     yield period(scene) / scene.coarse_steps_per_revolution, ""
-    for name, each in scene.instances.items():
-        component = each.fmu.component
-        if component:
-            yield component.longest_step(each.effective())
-        if component and component.keeps != MOTION:  # of what integrates every step counts anyway
-            limit = f"allows steps of at most {component.longest_turn * 180.0 / math.pi:.4g} deg"
-            why = f"{name} {limit if component.longest_turn else 'declares no longest_turn'}"
-            yield max(component.longest_turn * turn, fine), why
+    for each in scene.instances:
+        longest, why = longest_step(scene, each)
+        yield longest or fine, why
+
+
+def longest_step(scene: Scene, name: str) -> tuple[float, str]:
+    """The longest step that shows how an instance moves [s], and why; 0 where none is known."""
+    instance = scene.instances[name]
+    component = instance.fmu.component
+    if component is None:
+        return math.inf, ""
+    by_values = component.longest_step(instance.effect)
+    if component.keeps == MOTION:  # every step counts anyway
+        return by_values
+    limit = f"allows steps of at most {component.longest_turn * 180.0 / math.pi:.4g} deg"
+    why = f"{name} {limit if component.longest_turn else 'declares no longest_turn'}"
+    return min(by_values, (component.longest_turn * period(scene) / (2.0 * math.pi), why))
 
 
 def _check(scene: Scene) -> None:
