@@ -28,8 +28,8 @@ MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
 
 NO_VALUE = "coarser steps give no value: take more steps"
-# of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left to
-# the coarsest run
+# of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
+# to the coarsest run
 TOO_LONG = 2.0
 SHARES = (0.62, 0.38)  # of the steps: the golden ratio and its square are farthest from fractions
 
