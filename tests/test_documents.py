@@ -282,16 +282,26 @@ def test_values_that_a_page_calls_assumed_are_marked_so_where_they_are_declared(
         assert "assum" in variable.description, f"{name}.{variable.name}"
 
 
+BENCHMARKS = (HOUSE / "results" / "benchmarks.md").read_text()
+
+
 def test_the_readme_quotes_the_benchmarks() -> None:
     (row,) = re.findall(
-        r"^\| a step, all outputs recorded \| (\w+) us \| .* \((\S+) us\) \|$",
-        (HOUSE / "results" / "benchmarks.md").read_text(),
-        re.M,
+        r"^\| a step, all outputs recorded \| (\w+) us \| .* \((\S+) us\) \|$", BENCHMARKS, re.M
     )
     ours, other = (round(float(each)) for each in row)
+    (run,) = re.findall(r"^\| `loomfmu run`: .* \| (\w+) ms \|", BENCHMARKS, re.M)
     text = " ".join(README.read_text().split())
     assert f"all outputs recorded, takes {ours} us" in text
     assert f"the fastest other master that records takes {other} us" in text
+    assert f"with native FMUs, {ours} us each; {int(run) / 1000.0:.2g} s in total" in text
+
+
+def test_the_page_on_scenes_quotes_the_cost_of_isolation() -> None:
+    rows = re.findall(r"^\| native \| \w+ \| [^|]+ \| [^|]+ \| (\S+) \|$", BENCHMARKS, re.M)
+    low, high = sorted(round(float(each)) for each in rows)
+    text = " ".join((HOUSE / "docs" / "scenes.md").read_text().split())
+    assert f"Isolation takes {low} to {high} us per step and FMU" in text
 
 
 SOURCES = HOUSE / "docs" / "sources.md"

@@ -71,6 +71,12 @@ def written_whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return live_page.write(WHOLE, [], tmp_path_factory.mktemp("page") / "whole.html")
 
 
+def test_the_report_guide_states_the_size_of_a_page(written: Path, written_whole: Path) -> None:
+    guide = " ".join((SIMS.parent / "docs" / "report.md").read_text(encoding="utf-8").split())
+    demo, whole = (f"{path.stat().st_size / 1e6:.1f} MB" for path in (written, written_whole))
+    assert f"{demo} for the demo, {whole} for `full_loom.toml`" in guide
+
+
 def running(page: Any) -> Any:
     """A page once all of it shows its values, those that take long, too."""
     until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
