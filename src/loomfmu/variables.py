@@ -24,13 +24,11 @@ class Variable:
     derivative; `depends` the inputs that an output depends on (None: on all of them; empty: on parameters
     alone; TIME: on time alone); `follows` the one input with which an output only rises or only falls;
     `choices` the names of an enumeration's values, counted from 1; `indicator` says that it changes its sign
-    where an output jumps; `source` is the output that an input is usually wired to, `instance.variable` with
-    # for the instance's own number, and in an array with * for every instance that has such an output; of a
-    parameter it is that of another instance whose value it takes unless it is given one; with `source_for` an
-    input is
-    wired to the first of its sources, parted by |, that there is, and only where that output is taken, or
-    where that input is wired to the same instance; a parameter takes its value only where that input is
-    wired;
+    where an output jumps; `source` is the output that an input is usually wired to, `instance.variable`, with
+    # for the instance's own number, and in an array with * for every instance that has such an output;
+    several are separated by |, and the first in the scene counts. The `source` of a parameter is another
+    instance's parameter, whose value it takes unless it has its own. `source_for` limits both to scenes in
+    which that output is taken, or that input is wired to the same instance;
     `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `so_far` says that an
     output only rises or only falls, such as a count, a sum or the extreme of something else; `when` and
     `unless` name the yes-or-no parameter with which, or without which alone, it has an effect, or an

@@ -21,7 +21,7 @@ Place = tuple[str, str, str]  # of a file in the cache: the kind of its entry, i
 
 
 def check_flavour(flavour: str) -> None:
-    """Refuse a flavour that there is not."""
+    """Refuse an unknown flavour."""
     if flavour not in FLAVOURS:
         raise LoomfmuError(f"there is no flavour {shown(flavour)}{suggestion(str(flavour), FLAVOURS)}")
 

@@ -295,7 +295,7 @@ def _caused(components: Mapping[str, type[Component]]) -> list[tuple[str, Variab
 
 
 def _usual_sources(name: str, variable: Variable) -> list[str]:
-    """The outputs that an input of an instance is usually wired to, the first one that there is."""
+    """Return the outputs that an input is usually wired to, in order of preference."""
     return (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
 
 

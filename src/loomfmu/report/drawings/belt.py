@@ -25,7 +25,7 @@ def _quarters(halves: Floats) -> Floats:
     return np.array([complete_elliptic(sin(half)) for half in halves])
 
 
-# Every elastica that there is, by half the slope of its ends [rad]: deflections over the length up to the
+# All elasticas, by half the slope of its ends [rad]: deflections over the length up to the
 # largest one, then loads over the critical one.
 MOST = asin(MOST_BENT)
 RISING = np.linspace(0.0, MOST, 400).round(9).tolist()

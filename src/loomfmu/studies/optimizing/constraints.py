@@ -32,8 +32,7 @@ def required_of(scene: Scene, given: Any) -> tuple[bool, ...]:
 def safety_of(
     scene: Scene, given: Any, required: Sequence[bool]
 ) -> tuple[tuple[float, ...], tuple[str, ...]]:
-    """Return the distances of claims from their bounds: shares of bounds, and amounts in the claims' units.
-    """
+    """Return the distances of claims from their bounds: shares of bounds, and amounts in claims' units."""
     names = names_of(scene)
     if not scene.claims and given:
         raise LoomfmuError(f"safety = {shown(given)}, but the scene has no claims")
