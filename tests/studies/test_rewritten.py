@@ -30,13 +30,18 @@ def test_values_heads_and_choices_go_where_the_scene_has_them(tmp_path: Path) ->
     assert 'head = "GS900 left"' in path.read_text() and "# a new belt: length factor 0.8" in path.read_text()
 
 
-def test_what_does_not_work_in_another_folder_is_refused(tmp_path: Path) -> None:
+def test_what_a_scene_names_is_found_from_another_folder(tmp_path: Path) -> None:
     shutil.copytree(SIMS / "weaves", tmp_path / "weaves")
     source = shutil.copy(SIMS / "twill.toml", tmp_path)
     (tmp_path / "deep").mkdir()
     assert rewritten.write(scenes.load(source), {}, tmp_path / "again.toml").exists()
-    with pytest.raises(LoomfmuError, match=rf"deep/own\.toml: .*; write it beside {source}"):
-        rewritten.write(scenes.load(source), {}, tmp_path / "deep" / "own.toml")
+    moved = rewritten.write(scenes.load(source), {}, tmp_path / "deep" / "own.toml")
+    assert 'weave = "../weaves/twill_2_2.wif"' in moved.read_text()
+    assert scenes.load(moved).instances["heald_1"].values == scenes.load(source).instances["heald_1"].values
+    component = rewritten._moved(
+        '[a]\ncomponent = "own/cam.py:Cam"\n[b]\nfmu = "/m.fmu"\n', tmp_path, moved.parent
+    )
+    assert component == '[a]\ncomponent = "../own/cam.py:Cam"\n[b]\nfmu = "/m.fmu"\n'
     with pytest.raises(LoomfmuError, match="is an input of this command"):
         scene = scenes.load(SIMS / "wl680_3600.toml")
         rewritten.write(scene, {}, SIMS / "wl680_3600.toml")

@@ -42,8 +42,8 @@ def component(spec: str, directory: Path = Path()) -> type[Component]:
 
 def texts(spec: str, directory: Path = Path()) -> dict[str, str]:
     """The texts of a component's file and of the neighbours that it imports, by names from the directory."""
-    base = (directory / _split(spec)[0]).parent
-    named = Path(_split(spec)[0]).parent
+    base = (directory / split(spec)[0]).parent
+    named = Path(split(spec)[0]).parent
     return {
         (named / path.relative_to(base.resolve())).as_posix(): text
         for path, text in with_texts(spec, directory)[1].items()
@@ -52,7 +52,7 @@ def texts(spec: str, directory: Path = Path()) -> dict[str, str]:
 
 def with_texts(spec: str, directory: Path) -> tuple[type[Component], Texts]:
     """The component, and the texts of the files that it was made of."""
-    file, name = _split(spec)
+    file, name = split(spec)
     path = (directory / file).resolve()
     shown = directory / file
     known = _loaded.get((path, name))
@@ -64,7 +64,8 @@ def with_texts(spec: str, directory: Path) -> tuple[type[Component], Texts]:
     return known
 
 
-def _split(spec: str) -> tuple[str, str]:
+def split(spec: str) -> tuple[str, str]:
+    """Return the file and the class that a specification names, the class empty if it names none."""
     match = SPEC.fullmatch(spec)
     if match is None:
         raise LoomfmuError(f"{spec!r} is not a component's file such as cam.py or cam.py:PickingCam")

@@ -1,5 +1,6 @@
-"""The text of a scene with other values in it: comments and order stay."""
+"""The text of a scene with other values in it, for any folder: comments and order stay."""
 
+import os
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import Any
 
 from .. import units
 from ..cosim.scenes import scene as scenes
+from ..cosim.scenes import weave
 from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
@@ -14,6 +16,9 @@ from ..errors import LoomfmuError
 from ..extras import need
 from ..files import Kind, check_target, write_file
 from ..machines import TAKERS
+from ..own import load
+
+FILE_KEYS = {"fmu", "component", "weave"}  # of a table that may name a file
 
 
 def _is_scene(path: Path) -> bool:
@@ -65,28 +70,50 @@ def write(
 
 
 def text_for(scene: Scene, values: Mapping[str, Any], path: Path, description: str = "") -> str:
-    """A scene's text with these values, those that it was read with among them, as it may stand at a path.
+    """A scene's text with these values, those that it was read with among them, as it stands at a path.
 
-    It is read again first: it must be the same scene with the same values there. A `description` replaces the
-    scene's own, which may not hold with other values.
+    It is read again first: it must be the same scene with the same values. The files that it names are then
+    named as they are found from that path. A `description` replaces the scene's own, which may not hold with
+    other values.
 
     Raises:
-        LoomfmuError: not from a TOML file, files that the scene names by paths that do not lead there from
-            its new place, or no `loomfmu[study]`
+        LoomfmuError: not from a TOML file, values that the scene cannot be written with, or no
+            `loomfmu[study]`
     """
     check(scene)
     every = {**scene.overrides, **values}
     expected = scenes.parse(scene.text, scene.name, every, scene.directory)
     text = rewritten(scene, every, description)
-    try:
-        again = scenes.parse(text, path.stem, None, path.parent)
-    except LoomfmuError as error:
-        place = f"write it beside {scene.file}"
-        raise LoomfmuError(f"{path}: the scene cannot be read from this folder ({error}); {place}") from None
+    again = scenes.parse(text, path.stem, None, scene.directory)
     for name, each in expected.instances.items():
         if again.instances[name].effective() != each.effective():
             raise LoomfmuError(f"{path}: the values of {name} cannot be written to this scene")
-    return text
+    return _moved(text, scene.directory, path.parent)
+
+
+def _moved(text: str, directory: Path, folder: Path) -> str:
+    """Return a scene's text whose paths from a directory are written as paths from a folder."""
+    document = _tomlkit().parse(text)
+    for table in document.values():
+        for key in FILE_KEYS & set(table if isinstance(table, dict) else ()):
+            if (file := _file(key, table[key])) and not Path(file).is_absolute():
+                table[key] = _path(directory / file, folder) + table[key][len(file) :]
+    return str(document.as_string())
+
+
+def _file(key: str, given: Any) -> str:
+    """Return the file that a value of a table names, or an empty text."""
+    if key == "component":
+        return load.split(given)[0] if load.is_file(given) else ""
+    return given if key == "fmu" or weave.is_wif(given) else ""
+
+
+def _path(file: Path, folder: Path) -> str:
+    """Return the path of a file from a folder, or the whole path if there is none, as between two drives."""
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return file.resolve().as_posix()
 
 
 def rewritten(scene: Scene, values: Mapping[str, Any], description: str = "") -> str:

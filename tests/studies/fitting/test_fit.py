@@ -1,6 +1,7 @@
 """Fits: known values found again, intervals that cover them, published tests, what is refused."""
 
 import csv
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from scipy.interpolate import CubicSpline
 import loomfmu
 from loomfmu import LoomfmuError, fit
 from loomfmu.cli import main
+from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design.buckling import fit_length_factor
 from loomfmu.machines import table
 from loomfmu.studies.fitting import fit as fitted
@@ -238,6 +240,8 @@ def test_the_scene_with_the_fitted_values_runs_and_keeps_its_comments(tmp_path: 
     assert f"{found.scene.file.name} with " in path.read_text() and "fitted to data.csv." in path.read_text()
     again = loomfmu.prepare(path).scene.instances["belt"].effective()["prescribed_length_factor"]
     assert again == found.parameters[0].value
+    found = replace(found, scene=scenes.load(scene, {"belt.guide_clearance": "0.4 mm"}))
+    assert ", and with belt.guide_clearance = 0.4 mm." in found.write(tmp_path / "set.toml").read_text()
     assert scene.read_text() == BELT.replace("[belt]", "[belt] # the new one")
 
 

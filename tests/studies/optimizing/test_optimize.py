@@ -18,7 +18,7 @@ from loomfmu.studies.optimizing.runs import Design
 from loomfmu.studies.optimizing.search import _front
 
 RPM = math.pi / 30.0
-EXACT = "[set]\nrevolutions = 1\n"  # with the scene's own steps
+EXACT = "[set]\nrevolutions = 2\n"  # with the scene's own steps
 MARGIN = "the belt keeps a margin of 10 %"
 SAFE = "the loom runs below its safe speed"
 
@@ -259,6 +259,20 @@ def test_a_claim_that_holds_nowhere_is_named(tmp_path: Path, capsys: pytest.Capt
     assert not Path("results/study/best.toml").exists() and Path("results/study/designs.csv").exists()
 
 
+def test_a_claim_that_is_undecided_in_every_design_is_named_with_its_reason(tmp_path: Path) -> None:
+    claim = 'kind = "below"\nname = "inertia"\nsignal = "heald_1.inertia_force"\nbound = "5 kN"\n'
+    scene = tmp_path / "inertia.toml"
+    scene.write_text(f"{DEMO.read_text().partition('[[claims]]')[0]}[[claims]]\n{claim}")
+    text = 'maximise = "heald.stroke"\n[choices]\n"heald.stroke" = ["90 mm", "98 mm"]'
+    found = optimize(study(tmp_path, text, scene), processes=1)
+    assert str(found) == (
+        "None of the 2 designs that were tried meets all claims."
+        " No design meets 'inertia', undecided in 2 of them:"
+        " heald_1.inertia_force is known only at the samples;"
+        " set at_samples = true in the claim to judge these alone."
+    )
+
+
 def test_designs_that_cannot_be_run_are_counted(tmp_path: Path) -> None:
     stroke = '"heald.stroke" = ["10 mm", "98 mm"]'  # clear_shed cannot be judged at 10 mm
     text = SMALL.replace("[choices]", f"{stroke}\n[choices]")
@@ -301,7 +315,7 @@ def test_a_value_that_changes_nothing_within_a_range_says_so(tmp_path: Path) -> 
     # all claims hold at both ends as at the best value; just beyond a low end one does not
     for share, fine in ((low, True), (low - 1e-3, False)):
         setting = {
-            "revolutions": 1,
+            "revolutions": 2,
             "steps_per_revolution": 90,
             **best.values,
             "dobby.speed_reduction": share,
@@ -331,7 +345,7 @@ def test_few_choices_are_all_run(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "All 2 combinations were run." in capsys.readouterr().out
     found = optimize(path, processes=1)
     heads = ("G6300 left", "G6300 right")
-    margins = [evaluate(DEMO, set={"revolutions": 1, "steps_per_revolution": 90, "head": h}) for h in heads]
+    margins = [evaluate(DEMO, set={"revolutions": 2, "steps_per_revolution": 90, "head": h}) for h in heads]
     distances = [each.claims[0].distance for each in margins]
     assert found.goal == max(distances) and found.values["head"] == heads[distances.index(max(distances))]
     assert found.runs == 2 and "No claim and no end" not in str(found)
@@ -365,6 +379,6 @@ def test_a_safety_distance_that_no_design_keeps_is_named(tmp_path: Path) -> None
 
 def test_a_study_may_set_an_accuracy(tmp_path: Path) -> None:
     text = f"maximise = '{MARGIN}'\n[choices]\nhead = ['G6300 left', 'G6300 right']"
-    found = optimize(study(tmp_path, text, head="[set]\nrevolutions = 1\naccuracy = 0.01\n"), processes=1)
+    found = optimize(study(tmp_path, text, head="[set]\nrevolutions = 2\naccuracy = 0.01\n"), processes=1)
     assert found.scene and "\naccuracy = 0.01\n" in found.scene.read_text()
     assert "steps_per_revolution" not in found.scene.read_text()

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ... import notebook
+from ...cosim.provenance import texts
 from ...cosim.reading import checked
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
@@ -70,9 +71,10 @@ class Fit:
 
     def write(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the scene with the fitted values as a TOML file. Raises LoomfmuError."""
-        origin = (
-            f"{rewritten.check(self.scene).name} with {listed(self.values)} fitted to {self.data.path.name}."
-        )
+        given = [f"{key} = {value}" for key, value in texts(self.scene.overrides).items()]
+        fixed = f", and with {listed(given)}" if given else ""
+        name = rewritten.check(self.scene).name
+        origin = f"{name} with {listed(self.values)} fitted to {self.data.path.name}{fixed}."
         if not self.trusted:
             origin += " The residuals are not independent: how sure the values are is not known."
         return rewritten.write(self.scene, self.values, Path(path), overwrite, origin)

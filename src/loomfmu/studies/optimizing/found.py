@@ -141,11 +141,14 @@ def _nowhere(designs: Sequence[Design], names: Sequence[str], own: Sequence[Verd
         if any(each.room[number] >= 0.0 for each in designs):
             continue
         distances = [each.distances[number] for each in designs if np.isfinite(each.distances[number])]
+        undecided = [each.undecided[number] for each in designs if each.undecided[number]]
         nearest = verdict.shown(max(distances, default=0.0))
         if any(each >= 0.0 for each in distances):
             text = (
                 f"keeps the safety distance from '{name}'; the largest distance from its bound is {nearest}"
             )
+        elif undecided:
+            text = f"meets '{name}', undecided in {len(undecided)} of them: {undecided[0]}"
         else:
             near = f"; the nearest distance from its bound is {nearest}" if distances else ""
             text = f"meets '{name}'{near}"

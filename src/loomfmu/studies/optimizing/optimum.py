@@ -247,9 +247,13 @@ def conclusion(found: Optimum) -> Iterator[str]:
         )
     for name in found.constant:
         yield f"The goal '{name}' is the same in all designs: nothing that varies changes it."
-    if undecided := _undecided(found):
-        names = listed([f"'{name}'" for name in undecided])
-        share = 2.0 * max(undecided.values())  # the error may be another one there
+    undecided = _undecided(found)
+    near = {name: each for name, each in undecided.items() if math.isfinite(each.error)}
+    yield from (f"Undecided: '{name}' ({undecided[name].note})." for name in undecided if name not in near)
+    if near:
+        names = listed([f"'{name}'" for name in near])
+        shares = (each.error / abs(each.bound or each.worst or 1.0) for each in near.values())
+        share = 2.0 * max(shares)  # the error may be another one there
         yield (
             f"Nearer to the bound than the numerical error, so undecided: {names};"
             f' safety = "{100.0 * share:.1g} %" in the study keeps off it.'
@@ -269,13 +273,13 @@ def _gains(found: Optimum, best: Best) -> Iterator[str]:
         yield f"Relaxed by 1 %, {listed(known)}."
 
 
-def _undecided(found: Optimum) -> dict[str, float]:
-    """The claims that are undecided in a best design, with their largest errors as shares of the bound."""
-    errors: dict[str, float] = {}
+def _undecided(found: Optimum) -> dict[str, Verdict]:
+    """Return the claims that are undecided in a best design, each with its verdict of the largest error."""
+    worst: dict[str, Verdict] = {}
     for best in found.front:
         verdicts = zip(found.study.scene.claims, best.verdicts, found.study.required, strict=True)
         for claim, each, needed in verdicts:
             if needed and not each.decided:
-                name, share = called(claim, each), each.error / abs(each.bound or each.worst or 1.0)
-                errors[name] = max(share, errors.get(name, 0.0))
-    return errors
+                name = called(claim, each)
+                worst[name] = max(worst.get(name, each), each, key=lambda verdict: verdict.error)
+    return worst

@@ -27,6 +27,7 @@ Floats = NDArray[np.float64]
 class Design:
     """A design that was run. `heights` are its goals, each the better the smaller; `room` is how much farther
     each claim is from its bound than it must be, negative if it is nearer or fails, as a share of its scale.
+    `undecided` has the note on each claim that is undecided for another reason than its error.
 
     NaN stands for what there is not; `error` says why there is nothing at all.
     """
@@ -38,6 +39,7 @@ class Design:
     distances: Floats
     holds: bool
     error: str
+    undecided: tuple[str, ...] = ()
 
     @property
     def allowed(self) -> bool:
@@ -115,7 +117,8 @@ class Runs:
         heights = np.array([goal.sign * float(of_kind[goal.kind][goal.place]) for goal in study.goals])
         room = self.limits.room(holds, bounds, distances)
         error = result[-1] or ""
-        return Design(point, values, heights, room, distances, bool(all(holds) and not error), error)
+        undecided = tuple("" if each.decided or each.error else each.note or "" for each in found)
+        return Design(point, values, heights, room, distances, all(holds) and not error, error, undecided)
 
 
 class Measured(NamedTuple):
