@@ -1,6 +1,7 @@
 """Files that are read, and files that are written: whole or not at all, never over what is not ours."""
 
 import errno
+import hashlib
 import os
 import secrets
 import stat
@@ -12,6 +13,7 @@ from typing import Any
 
 from .errors import LoomfmuError, shown, why
 
+LONGEST_STEM = 180  # bytes: most file systems take 255, hidden names and endings included
 NOT_A_FILE = "it is a device or a pipe, not a file"
 TRACE = "; use loomfmu show {0} for a trace"
 INSTEAD = {  # what to do with a file that is given where text belongs
@@ -95,6 +97,14 @@ def check_archive(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
     for name in folders & named.keys():
         raise ValueError(f"{shown(name)} is both a file and a folder in it")
     return named
+
+
+def short_stem(stem: str, most: int = LONGEST_STEM) -> str:
+    """Return the name of a file without its suffix, cut to `most` bytes if it takes more, with a digest."""
+    if len(stem.encode()) <= most:
+        return stem
+    digest = hashlib.sha256(stem.encode()).hexdigest()[:8]
+    return f"{stem.encode()[: most - 9].decode(errors='ignore')}-{digest}"
 
 
 def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:

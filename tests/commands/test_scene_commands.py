@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from small_scenes import CLAIM, HEAD, LOOM, SHAFT, one_line, scene
 
-from loomfmu import Trace
+from loomfmu import Trace, evaluate
 from loomfmu.cli import main
 
 
@@ -28,7 +28,8 @@ def test_run_prints_the_verdicts_and_returns_whether_all_hold(
     place = lines.index(f"{word}  lowest margin (belt.lowest_margin)")
     assert lines[place + 1].startswith("  0.6558")
     away = {0.1: "+555.8 %", 0.9: "-27.13 %"}[bound]
-    assert f", bound {bound} ({away}), error 3e-05, at 0.0" in lines[place + 1]
+    error = evaluate("scene.toml").claims[0].shown_error
+    assert f", bound {bound} ({away}), error {error}, at 0.0" in lines[place + 1]
     assert lines[place + 1].endswith(" deg,") and lines[place + 2] == "  rev. 1"
     assert "To be read after the run." in lines
     assert lines[-1] == "trace: results/scene.h5    summary: loomfmu show results/scene.h5"

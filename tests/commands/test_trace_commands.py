@@ -44,6 +44,18 @@ def test_show_of_an_unfinished_run_says_so(capsys: pytest.CaptureFixture[str]) -
     assert ", running, or killed)" in capsys.readouterr().out
 
 
+def test_show_of_a_run_that_an_fmu_cut_short_says_how_far_it_went(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", scene(HEAD + SHAFT)])
+    with h5py.File("results/scene.h5", "r+") as file:  # as a run stores it
+        file.attrs["cut_short"] = (
+            "the run ended at 25 % of its length, by motor; set may_end = true if it may"
+        )
+    capsys.readouterr()
+    assert main(["show", "results/scene.h5"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith(", cut short)") and lines[2].startswith("the run ended at 25 % of its length")
+
+
 def test_a_trace_that_was_not_judged_is_not_one_that_holds(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", scene(HEAD + SHAFT)]) == 0
     with h5py.File("results/scene.h5", "r+") as file:

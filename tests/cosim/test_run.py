@@ -100,6 +100,14 @@ def test_each_set_of_values_has_a_trace_of_its_own(given: dict[str, Any], name: 
         assert usual_path(scenes.parse(SHAFT, "a", values)) == Path("results") / name
 
 
+def test_a_scene_whose_name_is_too_long_for_that_of_a_file_is_told_from_others() -> None:
+    scene = scenes.parse(SHAFT, "loom " + 245 * "\u00e4", {"shaft.speed": "685 rpm"})
+    paths = [usual_path(replace(scene, name=name), "_page.html") for name in (scene.name, scene.name[:-1])]
+    assert paths[0] != paths[1] and max(len(path.name.encode()) for path in paths) <= 200
+    assert all(path.name.endswith("_shaft.speed=685rpm_page.html") for path in paths)
+    assert usual_path(replace(scene, name="a" * 200, overrides={})).name.startswith("a" * 150)
+
+
 def test_values_too_long_for_the_name_of_a_file_are_told_apart() -> None:
     knots = [
         [[0.0, "60 rpm"], *([0.1 * n, 50.0] for n in range(1, 40)), [9.0, last]] for last in (50.0, 51.0)

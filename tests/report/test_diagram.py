@@ -78,6 +78,24 @@ def test_what_cannot_be_drawn_is_said_in_one_line(
     assert reason in said and "\n" not in said
 
 
+def test_a_shaft_that_turns_backwards_is_not_said_to_stand(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = 'revolutions = 1\nsteps_per_revolution = 90\n[loom]\n[shaft]\nspeed = "-400 rev/min"\n'
+    loomfmu.run(scenes.parse(text, "back"), output=tmp_path / "back.h5")
+    assert main(["diagram", str(tmp_path / "back.h5")]) == 2
+    assert (
+        capsys.readouterr().err.strip().endswith("there is no timing diagram, as the shaft turns backwards")
+    )
+    with Trace(tmp_path / "back.h5") as trace:
+        drawn = diagram.section(Subject([trace]))
+        assert drawn is not None and "Not drawn: the shaft turns backwards" in drawn.html
+        with pytest.raises(
+            LoomfmuError, match="the shaft turns backwards, so nothing is plotted over its angle"
+        ):
+            trace.plot("shaft.velocity", over="angle")
+
+
 @pytest.mark.parametrize(
     ("steps", "shown"), [(24, "Not drawn: the samples are up to 15° apart"), (90, "up to 4.0° apart")]
 )
@@ -129,7 +147,7 @@ def test_the_revolution_of_the_worst_failure_is_drawn(tmp_path: Path) -> None:
 def test_a_legend_names_what_is_drawn_and_nothing_else(tmp_path: Path) -> None:
     trace = loomfmu.run(
         SIMS / "wl680_3600.toml",
-        set={"shaft.speed": "700 rpm", "revolutions": 1},
+        set={"shaft.speed": "700 rpm", "revolutions": 2},
         output=tmp_path / "fast.h5",
     ).trace
     fails = "worst value of a claim that fails or is undecided"

@@ -13,7 +13,7 @@ import loomfmu
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
 from loomfmu.cosim.scenes.scene import parse
-from loomfmu.report.document import page
+from loomfmu.report.document import MARK, page
 from loomfmu.report.section import Subject, embedded
 from loomfmu.traces import Trace
 
@@ -107,6 +107,18 @@ def test_the_command_writes_it_beside_the_trace(
     assert (tmp_path / "copy.html").read_text() == "my notes"
     assert main(["report", str(copy), "--output", str(copy), "--force"]) == 2
     assert capsys.readouterr().err.strip().endswith("(it is an input of this command)")
+
+
+def test_the_report_of_two_traces_leaves_that_of_the_first(
+    demo: Trace, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = [str(tmp_path / name) for name in ("worn.h5", "new.h5")]
+    for name in names:
+        os.link(demo.path, name)
+    (tmp_path / "worn.html").write_text(MARK)
+    assert main(["report", *names]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "worn_and_new.html")
+    assert (tmp_path / "worn.html").read_text() == MARK
 
 
 def test_a_page_is_not_written_under_the_name_of_another_format(

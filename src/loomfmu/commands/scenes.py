@@ -126,7 +126,7 @@ def export(options: argparse.Namespace) -> int:
     else:
         warnings = ssp.export(loaded, options.ssp, options.flavour, built_for, options.force)
     warn(warnings)
-    say(options.fmu or options.ssp)
+    say(f"written: {options.fmu or options.ssp}")
     return 0
 
 
@@ -138,5 +138,5 @@ def page(options: argparse.Namespace) -> int:
         complain(f"warning: {warning}")
 
     given = pairs(options.overrides)
-    say(write(options.scene, options.vary, options.output, given, options.force, warn))
+    say(f"written: {write(options.scene, options.vary, options.output, given, options.force, warn)}")
     return 0

@@ -26,7 +26,8 @@ def show(options: argparse.Namespace) -> int:
     try:
         with Trace(options.trace) as trace:
             _summarise(trace)
-            return 0 if trace.status == "complete" and trace.judged and all(trace.verdicts) else 1
+            whole = trace.status == "complete" and not trace.cut_short
+            return 0 if whole and trace.judged and all(trace.verdicts) else 1
     except Exception as error:
         if isinstance(error, LoomfmuError | OSError) and not isinstance(error, units.UnitError):
             raise
@@ -38,8 +39,11 @@ def _summarise(trace: "Trace") -> None:
     """Print what a trace says of the run, its signals, and the verdicts."""
     attributes = trace.attributes
     ended = f", ended by {trace.ended_by}" * bool(trace.ended_by)
-    status = trace.status if trace.status != "running" else "running, or killed"
+    status = {"running": "running, or killed"}.get(trace.status, trace.status)
+    status = "cut short" if trace.cut_short else status
     say(f"{trace.heading} ({attributes['software']}, {status}{ended})", trace.origin)
+    if trace.cut_short:
+        say(printed.safe(trace.cut_short))
     if "command" in attributes:
         say(f"run by: {attributes['command']}")
     for key, value in json.loads(attributes.get("set", "{}")).items():

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .. import printed
 from ..errors import LoomfmuError, why
-from ..files import cannot_write, check_target
+from ..files import LONGEST_STEM, cannot_write, check_target, short_stem
 from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Early, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
@@ -30,14 +30,15 @@ LONGEST = 80  # characters of the values in the name of a file
 def usual_path(scene: Scene, ending: str = ".h5") -> Path:
     """Return the default path of a scene's results; each set of changed values has its own.
 
-    Such as `results/wl680_3600_shaft.speed=700rpm.h5`. Values that do not fit into a name end with a digest.
+    Such as `results/wl680_3600_shaft.speed=700rpm.h5`. Names and values that are too long end with a digest.
     """
     given = ",".join(f"{key}={value}" for key, value in sorted(texts(scene.overrides).items()))
     plain = re.sub(r"(?<=\d)\s+(?=[^\s\d])", "", given)  # between a number and its unit
     shown = UNSAFE.sub("-", re.sub(r"\s", "", plain))[:LONGEST]
     if shown != plain:
         shown += f"-{hashlib.sha256(given.encode()).hexdigest()[:8]}"
-    return Path("results") / f"{scene.name}{shown and '_'}{shown}{ending}"
+    name = short_stem(scene.name, LONGEST_STEM - len(shown) - 1)
+    return Path("results") / f"{name}{shown and '_'}{shown}{ending}"
 
 
 def written_at(path: Path) -> str:

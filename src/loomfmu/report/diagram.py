@@ -10,6 +10,7 @@ from typing import Any
 from ..errors import LoomfmuError, listed
 from ..files import write_file
 from ..traces import Trace, Verdict
+from ..traces.signals import NO_SHAFT
 from . import pictures
 from .occasions import Bar, Occasions, Revolution, Row
 from .section import COARSEST, TURN, Section, Subject
@@ -38,7 +39,7 @@ class Mark:
 
 def section(subject: Subject) -> Section | None:
     """The diagram with all revolutions that differ, of which the cursor chooses; None if no shaft turns."""
-    if not subject.turns:
+    if subject.trace.standing == NO_SHAFT:
         return None
     occasions = Occasions(subject)
     if reason := _not_drawn(subject, occasions):
@@ -109,8 +110,7 @@ def write(
     """
     subject = Subject([trace])
     occasions = Occasions(subject)
-    reason = _not_drawn(subject, occasions) if subject.turns else "no shaft turns"
-    if reason:
+    if reason := _not_drawn(subject, occasions):
         raise LoomfmuError(f"{trace.given}: there is no timing diagram, as {reason}")
     numbers = occasions.numbers
     number = _usual(trace, subject, numbers) if revolution is None else revolution
@@ -139,7 +139,9 @@ def _usual(trace: Trace, subject: Subject, numbers: range) -> int:
 
 
 def _not_drawn(subject: Subject, occasions: Occasions) -> str:
-    """Return why there is no diagram of a shaft that turns, or an empty text if there is one."""
+    """Return why there is no diagram, or an empty text if there is one."""
+    if subject.trace.standing:
+        return subject.trace.standing
     if not occasions.rows:
         return f"the trace records nothing that it shows; add {EXAMPLES} to record, or leave record out"
     if subject.gap > COARSEST:

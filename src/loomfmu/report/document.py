@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LoomfmuError
-from ..files import check_target, starts_with, write_file
+from ..files import check_target, short_stem, starts_with, write_file
 from ..traces import Comparison, Trace
 from .claims import section as claims
 from .diagram import section as diagram
@@ -37,7 +37,8 @@ def write(
 
     Args:
         traces: traces or their files; the first one is judged and shown in motion
-        output: the file; beside the first trace, with `.html` for `.h5`, by default
+        output: the file; by default beside the first trace, with `.html` for `.h5`, and named after all of
+            several, such as `worn_and_new.html`
         overwrite: also replace a file that is not a report
         comparison: what differs between two of them, shown first
 
@@ -51,9 +52,9 @@ def write(
     for trace in opened:
         if not trace.rows:
             raise LoomfmuError(f"{trace.given}: the trace has no samples, so there is nothing to show")
-    first = traces[0]
-    beside = first.path if isinstance(first, Trace) else Path(first)
-    path = Path(output) if output is not None else beside.with_suffix(".html")
+    given = [each.path if isinstance(each, Trace) else Path(each) for each in traces]
+    name = short_stem("_and_".join(each.stem for each in given))
+    path = Path(output) if output is not None else given[0].with_name(f"{name}.html")
     inputs = [trace.path for trace in opened]
     check_target(path, REPORT, inputs, overwrite)
     with ExitStack() as files:

@@ -79,7 +79,7 @@ def checked(trace: Signals, over: str | None, fold: bool) -> str:
     if over not in ("angle", "time"):
         raise LoomfmuError(f'over = {over!r}: choose "angle" or "time"')
     if over == "angle" and not trace.turns:
-        raise LoomfmuError(f"{trace.name}: no shaft turns, so there is no shaft angle to plot over; use time")
+        raise LoomfmuError(f"{trace.name}: {trace.standing}, so nothing is plotted over its angle; use time")
     if over == "time" and fold:
         raise LoomfmuError("only a plot over the shaft angle can be folded, not one over time")
     return over

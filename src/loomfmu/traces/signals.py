@@ -18,6 +18,8 @@ from ..variables import ALONE, Beside
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
+NO_SHAFT = "no shaft turns"
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -112,9 +114,17 @@ class Signals(ABC):
 
     @property
     def turns(self) -> bool:
-        """Return whether a shaft turns."""
+        """Return whether a shaft turns, forwards."""
         angle = self.shaft_angle
         return len(angle) > 1 and bool(np.all(np.isfinite(angle))) and bool(angle[-1] > angle[0])
+
+    @property
+    def standing(self) -> str:
+        """Return why nothing is shown over the shaft's angle; an empty text if it turns forwards."""
+        if self.turns:
+            return ""
+        angle = self.shaft_angle
+        return "the shaft turns backwards" if len(angle) > 1 and angle[-1] < angle[0] else NO_SHAFT
 
     def turned_otherwise(self, nominal: float) -> str:
         """Return how far the shaft turned if not by the nominal revolutions, as in a run-up; else an empty

@@ -322,7 +322,7 @@ def test_export_and_run_by_the_command(
     few = ["--set", "steps_per_revolution=90", "--set", "revolutions=2"]
     assert main(["export", scene, "--ssp", "deep/belt.ssp", "--flavour", "live", *few]) == 0
     printed = capfd.readouterr()
-    assert printed.out == "deep/belt.ssp\n"
+    assert printed.out == "written: deep/belt.ssp\n"
     assert printed.err == (
         "warning: belt.guide_clearance is driven along a table, which a system package cannot hold:"
         " other tools keep it at its first value\n"
