@@ -113,6 +113,7 @@ def test_each_kind_is_here() -> None:
 def test_the_claims_of_a_loom(opened: Open, tmp_path: Path) -> None:
     text = (SIMS / "full_loom.toml").read_text().partition("[[claims]]")[0]
     values = {"revolutions": 2, "steps_per_revolution": 360, "shaft.ramp_duration": "0 s"}
+    values["loom.weave"] = "10/01/10/01"
     agree(opened, tmp_path, with_claims(text, ON_THE_LOOM, values), 500.0)
 
 

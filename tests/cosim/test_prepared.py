@@ -19,7 +19,7 @@ from loomfmu.cosim.planning.requested import claims_of
 from loomfmu.cosim.scenes import scene as scenes
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
-SHORT: dict[str, Any] = {"revolutions": 1, "steps_per_revolution": 90}
+SHORT: dict[str, Any] = {"revolutions": 2, "steps_per_revolution": 90}
 # values alone, and what changes the wiring, the pattern, the steps or what a scene warns of
 VALUES: list[dict[str, Any]] = [
     {"shaft.speed": "650 rpm"},

@@ -102,7 +102,7 @@ def test_the_command_prints_what_matters_and_what_does_not(
 
 def test_an_output_without_a_value_in_some_rows_says_so(tmp_path: Path) -> None:
     scene = (
-        'title = "x"\nrevolutions = 1\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n'
+        'title = "x"\nrevolutions = 2\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n'
         'head = "G6300 left"\nweave = "10/01"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n'
         'clearance = "6 mm"\nat_least = "90 deg"\n'
     )

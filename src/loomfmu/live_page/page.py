@@ -153,9 +153,10 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
     """Return the claims that the script judges: kind, arguments, and the unit and format of the values.
 
     `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
-    about, and `native` is the verdict on the run that the page holds, whether its bound is met exactly, and
-    its numerical error: the script leaves out a claim that it would judge otherwise, that is too near to its
-    bound for that error, or whose error coarser steps could not tell (`coarse`).
+    about, `repeat` is the revolutions after which their weave repeats, and `native` is the verdict on the run
+    that the page holds, whether its bound is met exactly, and its numerical error: the script leaves out a
+    claim that it would judge otherwise, that is too near to its bound for that error, or whose error coarser
+    steps could not tell (`coarse`).
     """
     found = []
     for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
@@ -176,6 +177,7 @@ def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
                 "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
                 "parts": sorted({*(name.partition(".")[0] for name in read), *claim.parameter_owners()}),
                 "lifts": lifts,
+                "repeat": claim.repeat(trace),
                 "shown": {"factor": verdict.displayed(1.0), "unit": unit},
                 "native": {
                     "holds": verdict.holds or verdict.distance >= 0.0,

@@ -395,6 +395,11 @@ def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
             ' write ["150 deg", "210 deg"] for the other part of the revolution, or ["-150 deg", "150 deg"]'
             " if this one is meant",
         ),
+        (
+            {"kind": "rapier_in_open_shed", "name": "the head fits", "head_height": 18},
+            "claim 'the head fits': head_height = 18 is read as 18 m = 18000 mm;"
+            ' write "18 mm" if that is meant',
+        ),
     ],
 )
 def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, Any], note: str) -> None:

@@ -9,7 +9,7 @@ from loomfmu import Boundary, LoomfmuError, limit
 from loomfmu.design import loom as design
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
-ONE = {"revolutions": 1}
+ONE = {"revolutions": 2}
 
 
 def boundary() -> Boundary:
@@ -39,7 +39,7 @@ def test_each_row_is_the_limit_at_a_value_of_the_second_variable() -> None:
 def test_a_boundary_is_shown_as_a_table() -> None:
     found = boundary()
     assert repr(found) == (
-        "<Boundary of WL680-3600, G6300 left, weave 10/01/10/01; revolutions = 1: shaft.speed at 3 values of"
+        "<Boundary of WL680-3600, G6300 left, weave 10/01/10/01; revolutions = 2: shaft.speed at 3 values of"
         " belt.guide_clearance>"
     )
     html = found._repr_html_()

@@ -13,7 +13,7 @@ from loomfmu.studies.limits.limits import POINTS
 
 DEMO = str(Path(__file__).parents[3] / "sims" / "wl680_3600.toml")
 DAMPER = str(Path(__file__).parents[3] / "sims" / "damper.toml")
-QUICK = ["--points", "5", "--set", "revolutions=1"]
+QUICK = ["--points", "5", "--set", "revolutions=2"]
 SPEED = ["limit", DEMO, "--vary", "shaft.speed", "--from", "300rpm", "--to", "900rpm", *QUICK]
 BOTH = [
     "limit",
@@ -40,7 +40,7 @@ def test_limits_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert shown == []
     lines = printed.out.splitlines()
     assert lines[0].endswith(
-        "weave 10/01/10/01; revolutions = 1: shaft.speed from 300 to 900 rev/min (given)"
+        "weave 10/01/10/01; revolutions = 2: shaft.speed from 300 to 900 rev/min (given)"
     )
     assert "the belt keeps a margin of 10 %: holds up to 646.8164 rev/min" in lines
     assert "  (+125.6 % at 600 rev/min)" in lines

@@ -12,7 +12,7 @@ from loomfmu.design import loom as design
 from loomfmu.studies.tolerances import tolerances as worst_cases
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
-FAST = {"revolutions": 1, "steps_per_revolution": 90}
+FAST = {"revolutions": 2, "steps_per_revolution": 90}
 MARGIN = "the belt keeps a margin of 10 %"
 
 
@@ -57,7 +57,7 @@ def test_the_table_of_a_scene_is_what_the_command_searches(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scene = tmp_path / "loom.toml"
-    short = "revolutions = 1\nsteps_per_revolution = 90"
+    short = "revolutions = 2\nsteps_per_revolution = 90"
     text = DEMO.read_text().replace("revolutions = 3\nsteps_per_revolution = 1440", short)
     scene.write_text(f'{text}\n[tolerances]\n"belt.guide_clearance" = ["0.2 mm", "0.35 mm"]\n')
     assert prepare(scene).scene.tolerances == {"belt.guide_clearance": ("0.2 mm", "0.35 mm")}

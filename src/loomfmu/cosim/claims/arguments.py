@@ -57,6 +57,8 @@ class Names(Argument):
     def read(self, given: Any, where: str, unit_of: UnitOf) -> list[str]:
         if not isinstance(given, list | tuple) or not all(isinstance(each, str) for each in given):
             raise LoomfmuError(f'{where} = {shown(given)} must be a list of names, such as ["heald_1"]')
+        if not given:
+            raise LoomfmuError(f"{where} = [] names nothing; leave it out to judge all")
         return list(given)
 
 

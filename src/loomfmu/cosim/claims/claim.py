@@ -12,7 +12,7 @@ from . import shaft
 from .arguments import Argument, Name, argument, argument_of
 from .curves import Doubt, Stretch, Unknown
 from .extremes import COARSE_NOTE
-from .lifted import Wired
+from .lifted import Wired, repeat_of
 from .validity import gaps, off_by, unknown_note
 
 AT_LEAST, AT_MOST = 1, -1
@@ -95,6 +95,11 @@ class Claim(ABC):
         """
         return shaft.short(trace)
 
+    def repeat(self, trace: Signals) -> int:
+        """Return the revolutions after which the weave that it depends on repeats; 1 without frames."""
+        owners = {signal.partition(".")[0] for signal in self.signals(trace)}
+        return math.lcm(*(repeat_of(each, trace) for each in owners))
+
     def unresolved(self, trace: Signals, verdict: Verdict) -> float:
         """Return the error of a verdict that runs on other steps may not show."""
         return self.left_by_model(trace, verdict)
@@ -140,7 +145,7 @@ class Claim(ABC):
         unknown = gaps(trace, signal) if unknown is None else unknown
         if unknown:
             notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
-        short = trace.cut_short or self.unseen(trace)
+        short = trace.cut_short or self.unseen(trace) or shaft.unwoven(trace, self.repeat(trace))
         open_ = bool(short) and (holds or not self.final)
         kind = Doubt if holds else Unknown
         doubted = any(isinstance(note, kind) for note in notes) and (holds or not self.final)

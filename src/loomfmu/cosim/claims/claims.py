@@ -76,7 +76,7 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
     kind = table.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), KINDS)}")
-    where = f"claim {kind!r}"
+    where = place_of(table)
     arguments = KINDS[kind].declared()
     for name in table:
         if name not in arguments and name != "kind":
@@ -91,6 +91,11 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
                 value, f"{where}: {each.name}", lambda: unit_of(table["signal"])
             )
     return KINDS[kind](**values)
+
+
+def place_of(table: Mapping[str, Any]) -> str:
+    """Return what messages call a claim of a scene: by its name, or by its kind if it has none."""
+    return f"claim {shown(table.get('name') or table.get('kind'))}"
 
 
 def called(table: Mapping[str, Any], verdict: Verdict) -> str:
@@ -108,4 +113,4 @@ def doubts(table: Mapping[str, Any]) -> Iterator[str]:
     """Numbers of a claim's table that were probably meant in another unit."""
     for name, argument in KINDS[table["kind"]].declared().items():
         if name in table:
-            yield from argument.doubts(table[name], f"claim {table['kind']!r}: {name}")
+            yield from argument.doubts(table[name], f"{place_of(table)}: {name}")

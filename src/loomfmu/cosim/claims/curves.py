@@ -15,6 +15,7 @@ Integers = NDArray[np.int64]
 BLOCK = 1 << 16  # intervals that are searched together
 SAME = 1e-11  # of the largest value: extremes that close are equal, and the first one is named
 DOUBT = 0.25  # of the difference between second rates over an interval, see `Motion.doubt`
+ONLY_SAMPLES = "is known only at the samples"
 ROUNDING = 1e-12  # of the largest value: what rounding may add
 
 
@@ -32,6 +33,13 @@ class Doubt(str):
 
 class Unknown(Doubt):
     """A note that a signal is not known between the samples: only a sample may fail a claim."""
+
+
+def advised(note: str) -> str:
+    """Return a note, with the remedy if it is on a signal that is known only at the samples."""
+    if not note.endswith(ONLY_SAMPLES):
+        return note
+    return Unknown(f"{note}; set at_samples = true in the claim to judge these alone")
 
 
 class Survey(NamedTuple):
@@ -112,7 +120,7 @@ class Motion:
         """The reason why the values between the samples are not known, if so."""
         if not self.finite:
             return Unknown(f"{self.signal} or its rate is not finite everywhere")
-        return "" if self.known else Unknown(f"{self.signal} is known only at the samples")
+        return "" if self.known else Unknown(f"{self.signal} {ONLY_SAMPLES}")
 
     def points(self, intervals: Integers) -> Floats:
         """Bernstein points of the polynomials on some intervals."""

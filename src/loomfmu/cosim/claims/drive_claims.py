@@ -105,6 +105,9 @@ class EnergyBalance(Claim):
     def unseen(self, trace: Signals) -> str:
         return ""  # it judges the books of the run, however long that is
 
+    def repeat(self, trace: Signals) -> int:
+        return 1
+
     def judge(self, trace: Signals) -> Verdict:
         loads = _loads(trace)
         taken = [np.asarray(trace[load.work]) for load in loads if load.work]

@@ -13,7 +13,7 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from . import shaft
-from .arguments import TURN, Angles, Name, Quantity, angles_text, argument
+from .arguments import Angles, Name, Quantity, angles_text, argument
 from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Landings
 from .curves import Doubt, Floats, Motion, Stretch, motion_of
 from .extremes import first_lowest
@@ -66,7 +66,7 @@ class _Span(_Lifted, kind=False):
         turning, stroke = shaft.needed_angle(trace), trace.parameter(f"{self.heald}.stroke")
         ends = [_ends(lift, self._distance(trace), stroke, self.both_ways) for lift in motions]
         found = [
-            self._shortest(lift, sorted(lower + upper), stroke, turning)
+            self._shortest(lift, sorted(lower + upper), turning)
             for lift, (lower, upper) in zip(motions, ends, strict=True)
         ]
         worst, time, *notes = found[0]
@@ -102,16 +102,14 @@ class _Span(_Lifted, kind=False):
                 return 0.0, span.start, f"springs and warp keep the carrier {off}; {self.instead}"
         return None
 
-    def _shortest(
-        self, lift: Motion, spans: list[Stretch], stroke: float, turning: Motion
-    ) -> tuple[float, float, str, str]:
+    def _shortest(self, lift: Motion, spans: list[Stretch], turning: Motion) -> tuple[float, float, str, str]:
         """The least turn of the shaft during one of these spans of a motion, its time, and notes."""
         turned = [abs(turning.at(span.end) - turning.at(span.start)) for span in spans]
         judged = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if span.whole]
         shown = [turn for turn, span in zip(turned, spans, strict=True) if not span.whole]
         note = CUT_OFF if any(turn < self.at_least for turn in shown) else ""
         if not judged:
-            judged, note = _cut_off(spans, turned, self.at_least, _repeats(lift, stroke, turning), lift.time)
+            judged, note = _cut_off(spans, turned, self.at_least, lift.time)
         worst, time = math.nan, math.nan
         if judged:
             worst, time = first_lowest([turn for turn, _ in judged], [start for _, start in judged])
@@ -217,12 +215,11 @@ def _common(some: list[Stretch], others: list[Stretch], time: Floats) -> list[St
 
 
 def _cut_off(
-    spans: list[Stretch], turned: list[float], limit: float, repeats: bool, time: Floats
+    spans: list[Stretch], turned: list[float], limit: float, time: Floats
 ) -> tuple[list[tuple[float, float]], str]:
     """Return lengths and starts of the spans that the ends of the run cut off, as far as known, and a note.
 
-    Such a span lasts at least as long as the run shows. If the motion repeats, the piece at the end of the
-    run goes on as the one at its start does, so both make up one span, less whole revolutions of holding.
+    Such a span lasts at least as long as the run shows.
     """
     if not spans:
         return [], "the frame never gets there in this run"
@@ -233,18 +230,6 @@ def _cut_off(
     enough = [(turn, span.start) for turn, span in zip(turned, spans, strict=True) if turn >= limit]
     if len(enough) == len(spans):
         return enough, "cut off by an end of the run: it lasts at least this long"
-    joined = math.fmod(sum(turned), TURN)
-    held = joined < sum(turned)
-    if len(spans) == 2 and repeats and (joined >= limit or not held):
-        note = "joined from its parts at the end and the start of the run"
-        return [(joined, spans[1].start)], f"{note}: it lasts at least this long" if held else note
     if enough:
         return enough, CUT_OFF
     return [], "none begins and ends within the run"
-
-
-def _repeats(lift: Motion, stroke: float, turning: Motion) -> bool:
-    """Return whether the run is whole revolutions, and the frame ends as far from an end as it began."""
-    turns = abs(float(turning.values[0][-1] - turning.values[0][0])) / TURN
-    first, last = (min(abs(lift.values[0][end]), abs(stroke - lift.values[0][end])) for end in (0, -1))
-    return round(turns) > 0 and abs(turns - round(turns)) < 1e-9 and abs(last - first) <= 1e-9 * stroke

@@ -1,10 +1,15 @@
 """The lift of the warp of a heald frame: that of its sprung carrier, or of the frame itself."""
 
+import math
 from collections.abc import Container, Iterator, Mapping
-from typing import Protocol
+from typing import Any, Protocol
 
 from ...errors import LoomfmuError, listed, shown
+from ...traces import Signals
+from ...upstream import sources_of, upstream
 
+WORDS = [f"pattern_{number}" for number in range(1, 9)]  # parameters of a heald frame: picks, as bits
+PICKS_IN_A_WORD = 16
 FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
 
 
@@ -35,6 +40,38 @@ def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:
 def frames_of(run: Wired) -> list[str]:
     """The heald frames of a run, whatever they are called: what has a lift and the height of its warp."""
     return _giving(run, "HealdFrame", "lift", "warp_height")
+
+
+def pegs(values: Mapping[str, Any]) -> str:
+    """Return the string of pegs that the parameters of a heald frame stand for: 1 raised, 0 lowered.
+
+    >>> pegs({"pattern_length": 4, "pattern_1": 3})
+    '1100'
+    """
+    every = "".join(f"{int(values[word]):0{PICKS_IN_A_WORD}b}"[::-1] for word in WORDS if word in values)
+    return every[: int(values["pattern_length"])]
+
+
+def repeat_of(instance: str, trace: Signals) -> int:
+    """Return the revolutions after which the weave repeats that an instance depends on; 1 without a weave."""
+    known = trace.shared.setdefault(repeat_of, {})  # several claims ask
+    if not known:
+        owners = ((source.partition(".")[0], sink.partition(".")[0]) for sink, source in trace.wires.items())
+        known[""] = sources_of(owners)
+    if instance not in known:
+        known[instance] = math.lcm(*(_own_repeat(each, trace) for each in upstream([instance], known[""])))
+    return int(known[instance])
+
+
+def _own_repeat(instance: str, trace: Signals) -> int:
+    try:
+        length = trace.parameter(f"{instance}.pattern_length")
+        words = WORDS[: math.ceil(length / PICKS_IN_A_WORD)]
+        values = {word: trace.parameter(f"{instance}.{word}") for word in words}
+        found = pegs(values | {"pattern_length": length})
+    except (LoomfmuError, ValueError, OverflowError):  # it has no such parameters, or no numbers in them
+        return 1
+    return max((found + found).find(found, 1), 1)
 
 
 def dampers_of(run: Wired) -> list[str]:

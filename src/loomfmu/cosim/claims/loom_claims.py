@@ -13,7 +13,7 @@ from ...traces.verdict import SHED_OPENING
 from . import shaft
 from .arguments import Edges, Flag, Name, Names, Quantity, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
-from .curves import SAME, Doubt, Motion, Stretch, motion_of
+from .curves import SAME, Doubt, Motion, Stretch, advised, motion_of
 from .extremes import first_lowest, lowest, nearest
 from .lifted import Wired, check_lifted_by, frames_of, lift_of
 
@@ -233,7 +233,8 @@ class NipHolds(Claim):
         held = lowest(holding, -1.0, drafting.beyond(0.0, 1.0))
         ratio = held.value / most.value
         high = ratio - self.at_least > self.at_most - ratio
-        notes = (most.note, held.note, *((drafting.note, holding.note) if not self.at_samples else ()))
+        notes = [most.note, held.note]
+        notes += [] if self.at_samples else map(advised, (drafting.note, holding.note))
         return self.verdict(
             trace,
             text,

@@ -28,11 +28,27 @@ def too_coarse(turning: Motion) -> bool:
 
 def short(trace: Signals) -> str:
     """A note on a run in which the shaft turns less than a revolution; empty for others."""
+    return _turns_less(trace, 1, "and the claim takes a whole one")
+
+
+def unwoven(trace: Signals, picks: int) -> str:
+    """Return a note on a run that is shorter than the repeat of a weave; an empty text for others.
+
+    For a weave that repeats in each revolution, `short` says what a claim takes.
+    """
+    if picks == 1:
+        return ""
+    why = f"and the weave repeats after {picks}; set revolutions = {picks} or more"
+    return _turns_less(trace, picks, why)
+
+
+def _turns_less(trace: Signals, wanted: int, why: str) -> str:
+    """Return a note on a run of less than so many revolutions of the shaft; an empty text for others."""
     turning = angle(trace)
     turned = math.inf if turning is None else float(np.ptp(turning.values[0])) / TURN
-    if turned >= 1.0 - STANDS:
+    if turned >= wanted - STANDS:
         return ""
-    return f"the shaft turns by only {turned:.3g} revolutions, and the claim takes a whole one"
+    return f"the shaft turns by only {turned:.3g} revolution{'s' * (turned != 1.0)}, {why}"
 
 
 def place(turning: Motion, time: float) -> tuple[float, int]:

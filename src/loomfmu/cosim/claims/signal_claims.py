@@ -9,7 +9,7 @@ from ...traces import Signals, Verdict
 from . import shaft
 from .arguments import Bound, Edges, Flag, Name, Window, argument
 from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Landings
-from .curves import Stretch, motion_of
+from .curves import Stretch, advised, motion_of
 from .extremes import Extreme, lowest, lowest_sample
 from .latches import latched
 from .lifted import Wired
@@ -81,7 +81,8 @@ class Bounded(Claim, kind=False):
             found = lowest_sample(motion, self.sense, within)
             return found._replace(possible=found.sure), "" if math.isfinite(found.time) else NO_SAMPLE
         found = lowest(motion, self.sense, within)
-        return latched(trace, self.signal, self.sense, found, within)
+        extreme, note = latched(trace, self.signal, self.sense, found, within)
+        return extreme, advised(note)
 
     def unseen(self, trace: Signals) -> str:
         return shaft.short(trace) if self.window is None else shaft.unpassed(trace, self.window)

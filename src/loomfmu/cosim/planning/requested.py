@@ -6,17 +6,15 @@ from dataclasses import replace
 from functools import cached_property, partial
 
 from ...errors import LoomfmuError, suggestion
-from ...upstream import sources_of, upstream
 from ...variables import MOTION, TIME, Beside, variables_of
 from ..claims.claim import Claim
-from ..claims.claims import angles_in, doubts, read
+from ..claims.claims import angles_in, doubts, place_of, read
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import left_out
 
 SHAFT_ANGLE = "shaft.angle"
-PICKS = "pattern_length"  # of a heald frame
 MOST = 5  # names that a warning lists
 
 
@@ -54,7 +52,7 @@ def beside_of(scene: Scene, signal: str) -> Beside:
 
 def claims_of(scene: Scene) -> list[Claim]:
     """The scene's claims. Raises LoomfmuError for one that cannot be read."""
-    return [read(table, partial(_unit, scene, f"claim {table.get('kind')!r}")) for table in scene.claims]
+    return [read(table, partial(_unit, scene, place_of(table))) for table in scene.claims]
 
 
 def _unit(scene: Scene, where: str, signal: str) -> str:
@@ -70,7 +68,7 @@ def checked_claims(scene: Scene) -> Scene:
     components = {name: each.fmu.component for name, each in scene.instances.items() if each.fmu.component}
     wired = {".".join(wire.sink) for wire in scene.wires}
     for table, claim in zip(scene.claims, claims_of(scene), strict=True):
-        where = f"claim {table['kind']!r}"
+        where = place_of(table)
         for angle in angles_in(table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
         for signal in signals_of(scene, claim):
@@ -84,22 +82,8 @@ def checked_claims(scene: Scene) -> Scene:
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
         check_bounds(scene, [claim])
-        notes += [*doubts(table), _unwoven(scene, claim, where)]
+        notes += doubts(table)
     return replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
-
-
-def _unwoven(scene: Scene, claim: Claim, where: str) -> str:
-    """A warning where a run is shorter than the repeat of the weave that a claim depends on."""
-    owners = {signal.partition(".")[0] for signal in signals_of(scene, claim)}
-    feeding = upstream(owners, sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires))
-    frames = [each for name, each in scene.instances.items() if name in feeding and PICKS in each.fmu.ports]
-    picks = max((int(each.effect(PICKS) or 0) for each in frames), default=0)
-    if scene.step is not None or scene.periods >= picks:
-        return ""
-    return (
-        f"{where}: the weave repeats after {picks} picks, but the run shows {scene.periods:g}; set"
-        f" revolutions = {picks}"
-    )
 
 
 def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:

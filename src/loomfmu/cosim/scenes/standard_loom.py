@@ -10,6 +10,7 @@ from ...components.shaft_driven import ShaftDriven
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, shown, suggestion
 from ...variables import Component, Terminal, Variable, arrays_of, variables_of
+from ..claims.lifted import PICKS_IN_A_WORD, WORDS
 from . import weave as weaves
 
 COMPONENT_OF = {
@@ -51,7 +52,6 @@ LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock"}  # one for the
 RAPIER_FITTINGS = {"belt_motion": "belt_motion"}  # one for each rapier
 FITTINGS = (*FRAME_FITTINGS, *LOOM_FITTINGS, *RAPIER_FITTINGS)
 LOOM_KEYS = ("machine", "head", "taker_head", "both_rapiers", "weave", *FITTINGS)
-PICKS_IN_A_WORD = 16
 
 
 def stem(instance: str) -> str:
@@ -141,21 +141,10 @@ def pattern(pegs: Any, where: str) -> dict[str, int]:
     """
     pegs = weaves.check_pegs(pegs, where)
     values = {"pattern_length": len(pegs)}
-    for word in range(weaves.MOST_PICKS // PICKS_IN_A_WORD):
-        part = pegs[word * PICKS_IN_A_WORD : (word + 1) * PICKS_IN_A_WORD]
-        values[f"pattern_{word + 1}"] = int(part[::-1] or "0", 2)
+    for number, word in enumerate(WORDS):
+        part = pegs[number * PICKS_IN_A_WORD : (number + 1) * PICKS_IN_A_WORD]
+        values[word] = int(part[::-1] or "0", 2)
     return values
-
-
-def pegs(values: Mapping[str, Any]) -> str:
-    """The string of pegs that the parameters of a heald frame stand for: the inverse of `pattern`.
-
-    >>> pegs(pattern("1100", ""))
-    '1100'
-    """
-    words = (int(values[f"pattern_{number + 1}"]) for number in range(weaves.MOST_PICKS // PICKS_IN_A_WORD))
-    every = "".join(f"{word:0{PICKS_IN_A_WORD}b}"[::-1] for word in words)
-    return every[: int(values["pattern_length"])]
 
 
 def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:

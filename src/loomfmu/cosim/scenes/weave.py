@@ -44,7 +44,7 @@ def parse(given: object, directory: Path) -> Weave:
     """
     if is_wif(given):
         return read_wif(directory / str(given))
-    pegs = given.split("/") if isinstance(given, str) else given
+    pegs = given.split("/") if given and isinstance(given, str) else given
     if not isinstance(pegs, list) or not pegs:
         raise LoomfmuError(
             f'weave = {shown(given)} is neither pegs such as "10/01" nor the name of a WIF file'

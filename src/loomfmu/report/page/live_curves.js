@@ -161,7 +161,8 @@ loomfmu.motion = (run, name, rates = 2) => {
       const extreme = side.length ? lowest(sign, side) : null;
       return extreme && { ...extreme, value: sign * (extreme.value - level) };
     }).filter(Boolean);
-    return found.sort((one, other) => one.value - other.value)[0];
+    const nearer = Math.min(...found.map(each => each.value));
+    return found.filter(each => each.value <= nearer + SAME).sort((one, other) => one.time - other.time)[0];
   }
 
   /* How far the curve may be off at most: Motion.doubt of curves.py. */

@@ -3,6 +3,7 @@
  * of everything else `holds` is null, and the note says why. tests/test_live_claims.py holds both to one another. */
 loomfmu.judge = run => {
   const TURN = 2 * Math.PI, DEGREE = Math.PI / 180, SAME = 1e-11, FARTHEST = TURN / 20 * (1 + SAME), EMPTY = 1e-12;
+  const STANDS = 1e-9; // of a revolution
   const NOT_HERE = "loomfmu run judges it", COARSE = "the samples are too far apart to be sure";
   const UNPASSED = "the run never passes through the whole window";
   const CUT_OFF = "one is cut off by an end of the run and may be shorter; run longer or start elsewhere";
@@ -111,30 +112,23 @@ loomfmu.judge = run => {
   }
 
   /* What can be judged of spans that the ends of the run cut off, and a note. */
-  function cutOff(spans, limit, { values }, stroke) {
+  function cutOff(spans, limit) {
     if (!spans.length) return [[], "the frame never gets there in this run"];
     if (spans.length === 1 && spans[0].start === time[0] && spans[0].end === end)
       return spans[0].value < limit ? [[], "the frame stays there all the time, but the run is too short to tell"]
         : [spans, "the frame stays there throughout the run"];
-    const enough = spans.filter(each => each.value >= limit), all = spans.reduce((sum, each) => sum + each.value, 0);
+    const enough = spans.filter(each => each.value >= limit);
     if (enough.length === spans.length) return [enough, "cut off by an end of the run: it lasts at least this long"];
-    const angles = motion("shaft.angle").values, turns = Math.abs(last(angles) - angles[0]) / TURN;
-    const [from, to] = [values[0], last(values)].map(each => Math.min(Math.abs(each), Math.abs(stroke - each)));
-    const repeats = Math.round(turns) > 0 && Math.abs(turns - Math.round(turns)) < 1e-9 && Math.abs(to - from) <= 1e-9 * stroke;
-    const turn = all % TURN, held = turn < all;
-    if (spans.length === 2 && repeats && (turn >= limit || !held))
-      return [[{ value: turn, time: spans[1].start }],
-              `joined from its parts at the end and the start of the run${held ? ": it lasts at least this long" : ""}`];
     if (enough.length) return [enough, CUT_OFF];
     return [[], "none begins and ends within the run"];
   }
 
   /* The least turn of the shaft during one of the spans of a motion, and a note. */
-  function shortest(lift, [lower, upper], limit, stroke) {
+  function shortest(lift, [lower, upper], limit) {
     const spans = [...lower, ...upper].map(each => ({ ...each, time: each.start, value: turned(each) })).sort(byTime);
     let [judged, note] = [spans.filter(each => each.whole), ""];
     if (spans.some(each => !each.whole && each.value < limit)) note = CUT_OFF;
-    if (!judged.length) [judged, note] = cutOff(spans, limit, lift, stroke);
+    if (!judged.length) [judged, note] = cutOff(spans, limit);
     return { ...(judged.length ? firstLowest(judged) : { value: NaN, time: NaN }), notes: [note, lift.note] };
   }
 
@@ -143,7 +137,7 @@ loomfmu.judge = run => {
     const stroke = run.parameter(`${claim.heald}.stroke`), own = claim.lifts[claim.heald], frame = `${claim.heald}.lift`;
     const lifts = [...new Set([own, frame])].map(name => motion(name));
     const places = lifts.map(lift => ends(lift, distance, stroke, bothWays));
-    const [found, its] = lifts.map((lift, k) => shortest(lift, places[k], claim.at_least, stroke));
+    const [found, its] = lifts.map((lift, k) => shortest(lift, places[k], claim.at_least));
     const gone = its && Number.isFinite(its.value) ? missed(lifts[0], stroke, ...places) : null;
     const notes = gone ? [`springs and warp keep the carrier ${gone.off}; ${instead}`, lifts[0].note] : found.notes;
     if (its && Number.isFinite(its.value)) notes.push(`its frame: ${degrees(its.value)}`);
@@ -312,14 +306,22 @@ loomfmu.judge = run => {
     return drawn && signal === its ? offBy(signal, verdict, stretches) : 0;
   }
 
-  /* Whether the run does not show all that a claim takes, which is a whole revolution, or a pass through its window. */
-  function unseen({ kind, window }) {
-    const turned = turns.length ? (Math.max(...turns) - Math.min(...turns)) / TURN : Infinity;
-    if (turned >= 1 - 1e-9 || kind === "dwell_contains" || window && passes(window).length) return "";
-    return window ? UNPASSED : `the shaft turns by only ${loomfmu.general(turned, 3)} revolutions, and the claim takes a whole one`;
+  /* What the run does not show of all that a claim takes: a whole revolution, or a pass through its window, and the
+   * repeat of the weave that it depends on. */
+  function unseen({ kind, window, repeat }) {
+    const shown = kind === "dwell_contains" || window && passes(window).length;
+    if (window && !shown && revolutions < 1 - STANDS) return UNPASSED;
+    return !shown && turnsLess(1, "and the claim takes a whole one")
+      || repeat > 1 && turnsLess(repeat, `and the weave repeats after ${repeat}; set revolutions = ${repeat} or more`);
+  }
+
+  function turnsLess(wanted, why) {
+    const some = `${loomfmu.general(revolutions, 3)} revolution${revolutions === 1 ? "" : "s"}`;
+    return revolutions < wanted - STANDS && `the shaft turns by only ${some}, ${why}`;
   }
 
   const turns = run.has("shaft.angle") ? run.signal("shaft.angle") : [];
+  const revolutions = turns.length ? (Math.max(...turns) - Math.min(...turns)) / TURN : Infinity;
   const tooCoarse = turns.some((angle, k) => k && Math.abs(angle - turns[k - 1]) > FARTHEST);
 
   return claim => {
