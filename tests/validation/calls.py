@@ -2,7 +2,7 @@
 
 A name is that of a function in `validation.computed` or else in `loomfmu`; `->` takes one of several results,
 by its name or its number. An argument is a number, a quantity such as `12deg`, which becomes SI, or a text;
-`name=argument` is passed by name. Blanks or commas are between arguments.
+`name=argument` is passed by name. Blanks or commas are between arguments. `1 - 0.5 / 2` is arithmetic.
 """
 
 import csv
@@ -15,9 +15,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from validation.digits import number, small
-
 from loomfmu import machines, units
+from validation.digits import number, small
 
 HERE = Path(__file__).parent
 FACTORS = {"m/min": 1.0 / 60.0, "mm/s": 1e-3, "mm/s2": 1e-3, "mm/s3": 1e-3, "1e-6 kg.m2": 1e-6}
@@ -53,7 +52,7 @@ def argument(text: str) -> float | str:
 
 
 def factor(unit: str) -> float:
-    """What leads from a unit to SI."""
+    """The factor from a unit to SI."""
     return FACTORS[unit] if unit in FACTORS else units.unit(unit).factor
 
 
@@ -68,15 +67,18 @@ def arguments(text: str) -> tuple[list[Any], dict[str, Any]]:
 
 @cache
 def value(call: str) -> Any:
-    """Result of a call, made once."""
+    """Result of a call, made once, or of arithmetic between numbers."""
+    if not call[0].isalpha():
+        numbers = _NUMBER.sub(lambda found: repr(argument(found[0])), call)
+        return eval(numbers, {"__builtins__": {}})  # what a call has computed is a number in it
     path, _, given = call.partition(" ")
-    name, *parts = path.split("->")
+    name, _, part = path.partition("->")
     found = function(name)
     if callable(found):
         ordered, named = arguments(given)
         found = found(*ordered, **named)
-    for part in parts:
-        found = found[int(part)] if part.isdecimal() else getattr(found, part)
+    if part:
+        return found[int(part)] if part.isdecimal() else getattr(found, part)
     return found
 
 

@@ -13,9 +13,9 @@ import numpy as np
 from figure_style import COLOURS, STYLE
 from matplotlib.figure import Figure
 from PIL import Image
-from validation.calls import HERE, argument, combined, factor, filled, rows, value
 
 from loomfmu.traces.plotting import fixed_style
+from validation.calls import HERE, argument, combined, factor, filled, rows, value
 
 GREYS = (0x55, 0xDD, 0xEE)  # of texts, grids and spans
 

@@ -8,12 +8,12 @@ import pytest
 from heald_flights_reference import Flights
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from validation.computed import belt, dwells, heald, rotor, thesis, wrap
 
 from loomfmu.components import HealdPlay
 from loomfmu.components.dobby.drive import DobbyDrive
 from loomfmu.machines import table
 from loomfmu.physics.belt_wrap import restraint_load
+from validation.computed import belt, dwells, heald, rotor, thesis, wrap
 
 
 def test_another_idle_travel_gives_the_published_speeds_but_not_table_1():

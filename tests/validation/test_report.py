@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+
 from validation import calls, digits, figures, report
 from validation.computed import accuracy, verdicts
 from validation.published import MARKS, OUTCOMES, Published

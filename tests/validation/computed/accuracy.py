@@ -9,10 +9,6 @@ import numpy as np
 from driven_reference import Monolith
 from scipy.interpolate import BPoly
 from scipy.optimize import brentq
-from validation.calls import arguments, table
-from validation.computed import belt, rotor
-from validation.computed.heald import HealdLine
-from validation.digits import number
 
 from loomfmu.components.belt_monitor import BeltMonitor
 from loomfmu.components.weft_insertion import WeftInsertion
@@ -20,11 +16,16 @@ from loomfmu.cosim.run import evaluate
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.machines import parameters
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, dwell_angle
+from validation.calls import arguments, table
+from validation.computed import belt, rotor
+from validation.computed.heald import HealdLine
+from validation.digits import number
 
 DAMPER_STEPS = (9, 18, 36, 72, 144, 288, 576, 1152)
 ORDER_FLOOR = 1e-9  # errors below it come near to rounding, of the component or of the reference
 SPEED = 600.0 * math.pi / 30.0
 DWELL = dwell_angle(SLOPED_SINE, 0.5, rotor.TOLERANCE)
+MARGIN = 1.0 - (SPEED / belt.safe().speed) ** 2
 DRIVEN_STEPS = (90, 360, 1440)
 LOOM = """
 revolutions = 1
@@ -84,18 +85,8 @@ def lowest_margin(steps: float) -> tuple[float, float]:
     return monitor.lowest_margin, monitor.lowest_speed_limit
 
 
-def margin_error(steps: float) -> float:
-    """Error of that margin."""
-    return abs(lowest_margin(steps)[0] - belt.margin(SPEED, belt.LOOM))
-
-
-def limit_error(steps: float) -> float:
-    """Relative error of that limit."""
-    return abs(lowest_margin(steps)[1] / belt.safe().speed - 1.0)
-
-
-def dwell_error(steps: float) -> float:
-    """Error of a dwell from samples of a frame's motion, on the quintics that join them [rad]."""
+def sampled_dwell(steps: float) -> float:
+    """Dwell from samples of a frame's motion, on the quintics that join them [rad]."""
     line, angles, rows = HealdLine(SPEED, int(steps)), [], []
     for n in range(int(steps) + 1):
         angles.append(2.0 * math.pi * n / steps)
@@ -107,7 +98,13 @@ def dwell_error(steps: float) -> float:
         brentq(lambda x: float(lift(x)) - share * stroke, low, low + 0.5 * math.pi, xtol=1e-15)
         for low in (0.5 * math.pi, math.pi)
     )
-    return abs(float(end - begin) - DWELL)
+    return float(end - begin)
+
+
+def errors(steps: float) -> tuple[float, float, float]:
+    """Errors of margin [1], limit [share] and sampled dwell [rad]."""
+    margin, limit = lowest_margin(steps)
+    return abs(margin - MARGIN), abs(limit / belt.safe().speed - 1.0), abs(sampled_dwell(steps) - DWELL)
 
 
 class Comparison(NamedTuple):

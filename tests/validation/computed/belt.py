@@ -1,7 +1,6 @@
 """Zhu and Zhou 2021, the rapier belt outside its guide."""
 
 import math
-from collections.abc import Callable
 from functools import cache
 
 from scipy.optimize import brentq, minimize_scalar
@@ -109,9 +108,9 @@ def over_speed(speed: float, limit: float = 0.0) -> float:
     return physics.elastica_deflection((speed / (limit or safe().speed)) ** 2, length_at_limit())
 
 
-def above_limit(percent: float) -> float:
-    """Deflection of the belt that much above its limit [m]."""
-    return over_speed((1.0 + 0.01 * percent) * safe().speed)
+def excess_for(deflection: float) -> float:
+    """Share of the limit above it at which the belt is deflected that far [1]."""
+    return float(brentq(lambda x: over_speed((1.0 + x) * safe().speed) - deflection, 1e-9, 0.01, xtol=1e-14))
 
 
 def printed_deflection(speed: float, limit: float) -> float:
@@ -121,27 +120,9 @@ def printed_deflection(speed: float, limit: float) -> float:
     return 2.0 * math.sqrt(2.0) * length_at_limit() / math.pi * math.sqrt((1.0 - 1.0 / root) / below)
 
 
-def excess_for(deflection: float) -> float:
-    """Share of the limit above it at which the belt is deflected that far [1]."""
-    return bisected(lambda excess: over_speed((1.0 + excess) * safe().speed) - deflection, 0.0, 0.01)
-
-
-def bisected(rising: Callable[[float], float], low: float, high: float) -> float:
-    """Where a rising function passes zero."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if rising(middle) < 0.0 else (low, middle)
-    return middle
-
-
 def allowed_speed(deflection: float) -> float:
     """Speed that a deflection allows [rad/s]."""
     return loom.safe_speed(LOOM, length_factor=0.8, deflection=deflection).speed
-
-
-def allowed_excess(deflection: float) -> float:
-    """By how much it exceeds the safe one, as a share of it [1]."""
-    return allowed_speed(deflection) / safe().speed - 1.0
 
 
 @cache
@@ -156,16 +137,6 @@ def entry(machine: str) -> float:
     return float(brentq(lambda x: travel(machine, x)[0] - idle, 1e-6, math.pi, xtol=1e-14))
 
 
-def stay(machine: str) -> float:
-    """Shaft angle over which the head is in the shed [rad]."""
-    return 2.0 * (math.pi - entry(machine))
-
-
-def margin(speed: float, machine: str) -> float:
-    """Lowest margin of a machine at a shaft speed [1]."""
-    return 1.0 - (speed / safe(machine).speed) ** 2
-
-
 def by_mass(speed: float, case: str, other: str) -> float:
     """Speed with the head of another case, by `n sqrt(m)`."""
     return speed * math.sqrt(MASS[case] / MASS[other])
@@ -176,14 +147,10 @@ def width(machine: str) -> float:
     return float(MACHINES[machine]["width_m"])
 
 
-def push(machine: str, angle: float) -> float:
-    """Inertia force of the head at the safe speed [N]."""
-    return MASS["I"] * travel(machine, angle, safe(machine).speed)[2]
-
-
-def critical(machine: str, angle: float) -> float:
-    """Critical load at a shaft angle, mu = 0.8 [N]."""
-    return physics.critical_force(free_length(machine, angle), 0.8, loom.BENDING_STIFFNESS)
+def loads(machine: str, angle: float) -> tuple[float, float]:
+    """Inertia force of the head at the safe speed, and the critical load for mu = 0.8 [N]."""
+    critical = physics.critical_force(free_length(machine, angle), 0.8, loom.BENDING_STIFFNESS)
+    return MASS["I"] * travel(machine, angle, safe(machine).speed)[2], critical
 
 
 def worn(machine: str, clearance: float) -> float:

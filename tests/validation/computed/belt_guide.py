@@ -3,6 +3,7 @@
 import math
 
 from belt_guide_reference import CLAMPED, guide_for, length_factor, length_factor_in_motion, measured
+
 from validation.digits import number
 
 __all__ = ["clamped_factor", "guides", "length_factor", "length_factor_in_motion", "measured"]

@@ -4,12 +4,11 @@ import math
 from functools import cache
 from typing import Any, NamedTuple
 
-from validation.calls import arguments, table
-from validation.computed import belt
-
 from loomfmu.cosim.prepared import Prepared
 from loomfmu.cosim.run import prepare
 from loomfmu.cosim.scenes.scene import parse
+from validation.calls import arguments, table
+from validation.computed import belt
 
 MACHINES = ("WL680-3600", "WL800-3600", "WL450-4600")
 BOWS = ("belt", "span")  # what has the bow

@@ -1,19 +1,18 @@
 """Korolev, the spline cam: Tables 4.1 and 4.2, sections 4.1 and 4.2, Appendices 2 and 3."""
 
 from functools import cache
-from typing import NamedTuple
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from validation.computed import rotor
 
 from loomfmu.components.dobby.drive import DobbyDrive
 from loomfmu.design.cam import TURN, Cam, design_cam, published_path
 from loomfmu.physics.rotor_laws.shed_cam import SPLINE_CAM
+from validation.computed import rotor
 
 FRAME = 6.0  # travel of the frame over the height of the warp, Appendix 2
 HEIGHT = 0.015  # m, of the warp above the lowest: what has to be clear of the air stream
-MODULATED = ("harmonic ends", "sloped line", "sloped sine")
 
 
 @cache
@@ -76,11 +75,6 @@ def jump() -> float:
     return FRAME * abs(drive().cam_bend[5] - drive().cam_bend[0])
 
 
-def speed_limit(acceleration: float) -> float:
-    """Shaft speed at which the frame reaches an acceleration [rad/s]."""
-    return float(np.sqrt(acceleration / peak(2)))
-
-
 def faster(law: str) -> float:
     """Largest speed of a frame under a law at zeta = 0.7, over that with the cam at equal stroke."""
     return rotor.largest_lift_rate(law, 0.7, order=1) / drive().highest_speed
@@ -88,51 +82,26 @@ def faster(law: str) -> float:
 
 def fastest() -> float:
     """The most that a law gives."""
-    return max(faster(law) for law in ("uniform", *MODULATED))
-
-
-class Profile(NamedTuple):
-    """Extremes of the cam [m, rad]."""
-
-    lowest: float
-    highest: float
-    path_lowest: float
-    path_highest: float
-    rising: float
-    falling: float
-    crest: float
-    hollow: float | str
-    inside: float
+    return max(faster(law) for law in ("uniform", "harmonic ends", "sloped line", "sloped sine"))
 
 
 @cache
-def profile() -> Profile:
-    """Extremes of the cam of Appendix 2."""
+def profile() -> SimpleNamespace:
+    """Extremes of the cam of Appendix 2 [m, rad]."""
     of = cam()
     radii, path, bends = np.hypot(*of.profile.T), np.hypot(*of.path.T), of.curvature_radius
     hollow = bends[bends < 0.0]
-    return Profile(
-        float(radii.min()),
-        float(radii.max()),
-        float(path.min()),
-        float(path.max()),
-        float(of.pressure_angle.max()),
-        -float(of.pressure_angle.min()),
-        float(bends[bends > 0.0].min()),
-        -float(hollow.max()) if hollow.size else "none",
-        -float(of.radial_excess().min()),
-    )
+    return SimpleNamespace(
+        lowest=radii.min(), highest=radii.max(), path_lowest=path.min(), path_highest=path.max(),
+        rising=of.pressure_angle.max(), falling=-of.pressure_angle.min(), crest=bends[bends > 0.0].min(),
+        hollow=-hollow.max() if hollow.size else "none", inside=-of.radial_excess().min(),
+    )  # fmt: skip
 
 
 def program() -> tuple[float, float, float]:
     """Lowest and highest radius of the program of Appendix 3 less the cutter's, and the lift [m]."""
     radii = np.hypot(*published_path().T) - 0.019
     return float(radii.min()), float(radii.max()), float(np.ptp(radii))
-
-
-def highest_radius(scale: float) -> float:
-    """Highest radius of the cam with a scale from travel to radius [m]."""
-    return 0.084 + scale * span()
 
 
 def printed_travel() -> float:
@@ -144,7 +113,7 @@ def printed_travel() -> float:
 
 
 def misfit() -> float:
-    """How far the program's points lie off the law, scaled and turned to fit best, either way round [m]."""
+    """Distance of the program's points from the law, scaled and turned to fit best either way round [m]."""
     points, path = published_path(), cam().path
     angle, radius = np.arctan2(points[:, 1], points[:, 0]), np.hypot(*points.T)
     at, law = np.arctan2(path[:, 1], path[:, 0]) % TURN, np.hypot(*path.T)

@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize_scalar
-from validation.computed import rotor
 
 from loomfmu.machines import table
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_LINE, rotor_law
+from validation.computed import rotor
 
 Floats = NDArray[np.float64]
 POINTS = 2048  # in two picks, in which a frame in plain weave rises and falls
@@ -36,11 +36,6 @@ def plateau() -> tuple[float, float]:
     start = np.radians((80.0, 50.0))
     found = least_squares(lambda shape: misses(of_plateau(*shape)), start, xtol=1e-12, ftol=1e-12)
     return float(found.x[0]), float(found.x[1])
-
-
-def shape() -> dict[str, float]:
-    """That plateau as parameters of the drive."""
-    return dict(zip(("plateau_angle", "ramp_angle"), plateau(), strict=True))
 
 
 def of_play(tolerance: float) -> list[float]:
@@ -91,7 +86,7 @@ def of_elasticity(frequency: float, damping: float) -> list[float]:
 
 
 def _crossing(off: Floats) -> float:
-    """Where values that start below 0 first pass it, on the line between two of them."""
+    """Place at which values first pass 0, on the line between two of them."""
     k = int(np.argmax(off > 0.0))
     return float(k - off[k] / (off[k] - off[k - 1]))
 
@@ -107,11 +102,6 @@ def at_speed(speed: float) -> float:
     """Dwell of the elastic frame at zeta = 0.7 and another speed of the shaft [rad]."""
     frequency, damping = elasticity()
     return of_elasticity(frequency * rotor.SPEED / speed, damping)[-1]
-
-
-def natural_frequency() -> float:
-    """Natural frequency of the elastic frame on the measured loom [1/s]."""
-    return elasticity()[0] * rotor.SPEED / (2.0 * math.pi)
 
 
 @cache
@@ -144,16 +134,6 @@ def off_by(dwells: list[float]) -> float:
 def rms(explanation: str) -> float:
     """Root mean square of the misses of an explanation [deg]."""
     return off_by(explained(explanation))
-
-
-def fitted_growth() -> float:
-    """Growth of the acceleration with the fitted plateau, as a share."""
-    return rotor.growth("plateau", **shape())
-
-
-def fitted_speed(reduction: float) -> float:
-    """Largest speed of the rotor over the shaft's with the fitted plateau."""
-    return rotor.drive("plateau", reduction, **shape()).highest_speed
 
 
 def elastic_growth() -> float:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
-from validation.computed.rotor import LAWS
 
 from loomfmu.components.dobby.drive import DobbyDrive
 from loomfmu.components.heald_damper import HealdDamper
@@ -16,10 +15,11 @@ from loomfmu.components.heald_play import HealdPlay
 from loomfmu.components.warp_tension import WarpTension
 from loomfmu.physics.damper import design_stiffness
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
+from validation.computed.rotor import LAWS
 
 Floats = NDArray[np.float64]
 STEPS, TURNS = 360, 20
-RPM300 = 300.0 * math.pi / 30.0
+FREQUENCY = math.sqrt(4.0 * 5960.0 / HealdDamper().carrier_mass) / (2.0 * math.pi)  # of the suspension [1/s]
 
 
 class HealdLine:
@@ -78,12 +78,6 @@ def carrier(
     return damper
 
 
-def fixed_load(rpm: float) -> float:
-    """Peak load of a carrier without springs [N]."""
-    damper = carrier(rpm, 4)
-    return float(damper.carrier_mass * damper.peak_frame)
-
-
 @cache
 def first_contact(law: str) -> float:
     """Lowest speed at which the default carrier touches a stop in four picks, at most 1000 [rev/min]."""
@@ -92,16 +86,6 @@ def first_contact(law: str) -> float:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if carrier(middle, 4, law=law).stop_contacts else (middle, high)
     return high
-
-
-def natural_frequency(stiffness: float, mass: float = HealdDamper().carrier_mass) -> float:
-    """Natural frequency of a carrier on four springs [1/s]."""
-    return math.sqrt(4.0 * stiffness / mass) / (2.0 * math.pi)
-
-
-def frequency_speed(stiffness: float, harmonic: float) -> float:
-    """Shaft speed in rev/min at which a harmonic of a frame in plain weave has that frequency."""
-    return natural_frequency(stiffness) * 120.0 / harmonic
 
 
 @cache
@@ -162,19 +146,9 @@ def blows(restitution: float = 0.5, rpm: float = 300.0, **heald: float) -> float
     return 0.5 * (counted[-1] - counted[3 * STEPS])
 
 
-def ten_healds(*given: float, **heald: float) -> float:
-    """Blows of ten healds."""
-    return 10.0 * blows(*given, **heald)
-
-
 def spring() -> float:
     """Stiffness of a spring by the source's design [N/m]."""
     return design_stiffness(5040 * 0.76 / 4.0, 15.0, 40.0, 0.015)
-
-
-def settled() -> float:
-    """Displacement of a carrier of 15 kg under its inertia at 40 m/s2 and the warp [m]."""
-    return (5040 * 0.76 / 4.0 - 15.0 * 40.0) / (4.0 * HealdDamper().spring_stiffness)
 
 
 @cache

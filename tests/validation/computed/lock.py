@@ -39,11 +39,6 @@ def release(inertia: float = INERTIA) -> float:
     return physics.release_time(inertia, TURN, 0.0, STIFFNESS, ARM)
 
 
-def release_limit() -> float:
-    """Speed limit from the release time [rad/s]."""
-    return math.radians(90.0) / release()
-
-
 def friction(speed: float) -> float:
     """Friction of 20 frames at a shaft speed, (3.48) [W]."""
     return physics.friction_power(0.1, FORCE, 0.0875, 1.4 / 3.0 * speed, 20.0)

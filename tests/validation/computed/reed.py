@@ -4,11 +4,10 @@ import math
 from dataclasses import replace
 from functools import cache
 
-from validation.digits import number
-
 from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.design import guidance
 from loomfmu.design.reed import crank_place, crank_rocker_without_quick_return, frame_angle_for, reed_dyad
+from validation.digits import number
 
 ROCKER = 0.550
 SWING = math.radians(13.610)
@@ -49,11 +48,6 @@ def crank_rocker(frame_angle: float) -> tuple[float, float, float, float]:
     return crank_rocker_without_quick_return(ROCKER, SWING, frame_angle)
 
 
-def crank_share() -> float:
-    """Crank over rocker."""
-    return crank_rocker(0.5 * math.pi)[0] / ROCKER
-
-
 def line_of_centres() -> float:
     """Where the line of the crank's centres meets x = 0 [m]."""
     return ROCKER * math.cos(0.5 * SWING) * math.hypot(1.0, SLOPE)
@@ -64,7 +58,7 @@ def coupler_over_crank(angle: float) -> float:
     return math.tan(angle) / math.tan(0.5 * SWING)
 
 
-def swing_required(frame_angle: float, smallest: float) -> float:
+def swing(frame_angle: float, smallest: float) -> float:
     """Swing by (13) for a frame angle and a smallest transmission angle [rad]."""
     return 2.0 * math.asin(math.sin(frame_angle) * math.cos(smallest))
 
@@ -74,14 +68,9 @@ def transmission_angle() -> float:
     return 0.5 * math.pi - abs(identified().pressure_angle)
 
 
-def above() -> ReedBeatUp:
-    """The machine with the reed's line above the arm."""
-    return identified(pressure=PRESSURE)
-
-
 def lengths(line: str = "") -> str:
     """Arm, rod and height in mm."""
-    of = above() if line == "above" else identified()
+    of = identified(pressure=PRESSURE if line == "above" else -PRESSURE)
     return " / ".join(number(1e3 * length, 2) for length in (of.arm_length, of.rod_length, of.reed_height))
 
 

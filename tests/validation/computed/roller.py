@@ -3,10 +3,9 @@
 import math
 from functools import cache
 
-from validation.calls import table
-
 from loomfmu.components.detaching_roller import DetachingRoller
 from loomfmu.physics import detaching_roller as physics
+from validation.calls import table
 
 ROLLER, TOP = 12.5e-3, 12.25e-3
 ROLLER_INERTIA, TOP_INERTIA = 135.64e-6, 33.98e-6
@@ -46,14 +45,9 @@ def valley(speed: float, torque: str) -> float:
     return min(built_in(speed)[torque])
 
 
-def acceleration(inertia_torque: float) -> float:
-    """Acceleration of the rollers that has an inertia torque [rad/s2]."""
-    return inertia_torque / ROLLER_INERTIA
-
-
 def top_roller_torque(inertia_torque: float) -> float:
     """M12 of the acceleration that has this M13 [N m]."""
-    return physics.top_roller_torque(acceleration(inertia_torque), ROLLER, TOP, TOP_INERTIA)
+    return physics.top_roller_torque(inertia_torque / ROLLER_INERTIA, ROLLER, TOP, TOP_INERTIA)
 
 
 def drafting_torque() -> float:
@@ -61,26 +55,11 @@ def drafting_torque() -> float:
     return ROLLER * physics.drafting_force(1.0, 0.33, 300.0, top_roller_torque(-0.53) / ROLLER)
 
 
-def front_torque(inertia_torque: float) -> float:
-    """M2 by (13) [N m]."""
-    return inertia_torque + top_roller_torque(inertia_torque)
-
-
-def by_square(torque: float, nips: float) -> float:
-    """A torque at 300 nips/min at another speed, by the square of the speed [N m]."""
-    return torque * (nips / 300.0) ** 2
-
-
 def law() -> tuple[float, float]:
     """`friction` and `inertia (nips / 300)^2` through the valleys of M at 300 and 500 nips/min [N m]."""
     low = {row["nips"]: float(row["valley"]) for row in table("roller_speeds") if row["torque"] == "M"}
     inertia = (low["300"] - low["500"]) / ((500.0 / 300.0) ** 2 - 1.0)
     return low["300"] + inertia, inertia
-
-
-def middle_valley() -> float:
-    """The valley of M at 400 nips/min by that law [N m]."""
-    return law()[0] - by_square(law()[1], 400.0)
 
 
 def curve(torque: str) -> tuple[list[float], list[float]]:

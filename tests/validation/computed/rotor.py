@@ -34,19 +34,14 @@ def drive(law: str, reduction: float | str = 0.5, **shape: float) -> DobbyDrive:
     return found
 
 
-def motion(law: str, reduction: float | str, angle: float) -> tuple[float, float, float]:
+def motion(law: str, reduction: float | str, angle: float = 0.0) -> tuple[float, float, float]:
     """Angle, speed and acceleration of the rotor at a shaft angle from the slow point."""
     return drive(law, reduction).rotor(angle)
 
 
 def lowest_speed(law: str, reduction: float | str) -> float:
     """Speed of the rotor over the shaft's at the slow point or opposite it, the lower one."""
-    return min(drive(law, reduction).rotor(x)[1] for x in (0.0, math.pi))
-
-
-def taken_off(law: str, reduction: float) -> float:
-    """Largest share of its speed that the rotor loses."""
-    return 1.0 - drive(law, reduction).rotor(0.0)[1]
+    return min(motion(law, reduction, x)[1] for x in (0.0, math.pi))
 
 
 def dwell(law: str, reduction: float, tolerance: float = TOLERANCE) -> float:
@@ -69,11 +64,6 @@ def largest_lift_rate(law: str, reduction: float, order: float = 2, **shape: flo
     return -min(float(found.fun), size(start))
 
 
-def frame_acceleration(law: str, reduction: float, speed: float) -> float:
-    """Largest acceleration of a frame at a shaft speed [m/s2]."""
-    return STROKE * speed**2 * largest_lift_rate(law, reduction)
-
-
 def growth(law: str, **shape: float) -> float:
     """Share by which the largest acceleration of a frame grows from zeta = 0.3 to 0.7."""
     low, high = (largest_lift_rate(law, z, **shape) for z in (0.3, 0.7))
@@ -85,11 +75,6 @@ def reduction_for(law: str, angle: float) -> float | str:
     if dwell(law, 1.0) < angle:
         return "not reached"
     return float(brentq(lambda z: dwell(law, z) - angle, 0.0, 1.0, xtol=1e-13))
-
-
-def speed_limit(acceleration: float) -> float:
-    """Shaft speed at which the frames of the default drive reach an acceleration [rad/s]."""
-    return math.sqrt(acceleration / (STROKE * largest_lift_rate("sloped sine", 0.5)))
 
 
 def travel_left(angle: float) -> float:

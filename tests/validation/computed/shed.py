@@ -1,8 +1,7 @@
 """Korolev, section 4.1: the shed that an air stream needs."""
 
-from validation.digits import number
-
 from loomfmu.design import shed
+from validation.digits import number
 
 CONFUSER = 0.010  # m, diameter D_k
 GAPS = (0.005, 0.0015)  # m, above and below it, Table 4.1
