@@ -4,6 +4,7 @@ A curve runs over a `range` of x (first, last, count) or over the rows that its 
 `arrays` computes. `x` and each of `y`, one for each panel from `panel` on, are numbers or calls with a unit.
 """
 
+import math
 import tomllib
 from io import BytesIO
 from pathlib import Path
@@ -84,7 +85,7 @@ def _computed(curve: dict[str, Any], row: dict[str, str]) -> list[list[float]]:
 
 def _number(text: str, row: dict[str, str]) -> float:
     call, _, unit = (part.strip() for part in filled(text, row).partition("|"))
-    return (value(call) if "." in call and call[0].isalpha() else float(call)) / factor(unit or "1")
+    return (math.nan if call == "nan" else value(call)) / factor(unit or "1")
 
 
 def _png(figure: Figure) -> bytes:

@@ -122,7 +122,7 @@ def test_the_factor_matrix_is_made_of_group_means():
 
 @pytest.mark.parametrize("phase", ["approach the tape", "withdraw from the tape"])
 def test_needles_reach_the_tape_where_a_harmonic_motion_has_done_3_of_11_4_mm(phase):
-    begin, end = thesis.phase("prototype", "needles", phase)
+    ((begin, end),) = thesis.phases("prototype", "needles", phase)
     found = thesis.needle_place(3.0 / 11.4, phase)
     share = 0.5 * (1.0 - math.cos(math.pi * (found - begin) / (end - begin)))
     assert 11.4 * share == pytest.approx(3.0, rel=1e-14)  # rounding
