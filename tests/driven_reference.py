@@ -146,7 +146,13 @@ class Monolith:
         """Velocity and angle of the shaft."""
         # steps no longer than 2 deg: the laws of the dobby are smooth in pieces
         found = solve_ivp(
-            self.law, (0.0, time[-1]), self.start, method="DOP853", rtol=1e-12, atol=1e-12, t_eval=time,
+            self.law,
+            (0.0, time[-1]),
+            self.start,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-12,
+            t_eval=time,
             max_step=time[-1] / 180.0,
-        )  # fmt: skip
+        )
         return found.y[1], found.y[0]

@@ -15,9 +15,13 @@ from validation.published import Published
 
 Cell = str | Published
 QUANTITY = {
-    "computes": "{computes}", "printed": "{printed}", "unit": "{unit}", "digits": "{digits}",
-    "criterion": "{criterion}", "role": "{role}",
-}  # fmt: skip
+    "computes": "{computes}",
+    "printed": "{printed}",
+    "unit": "{unit}",
+    "digits": "{digits}",
+    "criterion": "{criterion}",
+    "role": "{role}",
+}
 
 
 @dataclass(frozen=True)

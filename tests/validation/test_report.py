@@ -175,11 +175,15 @@ def test_a_section_reads_its_tables():
         "columns": [
             {"head": "machine", "text": "{machine}"},
             {
-                "each": {"mu": ["0.8"]}, "head": "mu = {mu}", "printed": "{n_mu_{mu}}", "unit": "rev/min",
-                "computes": "belt.safe->speed {machine} {mu}", "roles": {"WL450-4000": "used"},
+                "each": {"mu": ["0.8"]},
+                "head": "mu = {mu}",
+                "printed": "{n_mu_{mu}}",
+                "unit": "rev/min",
+                "computes": "belt.safe->speed {machine} {mu}",
+                "roles": {"WL450-4000": "used"},
             },
         ],
-    }  # fmt: skip
+    }
     found = read(given, "belt")
     assert found.heads == ("machine", "mu = 0.8") and found.title == "Safe speed of the WL680-3600"
     assert [number.outcome for number in found.numbers] == ["computed", "other"]

@@ -92,10 +92,16 @@ def profile() -> SimpleNamespace:
     radii, path, bends = np.hypot(*of.profile.T), np.hypot(*of.path.T), of.curvature_radius
     hollow = bends[bends < 0.0]
     return SimpleNamespace(
-        lowest=radii.min(), highest=radii.max(), path_lowest=path.min(), path_highest=path.max(),
-        rising=of.pressure_angle.max(), falling=-of.pressure_angle.min(), crest=bends[bends > 0.0].min(),
-        hollow=-hollow.max() if hollow.size else "none", inside=-of.radial_excess().min(),
-    )  # fmt: skip
+        lowest=radii.min(),
+        highest=radii.max(),
+        path_lowest=path.min(),
+        path_highest=path.max(),
+        rising=of.pressure_angle.max(),
+        falling=-of.pressure_angle.min(),
+        crest=bends[bends > 0.0].min(),
+        hollow=-hollow.max() if hollow.size else "none",
+        inside=-of.radial_excess().min(),
+    )
 
 
 def program() -> tuple[float, float, float]:
