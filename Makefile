@@ -11,8 +11,9 @@ PIN := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generat
 PARALLEL := --numprocesses=logical --maxprocesses=4 --dist=loadfile --max-worker-restart=0
 COPY := $(CURDIR)/build/checkout
 PACKAGED := src fmus sims pyproject.toml README.md LICENSE THIRD_PARTY.md
-FIGURES := $(CURDIR)/src/loomfmu/validation/attack.csv
-VERDICTS := $(CURDIR)/src/loomfmu/validation/errors.csv
+FIGURES := $(CURDIR)/tests/validation/tables/attack.csv
+VERDICTS := $(CURDIR)/tests/validation/tables/verdicts.csv
+VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 
 .PHONY: demo test coverage check stress attack verdicts bench docs site validation wheel pins clean
 
@@ -41,12 +42,12 @@ stress: .venv/installed-for-tests
 attack: .venv/installed-for-tests
 	rm -f $(FIGURES)
 	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s -m "slow or not slow"
-	$(BIN)/loomfmu validate
+	$(VALIDATE)
 
 # verdicts on random scenes beside the truth by far finer steps; their figures go into the report. Half an hour
 verdicts: .venv/installed-for-tests
 	PYTHONPATH=tests $(BIN)/python -m verdicts --list-wrong --output $(VERDICTS); \
-	status=$$?; $(BIN)/loomfmu validate && exit $$status
+	status=$$?; $(VALIDATE) && exit $$status
 
 # run time against error, side by side with other masters: about a quarter of an hour
 bench: .venv/installed-for-tests
@@ -62,7 +63,7 @@ site: .venv/installed-for-tests
 
 # the report that compares everything published with what is computed
 validation: .venv/installed-for-tests
-	$(BIN)/loomfmu validate
+	$(VALIDATE)
 
 # a package that brings native FMUs and its other libraries for all platforms: who installs it needs no compiler;
 # built in a copy, since what an interrupted build leaves in src would be run

@@ -1,16 +1,19 @@
 """Draws `demo.svg`, the picture in the README: one pick of the demo below and above its safe speed."""
 
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))  # the figures of all documents look alike
 
 import matplotlib
 
 matplotlib.use("Agg")  # before pyplot: no window
 import matplotlib.pyplot as plt
 import numpy as np
+from figure_style import BLUE, GREEN, GREY, ORANGE, RED, STYLE
 
 import loomfmu
-from loomfmu.validation.plot_style import BLUE, GREEN, GREY, ORANGE, RED, STYLE
 
 HERE = Path(__file__).parent
 SCENE = HERE.parent / "sims" / "wl680_3600.toml"

@@ -6,13 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
+from belt_guide_reference import CLAMPED, deflection
 from belt_reference import FiniteElements
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.machines import parameters
-from loomfmu.validation.belt_guide import CLAMPED, deflection
 
 CLEARANCE, GUIDE = 0.3e-3, 0.05
 

@@ -73,7 +73,6 @@ OUTCOMES = {  # of commands and calls: their exit status, or the extras that the
     "export scene.toml --ssp scene.ssp": 0,
     "export scene.toml --fmu scene.fmu": "native",
     "cache": 0,
-    "validate": 0,
     "Trace.plot": "plot",
     "Trace.to_xarray": "xarray",
     "Result.report": "report",

@@ -31,7 +31,6 @@ COMMANDS = {
     "list": package.list_,
     "init": package.init,
     "new": package.new,
-    "validate": package.validate,
     "cache": package.cache,
 }
 

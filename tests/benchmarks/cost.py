@@ -2,13 +2,12 @@
 
 from typing import Any
 
+import figure_style
 from children import Configurations, Task, children, in_turn, middle, spread
 from own import ENGINES, Ours, Stepped, demo
 from peers import Ecos, Fmpy, Libcosim, absent
 from records import Notes, Row, Table, say
 from texts import Figures, Find, only, parts, shown, table
-
-from loomfmu.validation import plot_style
 
 NAME = "cost"
 STEPS = 1440  # in a revolution
@@ -160,7 +159,9 @@ def figures(find: Find) -> Figures:
         for panel, kind in zip(panels, kinds, strict=True):
             group = [row for row in rows if row["FMUs"] == kind]
             names = list(dict.fromkeys(f"{row['master']}, {row['recording']}" for row in group))
-            for place, (cores, colour) in enumerate((("all", plot_style.BLUE), ("one", plot_style.ORANGE))):
+            for place, (cores, colour) in enumerate(
+                (("all", figure_style.BLUE), ("one", figure_style.ORANGE))
+            ):
                 mine = [row for row in group if row["cores"] == cores]
                 if not mine:
                     continue

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+import figure_style
 import numpy as np
 from children import Asked, Configurations, Failed, Task, children, in_turn, middle, spread
 from exact import REDUCTION, SIGNALS, STROKE, Loom
@@ -16,7 +17,6 @@ from texts import Figures, Find, error, items, parts, pivot, shown, table
 
 from loomfmu.cosim.claims.claims import judge
 from loomfmu.traces import Channel, Recording
-from loomfmu.validation import plot_style
 
 NAME = "precision"
 PLACES = 45  # of a revolution, at which signals are compared: every count of steps is a multiple
@@ -200,12 +200,12 @@ TARGETS = {
     "error of damper_1.displacement [share of largest]": 1e-4,
 }
 COLOURS = {
-    "loomfmu, live FMUs": plot_style.SKY,
-    "loomfmu, native FMUs": plot_style.BLUE,
-    CLAIMS: plot_style.GREEN,
-    "libcosim": plot_style.ORANGE,
-    "ecos": plot_style.RED,
-    "fmpy": plot_style.PURPLE,
+    "loomfmu, live FMUs": figure_style.SKY,
+    "loomfmu, native FMUs": figure_style.BLUE,
+    CLAIMS: figure_style.GREEN,
+    "libcosim": figure_style.ORANGE,
+    "ecos": figure_style.RED,
+    "fmpy": figure_style.PURPLE,
 }
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import figure_style
 import numpy as np
 from children import Child, Failed, Inside, Task, children, in_turn, middle, spread
 from own import Ours, Source, Stepped
@@ -13,7 +14,6 @@ from records import Notes, Table, say
 from texts import Figures, Find, parts, whole
 
 import loomfmu
-from loomfmu.validation import plot_style
 
 NAME = "scaling"
 STEPS = 360  # in a revolution
@@ -198,7 +198,7 @@ def figures(find: Find) -> Figures:
 
     def draw(figure: Any) -> None:
         left, middle_, right = figure.subplots(1, 3)
-        for recording, colour in (("none", plot_style.BLUE), ("HDF5", plot_style.ORANGE)):
+        for recording, colour in (("none", figure_style.BLUE), ("HDF5", figure_style.ORANGE)):
             rows = [row for row in instances if row["recording"] == recording]
             x, y = [row["instances"] for row in rows], [row["step [us]"] for row in rows]
             left.loglog(x, y, "o-", color=colour, label=f"recording: {recording}")
@@ -207,11 +207,11 @@ def figures(find: Find) -> Figures:
         left.set_ylabel("us per step")
         left.legend()
         counts = [row["steps"] for row in steps]
-        middle_.loglog(counts, [row["time [s]"] for row in steps], "o-", color=plot_style.BLUE)
+        middle_.loglog(counts, [row["time [s]"] for row in steps], "o-", color=figure_style.BLUE)
         middle_.yaxis.set_minor_formatter(lambda _value, _place: "")
         middle_.set_xlabel("steps")
         middle_.set_ylabel("time of a run, s")
-        right.semilogx(counts, [row["peak memory [MB]"] for row in steps], "o-", color=plot_style.BLUE)
+        right.semilogx(counts, [row["peak memory [MB]"] for row in steps], "o-", color=figure_style.BLUE)
         right.set_ylim(0.0, 1.25 * max(row["peak memory [MB]"] for row in steps))
         right.set_xlabel("steps")
         right.set_ylabel("peak memory, MB")

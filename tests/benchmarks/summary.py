@@ -3,14 +3,13 @@
 from typing import Any
 
 import cost
+import figure_style
 import limits
 import precision
 import start_up
 import sweep_runs
 from records import Row
 from texts import Figures, Find, error, items, only, parts, shown, table
-
-from loomfmu.validation import plot_style
 
 PICTURE = "summary.png"
 OURS, PLAIN, ISOLATED = "loomfmu", cost.PLAIN, cost.ISOLATED
@@ -180,11 +179,11 @@ def _ways(numbers: Numbers) -> dict[str, tuple[float, str]]:
     """Ways to run a step: its time [us] and a colour."""
     others, colours = ("ecos", "CSV"), precision.COLOURS
     found = {
-        "one C loop": (numbers.limits.get(limits.LOOP), plot_style.BLACK),
-        "one FMU, C host": (numbers.limits.get(limits.WHOLE), plot_style.GREEN),
-        "loomfmu, native": (numbers.step("native", OURS, "HDF5"), plot_style.BLUE),
-        "loomfmu, isolated": (numbers.step("native", ISOLATED, "none"), plot_style.GREY),
-        "loomfmu, live": (numbers.step("live", OURS, "HDF5"), plot_style.SKY),
+        "one C loop": (numbers.limits.get(limits.LOOP), figure_style.BLACK),
+        "one FMU, C host": (numbers.limits.get(limits.WHOLE), figure_style.GREEN),
+        "loomfmu, native": (numbers.step("native", OURS, "HDF5"), figure_style.BLUE),
+        "loomfmu, isolated": (numbers.step("native", ISOLATED, "none"), figure_style.GREY),
+        "loomfmu, live": (numbers.step("live", OURS, "HDF5"), figure_style.SKY),
         "ecos": (numbers.step("native", *others), colours["ecos"]),
         "libcosim": (numbers.step("native", "libcosim", "in memory"), colours["libcosim"]),
         "fmpy": (numbers.step("native", "fmpy", "in memory"), colours["fmpy"]),

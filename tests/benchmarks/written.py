@@ -6,6 +6,7 @@ from typing import Any
 
 import belt_motion
 import cost
+import figure_style
 import guard
 import limits
 import live_pages
@@ -20,7 +21,6 @@ from records import Row, read
 from texts import Draw, Figures, Find, items, parts, table
 
 from loomfmu.extras import installed
-from loomfmu.validation import plot_style
 
 REPORT = "benchmarks.md"
 FOLDER = "benchmarks"
@@ -138,7 +138,7 @@ def _draw(height: float, draw: Draw, path: Path) -> None:
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(plot_style.STYLE):
+    with matplotlib.rc_context(figure_style.STYLE):
         figure = Figure(figsize=(8.0, height), dpi=100, layout="constrained")
         draw(figure)
         figure.savefig(path, metadata={"Software": None})

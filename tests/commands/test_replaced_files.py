@@ -102,15 +102,3 @@ def umask() -> int:
     found = os.umask(0)
     os.umask(found)
     return found
-
-
-def test_a_report_replaces_only_a_report(capsys: pytest.CaptureFixture[str]) -> None:
-    Path("docs/validation").mkdir(parents=True)
-    Path("docs/validation.md").write_text("# My thesis\n")
-    assert main(["validate", "--output", "docs"]) == 2
-    assert "docs/validation.md: exists and is not a report of loomfmu" in capsys.readouterr().err
-    Path("docs/validation.md").unlink()
-    Path("docs/validation/accuracy.png").write_text("my own")
-    assert main(["validate", "--output", "docs"]) == 2
-    assert "docs/validation/accuracy.png: exists and is not a PNG" in capsys.readouterr().err
-    assert os.listdir("docs") == ["validation"]

@@ -5,6 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from belt_guide_reference import CLAMPED, PLACES, deflection
 from belt_loom import Loom, ends, shape
 from belt_reference import FiniteElements
 from scipy.integrate import solve_bvp
@@ -21,7 +22,6 @@ from loomfmu.physics.belt_end_forces import (
     head_forces,
 )
 from loomfmu.physics.belt_ends import CROSS, SQUARE, buckling, end_amplitudes, turned_by
-from loomfmu.validation.belt_guide import CLAMPED, PLACES, deflection
 from loomfmu.variables import variables_of
 
 BELT, SPAN = 1, 2

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from driven_reference import Monolith
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import loomfmu
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.validation.driven import Monolith
 
 ROOT = Path(__file__).parents[2]
 WEFT = """

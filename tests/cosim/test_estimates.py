@@ -12,8 +12,8 @@ from loomfmu import LoomfmuError, Trace, Verdict, evaluate, prepare, run
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.estimates import MEMORY, PRESENT
 from loomfmu.cosim.scenes.scene import parse
+from loomfmu.design import loom
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, dwell_angle
-from loomfmu.validation import belt
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
 STEPS = (24, 45, 60, 90, 144, 180, 360, 720, 1440)
@@ -34,7 +34,7 @@ bound = {bound}
 
 def exact() -> dict[int, float]:
     """Values of the demonstration's claims, by their numbers, in closed form."""
-    limit = belt.rpm(belt.safe("WL680-3600", "G6300 left", 0.8))
+    limit = loom.safe_speed("WL680-3600", length_factor=0.8).speed / loom.RPM
     return {
         0: 1.0 - (600.0 / limit) ** 2,
         1: limit * math.pi / 30.0,

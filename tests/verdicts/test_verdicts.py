@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 from verdicts.drawing import FAMILIES, MANY, drawn
-from verdicts.figures import statistics
+from verdicts.figures import HEADS, statistics
 from verdicts.judging import Found, Truth, confirmed, judged
 from verdicts.listing import listed
 
 from loomfmu import evaluate
-from loomfmu.validation.errors import HEADS
 
 SEED = 5
 SETTINGS = [

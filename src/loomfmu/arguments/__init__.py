@@ -86,7 +86,6 @@ def parser() -> argparse.ArgumentParser:
         package.build,
         scenes.export,
         package.cache,
-        package.validate,
     ):
         add(commands)
     return parser

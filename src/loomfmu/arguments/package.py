@@ -1,4 +1,4 @@
-"""The arguments of the commands on what the package holds: FMUs, examples, mechanisms, validation."""
+"""The arguments of the commands on what the package holds: FMUs, examples, mechanisms."""
 
 from pathlib import Path
 from typing import Any
@@ -57,19 +57,6 @@ def cache(commands: Any) -> None:
     """Arguments of `cache`."""
     cache = commands.add_parser("cache", help="show location and size of the cache of built FMUs")
     cache.add_argument("--clear", action="store_true", help="empty it; FMUs are built again when needed")
-
-
-def validate(commands: Any) -> None:
-    """Arguments of `validate`."""
-    validate = commands.add_parser("validate", help="compare published and computed values")
-    validate.add_argument(
-        "--output",
-        type=Path,
-        default=Path("results"),
-        metavar="DIR",
-        help="folder for the report; results by default",
-    )
-    add_force(validate, "files in DIR that are not part of such a report")
 
 
 def init(commands: Any) -> None:

@@ -1,4 +1,4 @@
-"""The commands on what the package brings: `build`, `list`, `init`, `new`, `validate`, `cache`."""
+"""The commands on what the package brings: `build`, `list`, `init`, `new`, `cache`."""
 
 import argparse
 import shlex
@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from ..errors import LoomfmuError
-from ..printed import complain, say
+from ..printed import say
 from .options import platforms
 
 
@@ -69,18 +69,6 @@ def new(options: argparse.Namespace) -> int:
     written = write(options.name, options.output)
     say(*written, "")
     say(f"next: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
-    return 0
-
-
-def validate(options: argparse.Namespace) -> int:
-    """Write the validation report."""
-    from ..extras import install, installed
-    from ..validation import report
-
-    for path in report.write(options.output, options.force):
-        say(path)
-    if not installed("plot"):
-        complain(f"no plots: {install('plot')}")
     return 0
 
 
