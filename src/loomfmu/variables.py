@@ -214,7 +214,8 @@ class Component:
     keeps: ClassVar[str] = MOTION
     # how accurate its outputs are for given inputs, if it keeps a motion; they are exact to rounding if not
     accuracy: ClassVar[str] = ""
-    # the share of its numbers by which they differ from step size to step size, however short the steps
+    # how much its outputs differ from step size to step size, however short the steps: a share of how far
+    # they have moved since the start
     scatter: ClassVar[float] = 0.0
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()

@@ -39,13 +39,15 @@ class Method(NamedTuple):
 
     The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: one of
     them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
-    leave, hide the order. Numbers farther from their bound than the share `near` of it are not estimated
+    leave, hide the order; `scatter` a share of how far the signal has moved since the start, which changes by
+    so much whatever the steps. Numbers farther from their bound than the share `near` of it are not estimated
     where only near ones are: it is far above what errors are with a few dozen steps in a revolution.
     """
 
     factors: tuple[float, float]
     floor: float
     near: float
+    scatter: float = 0.0
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
@@ -106,7 +108,7 @@ class Estimates:
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if delayed else method
             scatter = max(each.scatter if each else 0.0 for each in components)
-            found.append(method._replace(floor=max(method.floor, scatter)))
+            found.append(method._replace(scatter=scatter))
         return found
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
@@ -194,11 +196,21 @@ def _estimated(
     spread = max(changes)
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
-    floor = max(claim.noise, method.floor * max(abs(worst), abs(verdict.bound)))
+    floor = max(
+        claim.noise,
+        method.floor * max(abs(worst), abs(verdict.bound)),
+        method.scatter * _moved(trace, verdict),
+    )
     left = claim.unresolved(trace, verdict)
     if left == math.inf:  # a sample may fail the claim, but does not say by how much the signal does
         return replace(verdict.estimated(max(spread, floor), spread), error=math.inf)
     return verdict.estimated(max(spread, left, floor), spread)
+
+
+def _moved(trace: Signals, verdict: Verdict) -> float:
+    """How far a signal has moved from its first sample; the value itself where it has no samples."""
+    start = float(trace[verdict.signal][0]) if verdict.signal in trace else 0.0
+    return abs(verdict.worst - start)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
