@@ -208,7 +208,7 @@ def _estimated(
 
 
 def _moved(trace: Signals, verdict: Verdict) -> float:
-    """How far a signal has moved from its first sample; the value itself where it has no samples."""
+    """The distance of the worst value from the first sample of its signal, from 0 where it has no samples."""
     start = float(trace[verdict.signal][0]) if verdict.signal in trace else 0.0
     return abs(verdict.worst - start)
 
