@@ -185,6 +185,29 @@ def test_numbers_of_a_belt_in_motion_are_no_better_known_than_they_scatter() -> 
     assert found.error >= 1e-3 * abs(found.worst)
 
 
+def test_two_coarser_runs_may_agree_by_chance() -> None:
+    """The belt buckles for 2 deg: 52, 32 and 20 steps in a revolution pass it by, 12 do not."""
+    text = """
+revolutions = 1
+steps_per_revolution = 52
+[loom]
+machine = "WL450-4600"
+head = "G6300 right"
+[shaft]
+speed = "202.648567 rev/min"
+start_angle = "310.382 deg"
+[belt]
+guide_clearance = "0.399085 mm"
+yarn_tension = "11.9964 cN"
+[[claims]]
+kind = "below"
+signal = "belt.deflection"
+bound = "0.62 mm"
+"""
+    coarse, fine = (evaluate(parse(text, overrides={"steps_per_revolution": n})).claims[0] for n in (52, 1440))
+    assert (coarse.worst, coarse.word, fine.word) == (0.0, "undecided", "FAILS")
+
+
 def test_a_value_known_only_at_the_samples_is_undecided_unless_they_alone_are_judged() -> None:
     claim = '[[claims]]\nkind = "below"\nsignal = "heald_1.inertia_force"\nbound = 1000\n'
     text = LOOM.format(steps=90, bound=0.1).replace('"G6300 left"', '"G6300 left"\nweave = "10/01"') + claim

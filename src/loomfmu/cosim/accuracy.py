@@ -8,12 +8,12 @@ from typing import NamedTuple
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claims import called
-from .estimates import Coarser, Estimates
+from .estimates import SHARES, Coarser, Estimates
 from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.times import ROUNDING
 
-FEWEST, RAISED = 24, 13  # steps in a revolution, each 15 deg, and how often there may be more
+FEWEST, RAISED = 15, 14  # steps in a revolution, each 24 deg, and how often there may be more
 GROWTH = 0.5 * (1.0 + math.sqrt(5.0))  # so that the runs before are those of `estimates.SHARES`
 MOST_STEPS = 10_000_000  # in a run
 
@@ -44,7 +44,7 @@ def chosen(
             continue
         tried = altered(scene, steps_per_period=steps)
         trace, verdicts = judge(tried)
-        if before:
+        if len(before) == len(SHARES):
             coarser = Coarser(everything, estimates.unshown(tried), tuple(before))
             estimated = estimates.of(trace, verdicts, coarser)
             errors = [
@@ -65,7 +65,7 @@ def chosen(
                     " steps_per_revolution"
                 )
             reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
-        before = [tuple(verdict.worst for verdict in verdicts), *before[:1]]
+        before = [tuple(verdict.worst for verdict in verdicts), *before[: len(SHARES) - 1]]
     raise LoomfmuError(
         f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
     )

@@ -31,35 +31,35 @@ NO_VALUE = "coarser steps give no value: take more steps"
 # of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
 # to the coarsest run
 TOO_LONG = 2.0
-SHARES = (0.62, 0.38)  # of the steps: the golden ratio and its square are farthest from fractions
+SHARES = (0.62, 0.38, 0.24)  # of the steps: powers of the golden ratio are farthest from fractions
 
 
 class Method(NamedTuple):
     """Factors by which the changes from coarser runs give the error of the finest one.
 
-    The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: one of
+    The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: two of
     them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
     leave, hide the order; `scatter` a share of how far the signal has moved since the start, which changes by
     so much whatever the steps. Numbers farther from their bound than the share `near` of it are not estimated
     where only near ones are: it is far above what errors are with a few dozen steps in a revolution.
     """
 
-    factors: tuple[float, float]
+    factors: tuple[float, float, float]
     floor: float
     near: float
     scatter: float = 0.0
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
-# and two at a kink: the changes are 6 and 47, or 1.6 and 6 times the error.
-PRESENT = Method((3.0, 0.5), floor=1e-12, near=0.01)
+# and two at a kink: the changes are 6, 47 and 300, or 1.6, 6 and 16 times the error.
+PRESENT = Method((3.0, 0.5, 0.06), floor=1e-12, near=0.01)
 # An extreme that a component holds is found beyond what it takes for noise of its samples.
 HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
-# 1.6 and 6 times the error.
-MEMORY = Method((6.0, 2.0), floor=1e-9, near=0.1)
-# A loop that carries values of the step before is of order one: the changes are 0.6 and 1.6 times the error.
-LAGGED = MEMORY._replace(factors=(12.0, 4.0))
+# 1.6, 6 and 16 times the error.
+MEMORY = Method((6.0, 2.0, 0.7), floor=1e-9, near=0.1)
+# A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times the error.
+LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,7 @@ class Estimates:
             try:
                 values.append(self.worst(self._run(scene, coarse), wanted))
             except LoomfmuError as error:
-                if not values:
-                    return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
+                return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
         return Coarser(wanted, unshown, tuple(values))
 
     def unshown(self, scene: Scene) -> dict[int, str]:
@@ -184,16 +183,13 @@ def _estimated(
     worst = verdict.worst
     if not math.isfinite(worst):
         return verdict
-    changes = [
-        factor * abs(worst - value)
-        for factor, value in zip(method.factors, coarser, strict=False)
-        if math.isfinite(value)
-    ]
-    if not math.isfinite(coarser[0]):
+    if not all(map(math.isfinite, coarser)):
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
         return _undecided(verdict, NO_VALUE)
-    spread = max(changes)
+    spread = max(
+        factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True)
+    )
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
     floor = max(

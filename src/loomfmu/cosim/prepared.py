@@ -210,7 +210,7 @@ class Prepared:
     def evaluate(self, set: dict[str, Any] | None = None, *, errors: Errors = "all") -> Evaluation:
         """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`.
 
-        Estimating errors takes two more runs, on 62 % and 38 % of the steps: "near" estimates only
+        Estimating errors takes three more runs, on 62, 38 and 24 % of the steps: "near" estimates only
         those of verdicts within 1 % of their bounds, or 10 % where a mechanism has a memory; "none", for
         searches, does without.
         """
