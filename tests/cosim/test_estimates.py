@@ -204,7 +204,8 @@ kind = "below"
 signal = "belt.deflection"
 bound = "0.62 mm"
 """
-    coarse, fine = (evaluate(parse(text, overrides={"steps_per_revolution": n})).claims[0] for n in (52, 1440))
+    key = "steps_per_revolution"
+    coarse, fine = (evaluate(parse(text, overrides={key: n})).claims[0] for n in (52, 1440))
     assert (coarse.worst, coarse.word, fine.word) == (0.0, "undecided", "FAILS")
 
 

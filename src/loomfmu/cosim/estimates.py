@@ -58,7 +58,7 @@ HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
 # 1.6, 6 and 16 times the error.
 MEMORY = Method((6.0, 2.0, 0.7), floor=1e-9, near=0.1)
-# A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times the error.
+# A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
 
@@ -187,9 +187,7 @@ def _estimated(
         if not math.isfinite(verdict.distance):  # it fails for another reason
             return verdict
         return _undecided(verdict, NO_VALUE)
-    spread = max(
-        factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True)
-    )
+    spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
     floor = max(
