@@ -48,7 +48,8 @@ def _turns_less(trace: Signals, wanted: int, why: str) -> str:
     turned = math.inf if turning is None else float(np.ptp(turning.values[0])) / TURN
     if turned >= wanted - STANDS:
         return ""
-    return f"the shaft turns by only {turned:.3g} revolution{'s' * (turned != 1.0)}, {why}"
+    number = f"{turned:.4g}"
+    return f"the shaft turns by only {number} revolution{'s' * (number != '1')}, {why}"
 
 
 def place(turning: Motion, time: float) -> tuple[float, int]:
