@@ -243,6 +243,11 @@ class Component:
         """The longest step that shows how its outputs change with these parameters [s], and why."""
         return math.inf, ""
 
+    @classmethod
+    def shortest_event(cls, value: Callable[[str], Any]) -> tuple[float, str]:
+        """The shaft angle of the shortest thing that it does with these parameters [rad], and its name."""
+        return math.inf, ""
+
     def check(self) -> int:
         """The number of the first problem of the parameters, or 0."""
         return 0

@@ -1,13 +1,14 @@
 """Steps that are chosen for an accuracy: reached, the fewest of those tried, refused where it cannot be."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from loomfmu import LoomfmuError, Trace, evaluate, limit, prepare
 from loomfmu.cli import main
-from loomfmu.cosim.accuracy import GROWTH
+from loomfmu.cosim.accuracy import GROWTH, _tried
 from loomfmu.cosim.scenes.scene import parse
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
@@ -35,9 +36,9 @@ def test_the_run_says_and_stores_what_it_chose(tmp_path: Path, capsys: pytest.Ca
     command = ["run", str(DEMO), "--set", "accuracy=1e-4", "--set", "revolutions=2", "--output", str(path)]
     assert main(command) == 0
     printed = capsys.readouterr().out
-    assert "chose 166 steps in a revolution: estimated error" in printed
+    assert "chose 165 steps in a revolution: estimated error" in printed
     trace = Trace(path)
-    assert trace.attributes["accuracy"] == "0.0001" and trace.attributes["steps_per_revolution"] == "166"
+    assert trace.attributes["accuracy"] == "0.0001" and trace.attributes["steps_per_revolution"] == "165"
     assert trace.verdicts == list(evaluate(DEMO, set=REPEAT | {"accuracy": 1e-4}).claims)
 
 
@@ -79,7 +80,7 @@ def test_setting_one_replaces_the_other() -> None:
         ({"accuracy": "good"}, "accuracy = 'good' is not a number"),
         (
             {"accuracy": 1e-12, "revolutions": 1},
-            "accuracy = 1e-12 is not reached: with 12645 steps in a revol",
+            "accuracy = 1e-12 is not reached: with 12543 steps in a revol",
         ),
     ],
 )
@@ -98,3 +99,12 @@ def test_an_accuracy_needs_claims_and_revolutions() -> None:
     )
     with pytest.raises(LoomfmuError, match="the scene runs by seconds"):
         parse(seconds)
+
+
+@pytest.mark.parametrize("revolutions", [1, 2.5, 2.025, 2.0625, 91 / 45, 1 + 1 / 1440])
+def test_steps_that_are_tried_grow_and_are_no_multiples_of_those_before(revolutions: float) -> None:
+    """With 2.025 revolutions 40 steps were compared with 40 steps."""
+    tried = list(_tried(revolutions))
+    assert all((steps * revolutions) % 1 == pytest.approx(0.0, abs=1e-6) for steps in tried)
+    assert all(1.45 <= more / fewer <= 1.7 and more % fewer for fewer, more in pairwise(tried))
+    assert len(tried) > 3

@@ -1,8 +1,9 @@
 """PatternLock: the sprung pawl that changes a coupling of the dobby."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import fabs, floor, inf, pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from ..declarations import auxiliary, indicator, output, parameter
 from ..physics.pattern_lock import (
@@ -121,6 +122,11 @@ class PatternLock(ShaftDriven):
     in_time_event: float = indicator(
         "rad/s", "Margin of the shaft speed below speed_limit; in_time changes where it passes zero"
     )
+
+    @classmethod
+    def shortest_event(cls, value: Callable[[str], Any]) -> tuple[float, str]:
+        """The engagement, in which the pawl turns."""
+        return value("engagement_angle"), "the engagement"
 
     def initialize(self, time: float) -> int:
         """Find what depends on the parameters alone and place the pawl."""

@@ -1,8 +1,9 @@
 """ReedBeatUp: from the main shaft to the reed."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, fabs, inf, pi, sin, sqrt
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from ..declarations import auxiliary, output, parameter
 from ..physics.linkage import four_bar, four_bar_margin, wrapped
@@ -178,6 +179,12 @@ class ReedBeatUp(ShaftDriven):
         )  # fmt: skip
         angle, _first, _second = self.rocker(crank, 0.0)
         return crank, angle + self.arm_angle
+
+    @classmethod
+    def shortest_event(cls, value: Callable[[str], Any]) -> tuple[float, str]:
+        """The run of the servo, or where that is shorter four times its speeding up."""
+        share = min(1.0, 4.0 * value("ramp_share"))
+        return (share * value("run_angle") if value("servo") else inf), "the run of the servo"
 
     def check(self) -> int:
         """Check that the crank makes full turns and that the rod swings the reed, clear of dead points."""

@@ -1,7 +1,7 @@
 """The number of steps that an accuracy takes: few at first, then more until all errors are below."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.times import ROUNDING
 
-FEWEST, RAISED = 15, 14  # steps in a revolution, each 24 deg, and how often there may be more
+FEWEST, MOST = 15, 13_000  # steps in a revolution
 GROWTH = 0.5 * (1.0 + math.sqrt(5.0))  # so that the runs before are those of `estimates.SHARES`
 MOST_STEPS = 10_000_000  # in a run
 
@@ -37,8 +37,7 @@ def chosen(
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
     before: list[tuple[float, ...]] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
-    whole = Fraction(scene.periods).limit_denominator(MOST_STEPS).denominator  # fits any number of periods
-    for steps in (whole * round(FEWEST * GROWTH**raised / whole) for raised in range(RAISED + 1)):
+    for steps in _tried(scene.periods):
         total = scene.periods * steps
         if not 0.0 < total <= MOST_STEPS or abs(total - round(total)) > ROUNDING * total:
             continue
@@ -69,6 +68,19 @@ def chosen(
     raise LoomfmuError(
         f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
     )
+
+
+def _tried(periods: float) -> Iterator[int]:
+    """Numbers of steps in a revolution, few first, all of which fit the revolutions of a run.
+
+    Each is about 1.618 times the one before, and no multiple of it: the sums of Fibonacci.
+    """
+    whole = Fraction(periods).limit_denominator(MOST_STEPS).denominator
+    fewer = max(2, round(FEWEST / whole))
+    more = round(GROWTH * fewer)
+    while whole * fewer <= MOST:
+        yield whole * fewer
+        fewer, more = more, fewer + more
 
 
 def _share(verdict: Verdict, noise: float) -> float:

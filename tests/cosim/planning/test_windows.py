@@ -107,7 +107,11 @@ def test_with_a_damper_the_steps_are_the_scenes_own_and_the_landings() -> None:
     ("weave", "changed", "reach"),
     [
         # frames that hold between two changes, on a shaft that starts up: jumps of acceleration
-        ("1100/0110/0011/1001", {"shaft.ramp_duration": "0.2 s", "shaft.speed": "450 rpm"}, 1e-8),
+        (
+            "1100/0110/0011/1001",
+            {"shaft.ramp_duration": "0.2 s", "shaft.speed": "450 rpm", "revolutions": 5},
+            1e-8,
+        ),
         # equal steps of 0.25 degrees tell a peak of 36 ripples to 1e-9
         ("10/01/10/01", {"shaft.ripple_amplitude": 0.05, "shaft.ripple_order": 36}, 1e-8),
         # where two picks of this cam join the velocity jumps, which steps of another size take in another way

@@ -1,8 +1,10 @@
 """The rotor laws of a dobby drive: their course, their peaks and their dwells."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import asin, fabs, floor, pi, sqrt
-from typing import ClassVar
+from itertools import pairwise
+from math import asin, fabs, floor, inf, pi, sqrt
+from typing import Any, ClassVar
 
 from ...physics.numerics.brackets import nearer_root
 from ...physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
@@ -56,6 +58,19 @@ class RotorLaws(LawParameters):
             " table_1, table_2, ..., or law = uniform"
         ),
     )
+
+    @classmethod
+    def shortest_event(cls, value: Callable[[str], Any]) -> tuple[float, str]:
+        """The ramp of a plateau, or what points of a table or of a cam make the rotor do."""
+        law = value("law")
+        if law == PLATEAU:
+            return value("ramp_angle"), "the ramp of the plateau"
+        if law == TABLE:
+            return 4.0 * pi / value("table_points"), "what a point of the table does to the rotor"
+        if law == SPLINE_CAM:
+            angles = [value(f"cam_angle_{number}") for number in range(1, 7)]
+            return min(b - a for a, b in pairwise(angles)), "a part of the cam"
+        return inf, ""
 
     def check(self) -> int:
         """Check that the law can be driven: the rotor makes full turns and never turns back."""

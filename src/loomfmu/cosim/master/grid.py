@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..scenes.scene import Scene
 
 Floats = NDArray[np.float64]
+DENSE = 1.2  # communication points for each equal step
 SAME = 1e-6  # of a step: what a kink may be away from a communication point
 
 
@@ -57,9 +58,16 @@ class Grid:
 
 
 def uniform(scene: Scene, share: float = 1.0) -> Grid:
-    """Equal steps of the scene, or a share of them, divided where an input that it drives has a kink."""
+    """Equal steps of the scene, or a share of them, divided where an input that it drives has a kink.
+
+    Where kinks divide most steps, a share of all these is taken instead: it would hardly be coarser.
+    """
     equal = Grid(scene.steps, scene.step_size, scene.steps_per_period)
     if share < 1.0:
+        whole = uniform(scene)
+        if whole.points is not None and whole.steps > DENSE * scene.steps:
+            places = np.linspace(0, whole.steps, max(1, round(share * whole.steps)) + 1)
+            return chosen(scene, whole.points[np.round(places).astype(int)])
         steps = max(1, round(share * scene.steps))
         longer = scene.steps / steps
         equal = Grid(steps, longer * scene.step_size, scene.steps_per_period / longer)

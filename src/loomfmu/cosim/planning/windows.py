@@ -38,6 +38,7 @@ REACH = 0.125  # of the steps by which a lowest point was found: it is known bet
 DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may be the lowest
 RIPPLE = 1e-6  # of a signal's range: what samples about a minimum that is one differ by
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
+EVENT = 4.0  # steps that show an event of a mechanism
 NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
 
 
@@ -141,12 +142,16 @@ def longest_step(scene: Scene, name: str) -> tuple[float, str]:
     component = instance.fmu.component
     if component is None:
         return math.inf, ""
-    by_values = component.longest_step(instance.effect)
-    if component.keeps == MOTION:  # every step counts anyway
-        return by_values
-    limit = f"allows steps of at most {component.longest_turn * 180.0 / math.pi:.4g} deg"
-    why = f"{name} {limit if component.longest_turn else 'declares no longest_turn'}"
-    return min(by_values, (component.longest_turn * period(scene) / (2.0 * math.pi), why))
+    turn, event = component.shortest_event(instance.effect)
+    by_event = turn / EVENT, f"{event} of {name} takes {math.degrees(turn):.4g} deg"
+    limit = f"allows steps of at most {math.degrees(component.longest_turn):.4g} deg"
+    declared = (
+        component.longest_turn,
+        f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
+    )
+    # one that keeps a motion looks at every step
+    turn, why = by_event if component.keeps == MOTION else min(by_event, declared)
+    return min(component.longest_step(instance.effect), (turn * period(scene) / (2.0 * math.pi), why))
 
 
 def _check(scene: Scene) -> None:
