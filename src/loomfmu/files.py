@@ -103,8 +103,12 @@ def short_stem(stem: str, most: int = LONGEST_STEM) -> str:
     """Return the name of a file without its suffix, cut to `most` bytes if it takes more, with a digest."""
     if len(stem.encode()) <= most:
         return stem
-    digest = hashlib.sha256(stem.encode()).hexdigest()[:8]
-    return f"{stem.encode()[: most - 9].decode(errors='ignore')}-{digest}"
+    return f"{stem.encode()[: most - 9].decode(errors='ignore')}-{digest(stem)}"
+
+
+def digest(text: str) -> str:
+    """Return the eight hex digits that keep names apart."""
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def check_target(path: Path, kind: Kind, inputs: Iterable[Path] = (), overwrite: bool = False) -> None:

@@ -125,6 +125,26 @@ def test_a_run_with_other_values_leaves_the_trace_of_the_scene(capsys: pytest.Ca
     assert sorted(os.listdir("results")) == ["scene.h5", f"{other}.h5", f"{other}.html"]
 
 
+def test_a_run_leaves_the_trace_of_another_scene_of_that_name(capsys: pytest.CaptureFixture[str]) -> None:
+    for folder in ("results/one", "results/two"):  # where `optimize` writes two scenes of one name
+        Path(folder).mkdir(parents=True)
+        Path(folder, "best.toml").write_text(HEAD + SHAFT)
+        assert main(["run", f"{folder}/best.toml"]) == 0
+    said = capsys.readouterr()
+    other = os.path.normpath("results/one/best.toml")
+    (own,) = Path("results").glob("best-????????.h5")
+    first = Path("results/best.h5")
+    assert said.err.splitlines() == [
+        f"{first}: it is the trace of another scene, {other}; the new one is {own}"
+    ]
+    assert f"trace: {own}" in said.out
+    assert Trace(first).attributes["scene_file"] == "one/best.toml"
+    assert Trace(own).attributes["scene_file"] == "two/best.toml"
+    assert main(["run", "results/one/best.toml"]) == main(["run", "results/two/best.toml"]) == 0
+    assert capsys.readouterr().out.count("replaced: the trace of this name") == 2
+    assert sorted(Path("results").glob("*.h5")) == sorted([first, own])
+
+
 def test_a_failed_run_leaves_an_older_one() -> None:
     assert main(["run", scene(HEAD + SHAFT)]) == 0
     older = Path("results/scene.h5").read_bytes()

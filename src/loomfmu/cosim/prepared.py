@@ -23,8 +23,9 @@ from .master.master import Interrupted
 from .planning.plan import InMemory, Stepping, build_needed, early_end, explained, record
 from .planning.requested import check_bounds, claims_of, judged_by, recorded, shaft_angle, with_rates
 from .planning.windows import window_grid
+from .provenance import attributes
 from .reading import check_set, checked
-from .recorded import bar, finish, kept, target_of, usual_path, writer_of, written_at
+from .recorded import bar, finish, kept, own_path, target_of, writer_of, written_at
 from .results import Evaluation, Result
 from .scenes.instances import altered
 from .scenes.keys import WINDOWS
@@ -132,6 +133,7 @@ class Pattern:
         build_needed(plan.pruned.scene, report=progress)
         target = target_of(plan, path, overwrite, progress)
         replaced = written_at(target)
+        about = attributes(plan, flavour, target.parent)  # paths hold before an FMU changes the directory
         everything = range(len(self.claims))
         coarser = known
         if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
@@ -140,7 +142,7 @@ class Pattern:
         with stepping.stepped(plan) as master:
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")
-            writer = writer_of(plan, stepping.channels, path, target, flavour)
+            writer = writer_of(plan, stepping.channels, path, target, about)
             with kept(writer, path), bar(plan, progress) as advance:
                 begun = perf_counter()
                 record(master, writer, advance)
@@ -237,7 +239,7 @@ class Prepared:
         """Run with these values, record and judge; as `loomfmu.run`."""
         with self._turn:
             pattern, scene = self._ready(set)
-            path = usual_path(scene) if output is None else path_of(output, "output")
+            path = own_path(scene, progress) if output is None else path_of(output, "output")
             return pattern.run(scene, path, self._flavour, overwrite, progress)
 
     def close(self) -> None:

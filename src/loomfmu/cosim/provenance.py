@@ -1,7 +1,9 @@
 """The provenance of a run in its trace: enough to see what was run, and to run it again."""
 
 import json
+import os
 import shlex
+from pathlib import Path
 from typing import Any
 
 from .importing.fmus import Fmu
@@ -11,8 +13,8 @@ from .scenes.instances import Instance
 from .scenes.scene import Scene
 
 
-def attributes(plan: Plan, flavour: str) -> dict[str, str]:
-    """The attributes of a trace's root.
+def attributes(plan: Plan, flavour: str, folder: Path) -> dict[str, str]:
+    """The attributes of the root of a trace in a folder.
 
     `heading` is made of the values of the run, `title` is the scene's own. `files` are the texts of the files
     that the scene names, `set` the values that differ from the scene, as `--set` takes them; `command`
@@ -24,6 +26,7 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         "title": scene.title,
         "heading": heading(scene),
         "scene": scene.text,
+        "scene_file": scene_file(scene, folder),
         **({"files": json.dumps(scene.texts)} if scene.texts else {}),
         **({"package_sha256": scene.package_sha256} if scene.package else {}),
         "wires": json.dumps(plan.wires),
@@ -41,6 +44,17 @@ def attributes(plan: Plan, flavour: str) -> dict[str, str]:
         **{f"fmu_{name}_version": fmu.version for name, fmu in sorted(fmus.items())},
         **{f"fmu_{name}_sha256": fmu.sha256 for name, fmu in sorted(fmus.items())},
     }
+
+
+def scene_file(scene: Scene, folder: Path) -> str:
+    """Return the path of a scene's file or package from a folder; empty if it was read from neither."""
+    source = scene.package or scene.file
+    if source is None:
+        return ""
+    try:
+        return Path(os.path.relpath(source.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # Windows: on another drive
+        return source.resolve().as_posix()
 
 
 def groups(plan: Plan) -> dict[str, dict[str, Any]]:

@@ -1,6 +1,6 @@
 """The trace of a run: where it may be written, its blocks, its verdicts and its final name."""
 
-import hashlib
+import os
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .. import printed
 from ..errors import LoomfmuError, why
-from ..files import LONGEST_STEM, cannot_write, check_target, short_stem
+from ..files import LONGEST_STEM, cannot_write, check_target, digest, short_stem
 from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Early, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
@@ -17,7 +17,7 @@ from ..traces.places import abandoned
 from .master.master import Interrupted
 from .planning.plan import Plan
 from .planning.requested import output_port
-from .provenance import attributes, groups, texts
+from .provenance import groups, scene_file, texts
 from .scenes.scene import Scene
 from .scenes.scene_files import files_of
 
@@ -36,9 +36,31 @@ def usual_path(scene: Scene, ending: str = ".h5") -> Path:
     plain = re.sub(r"(?<=\d)\s+(?=[^\s\d])", "", given)  # between a number and its unit
     shown = UNSAFE.sub("-", re.sub(r"\s", "", plain))[:LONGEST]
     if shown != plain:
-        shown += f"-{hashlib.sha256(given.encode()).hexdigest()[:8]}"
+        shown += f"-{digest(given)}"
     name = short_stem(scene.name, LONGEST_STEM - len(shown) - 1)
     return Path("results") / f"{name}{shown and '_'}{shown}{ending}"
+
+
+def own_path(scene: Scene, report: bool) -> Path:
+    """Return the default path of a scene's trace.
+
+    Where the trace of another scene has it, a digest of the path of this scene keeps them apart; with
+    `report`, a line says so.
+    """
+    path = usual_path(scene)
+    ours = scene_file(scene, path.parent)
+    try:
+        with Trace(path) as trace:
+            theirs = str(trace.attributes.get("scene_file", ours))
+    except (LoomfmuError, OSError):  # there is none, or a file of another kind
+        return path
+    if theirs == ours:
+        return path
+    own = path.with_stem(f"{path.stem}-{digest(ours)}")
+    if report:
+        other = f", {os.path.normpath(path.parent / theirs)}" if theirs else ""
+        printed.complain(f"{path}: it is the trace of another scene{other}; the new one is {own}")
+    return own
 
 
 def written_at(path: Path) -> str:
@@ -107,10 +129,12 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
         raise cannot_write(path, error) from None
 
 
-def writer_of(plan: Plan, channels: list[Channel], path: Path, target: Path, flavour: str) -> TraceWriter:
-    """Return a writer of the trace, with the file begun."""
+def writer_of(
+    plan: Plan, channels: list[Channel], path: Path, target: Path, about: dict[str, str]
+) -> TraceWriter:
+    """Return a writer of the trace, with the file begun; `about` are the attributes of the run."""
     try:
-        return TraceWriter(target, attributes(plan, flavour), channels, groups(plan))
+        return TraceWriter(target, about, channels, groups(plan))
     except OSError as error:
         raise cannot_write(path, error) from None
 

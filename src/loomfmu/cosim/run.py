@@ -25,7 +25,8 @@ def run(
         scene: path of a scene file or a system package (.ssp), or a scene that was read before
         set: values that differ from the scene's, such as {"shaft.speed": "685 rpm"}; numbers are SI
         output: path of the trace; `results/<scene>.h5` below the current directory by default, and
-            `results/<scene>_<values>.h5` with other values than the scene's
+            `results/<scene>_<values>.h5` with other values than the scene's; with eight hex digits more
+            where the trace of another scene file has that name
         progress: report the size of a large trace beforehand and show a progress bar for a long run, if
             standard error is a terminal
         flavour: "native" or "live" FMUs; live ones also where no native one is available, with a warning
