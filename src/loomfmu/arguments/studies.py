@@ -75,7 +75,8 @@ def optimize(commands: Any) -> None:
     optimize = commands.add_parser(
         "optimize",
         help="find the best design within ranges and choices, all claims met",
-        epilog="Exit status: 0 a design was found; 1 none meets all claims; 2 bad input or a failed FMU.",
+        epilog="Exit status: 0 all claims hold in the best design; 1 one is undecided there, or no design"
+        " meets all claims; 2 bad input or a failed FMU.",
     )
     optimize.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
     add_place(optimize, "STUDY")

@@ -19,4 +19,4 @@ def run(options: Any) -> int:
     )
     warn(found.warnings)
     show(found)
-    return 0 if found else 1
+    return 0 if found.holds else 1

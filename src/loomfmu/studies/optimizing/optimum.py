@@ -68,6 +68,19 @@ class Optimum:
         return bool(self.front)
 
     @property
+    def holds(self) -> bool:
+        """Return whether there is a best design, and in each of them all claims hold that must.
+
+        The search goes up to the bounds, so a claim that binds may be undecided there.
+        """
+        required = self.study.required
+        return bool(self.front) and all(
+            verdict or not needed
+            for best in self.front
+            for verdict, needed in zip(best.verdicts, required, strict=True)
+        )
+
+    @property
     def values(self) -> dict[str, Value]:
         """Those of the first design, by their keys; empty without one."""
         return self.front[0].values if self.front else {}

@@ -74,8 +74,15 @@ def _panels(count: int) -> tuple[Any, list[Any]]:
 
 
 def _points(axes: Any, x: Floats, y: Floats, allowed: Any) -> None:
-    axes.plot(x[~allowed], y[~allowed], ".", color=GREY, markersize=3, label="a claim fails")
-    axes.plot(x[allowed], y[allowed], ".", color=COLOURS[0], markersize=4, label="all claims hold")
+    axes.plot(x[~allowed], y[~allowed], ".", color=GREY, markersize=3, label="not all claims hold")
+    axes.plot(
+        x[allowed],
+        y[allowed],
+        ".",
+        color=COLOURS[0],
+        markersize=4,
+        label="all claims hold, numerical errors aside",
+    )
 
 
 def _focus(panels: Sequence[Any], goal: Floats) -> None:

@@ -10,7 +10,8 @@ def show(found: Optimum) -> None:
     study = found.study
     before = found.runs - found.ran
     again = f" ({before} of them run before)" if before > 0 else ""
-    say(f"{study.title}: {found.runs} designs{again}, {found.allowed} of which meet {study.wanted}")
+    met = f"{found.allowed} of which meet {study.wanted} (numerical errors aside)"
+    say(f"{study.title}: {found.runs} designs{again}, {met}")
     if found.front and len(study.goals) == 1:
         (best,) = found.front
         rows = value_rows(found, best)
