@@ -84,7 +84,12 @@ def optimize(commands: Any) -> None:
 
 def fit(commands: Any) -> None:
     """Arguments of `fit`."""
-    fit = commands.add_parser("fit", help="find parameters of a scene from measured curves")
+    fit = commands.add_parser(
+        "fit",
+        help="find parameters of a scene from measured curves",
+        epilog="Exit status: 0 parameters were found; 1 a signal is hardly explained, or a parameter ended at"
+        " an end of its range; 2 bad input or a failed FMU.",
+    )
     add_scene(fit)
     fit.add_argument(
         "data",

@@ -121,7 +121,7 @@ def rewritten(scene: Scene, values: Mapping[str, Any], description: str = "") ->
     tomlkit = _tomlkit()
     document = tomlkit.parse(scene.text)
     if description:
-        document["description"] = description
+        document["description"] = tomlkit.string(description, multiline="\n" in description)
     for key in replaced(values):
         document.pop(key, None)
     for key, value in values.items():

@@ -1,6 +1,7 @@
 """Fits: known values found again, intervals that cover them, published tests, what is refused."""
 
 import csv
+import tomllib
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -334,6 +335,34 @@ def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFix
     assert "is an input of this command" in capsys.readouterr().err
     assert main([*words, "--output", str(tmp_path / "fitted.txt")]) == 2
     assert "a scene is written as .toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("factor", "range_", "said"),
+    [
+        (1.0, "0.82..2", ["belt.prescribed_length_factor ended at 0.82, the end of its range: widen it"]),
+        (
+            1e3,  # N in a column of kN
+            "0.5..2",
+            [
+                "belt.critical_force: the fit explains nothing of the variation of the data;"
+                " check the units and the rest of the scene",
+                "belt.prescribed_length_factor ended at 0.5, the end of its range",
+            ],
+        ),
+    ],
+)
+def test_a_fit_that_is_of_no_use_has_status_1_and_its_scene_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], factor: float, range_: str, said: list[str]
+) -> None:
+    rows = [(length, factor * BENT / (0.8 * length) ** 2) for length in np.linspace(0.3, 0.9, 25)]
+    output = tmp_path / "fitted.toml"
+    words = ["--vary", f"belt.prescribed_length_factor={range_}", "--output", str(output)]
+    assert main(["fit", *map(str, written(tmp_path, rows)), *words]) == 1
+    printed = capsys.readouterr().out
+    assert "e+02 %" not in printed
+    description = tomllib.loads(output.read_text())["description"].splitlines()
+    assert set(said) <= set(description) & set(printed.splitlines())
 
 
 def test_an_accuracy_is_refused(tmp_path: Path) -> None:

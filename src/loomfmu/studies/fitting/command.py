@@ -43,4 +43,4 @@ def run(options: Any, overrides: dict[str, Any]) -> int:
     warn(found.warnings)
     show(found)
     say(*(f"written: {path}" for path in (output, picture) if path is not None))
-    return 0
+    return 0 if found else 1

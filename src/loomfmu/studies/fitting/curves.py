@@ -15,6 +15,7 @@ TURN = 2.0 * math.pi
 ROUNDING = 1e-9  # of a turn, or of the time
 EXACT = 1e-4  # of the largest value: an interpolation as good needs no word
 COARSE = 0.1  # of the difference from the measurement: an error of the interpolation as large is noted
+UNEXPLAINED = 0.3  # share of the variation that may remain
 REFINED = 15.0  # a cubic's error at every second sample, less that at all of them, in errors at all
 
 
@@ -44,6 +45,11 @@ class Compared:
         """The difference as a share of the measured values' standard deviation; 0 if that is 0."""
         spread = float(np.std(self.measured))
         return self.rms / spread if spread else 0.0
+
+    @property
+    def explained(self) -> bool:
+        """Return whether enough of the measurement is explained for the fit to be of use."""
+        return self.share <= UNEXPLAINED
 
     @property
     def note(self) -> str:

@@ -19,6 +19,7 @@ from ...errors import LoomfmuError, listed, shown, suggestion
 from .. import rewritten
 from ..span import Span, set_twice, span_of, warnings_of
 from . import measured
+from .cautions import MORE, UNTRUSTED, cautions
 from .curves import Compared, Floats
 from .independence import Residuals, Shift
 from .intervals import Fitted, sure
@@ -27,8 +28,6 @@ from .measured import Measured
 from .offset import offset_of
 from .search import Search, settings
 
-MORE = 10  # values than parameters, of each signal whose noise must be known
-UNTRUSTED = "not to be trusted"  # of an interval
 HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
 
 
@@ -36,6 +35,7 @@ HEADINGS = ("parameter", "fitted", "95 % interval", "in the scene")
 class Fit:
     """Parameters of a scene that come closest to a measurement.
 
+    It is false where a signal is hardly explained, or a parameter ended at an end of its range.
     `correlations`, shape (p, p), are those of the parameters' errors, NaN for one at its bound. `curves` has
     for each signal what was measured, what is computed there and the root mean square of the difference;
     `residuals` and `shift` say whether these differences are independent, as the intervals assume: each
@@ -54,6 +54,10 @@ class Fit:
     notes: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
+    def __bool__(self) -> bool:
+        explained = all(each.explained for each in self.curves)
+        return explained and not any(each.at_bound for each in self.parameters)
+
     @property
     def title(self) -> str:
         """The heading of the loom, without the values that were found."""
@@ -70,14 +74,15 @@ class Fit:
         return settings([each.span for each in self.parameters], [each.value for each in self.parameters])
 
     def write(self, path: str | Path, overwrite: bool = False) -> Path:
-        """Write the scene with the fitted values as a TOML file. Raises LoomfmuError."""
+        """Write the scene with the fitted values, and in its description what to be careful about, as a TOML
+        file. Raises LoomfmuError.
+        """
         given = [f"{key} = {value}" for key, value in texts(self.scene.overrides).items()]
         fixed = f", and with {listed(given)}" if given else ""
         name = rewritten.check(self.scene).name
         origin = f"{name} with {listed(self.values)} fitted to {self.data.path.name}{fixed}."
-        if not self.trusted:
-            origin += " The residuals are not independent: how sure the values are is not known."
-        return rewritten.write(self.scene, self.values, Path(path), overwrite, origin)
+        about = "\n".join([origin, *cautions(self)])
+        return rewritten.write(self.scene, self.values, Path(path), overwrite, about)
 
     def __repr__(self) -> str:
         found = ", ".join(f"{each.span.key} = {each.span.show(each.value)}" for each in self.parameters)
