@@ -319,7 +319,7 @@ def test_coarse_steps_are_noted(tmp_path: Path) -> None:
     scene, data = written(tmp_path, rows)
     scene.write_text(BELT.replace("step = 0.01", "step = 0.1"))
     found = fit(scene, data, vary="belt.prescribed_length_factor=0.5..2")
-    assert "interpolation is off by" in found.notes[0] and found.notes[0].endswith("take more steps")
+    assert "interpolation is off by" in found.notes[-1] and found.notes[-1].endswith("take more steps")
 
 
 def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

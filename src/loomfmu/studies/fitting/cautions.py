@@ -1,16 +1,13 @@
 """What to be careful about in a fit, in words."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 from ... import units
 from ...errors import listed
-from .intervals import doubtful
+from .curves import Compared
+from .intervals import Sure, doubtful
 from .offset import DISPLAY
-
-if TYPE_CHECKING:
-    from .fit import Fit
 
 MORE = 10  # values than parameters, of each signal whose noise must be known
 UNTRUSTED = "not to be trusted"  # of an interval
@@ -18,14 +15,17 @@ REACH = 2.0  # standard errors: what the residuals would not show
 STRONG = 0.9  # correlation that is worth a word
 
 
-def cautions(found: "Fit") -> list[str]:
-    """Return cautions: residuals that are not noise, ends of ranges, correlations, coarse steps."""
-    unexplained = [each for each in found.curves if not each.explained]
+def cautions(curves: Sequence[Compared], found: Sure, over: str) -> tuple[str, ...]:
+    """Return cautions: residuals that are not noise, ends of ranges, correlations, coarse steps.
+
+    `over` is the axis of the data, "shaft_angle" or "time".
+    """
+    unexplained = [each for each in curves if not each.explained]
     lines = [
         f"{each.signal}: the fit {_explains(each.share)}; check the units and the rest of the scene"
         for each in unexplained
     ]
-    lines += [*_dependent(found)]
+    lines += [*_dependent(found, over)]
     lines += [
         f"the data do not determine {each.span.key}: its interval is wider than the range that was searched"
         for each in found.parameters
@@ -44,7 +44,7 @@ def cautions(found: "Fit") -> list[str]:
             lines.append(
                 f"errors of {names} are correlated ({correlation:.3f}): the data barely tell them apart"
             )
-    return [*lines, *found.notes]
+    return (*lines, *(each.note for each in curves if each.note))
 
 
 def _explains(share: float) -> str:
@@ -54,9 +54,9 @@ def _explains(share: float) -> str:
     return f"leaves {100.0 * share:.3g} % of the variation of the data unexplained"
 
 
-def _dependent(found: "Fit") -> Iterator[str]:
+def _dependent(found: Sure, over: str) -> Iterator[str]:
     """Yield evidence against independent residuals, and the consequences."""
-    doubts = doubtful(found.residuals, found.shift)
+    doubts = doubtful(found.residuals, found.offset)
     for each in found.residuals:
         if each in doubts:
             yield (
@@ -67,22 +67,22 @@ def _dependent(found: "Fit") -> Iterator[str]:
             )
         elif each.count < len(found.parameters) + MORE:
             yield f"{each.signal}: {each.count} values are too few to see whether residuals are independent"
-    if found.shift is None:
+    if found.offset is None:
         return
-    if found.shift in doubts:
-        size, error = (_offset(found, value) for value in (found.shift.size, REACH * found.shift.error))
+    if found.offset in doubts:
+        size, error = (_offset(over, value) for value in (found.offset.size, REACH * found.offset.error))
         yield (
             f"the residuals show an offset of the data, {size} +- {error} to be added to all places; the"
             f" intervals are {UNTRUSTED}: --offset fits it"
         )
         return
     for one in found.parameters:
-        if one.shift < REACH * found.shift.error:
+        if one.shift < REACH * found.offset.error:
             yield (
-                f"{one.span.key}: an offset of the data of {_offset(found, one.shift)} moves it to the end of"
+                f"{one.span.key}: an offset of the data of {_offset(over, one.shift)} moves it to the end of"
                 " its interval, and the residuals would not show it: --offset allows for it"
             )
 
 
-def _offset(found: "Fit", value: float) -> str:
-    return units.show(float(f"{value:.2g}"), DISPLAY[found.data.over])
+def _offset(over: str, value: float) -> str:
+    return units.show(float(f"{value:.2g}"), DISPLAY[over])

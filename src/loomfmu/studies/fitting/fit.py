@@ -39,7 +39,7 @@ class Fit:
     `correlations`, shape (p, p), are those of the parameters' errors, NaN for one at its bound. `curves` has
     for each signal what was measured, what is computed there and the root mean square of the difference;
     `residuals` and `shift` say whether these differences are independent, as the intervals assume: each
-    signal's, and all with an offset of the data, unless that is fitted.
+    signal's, and all with an offset of the data, unless that is fitted. `notes` say what to be careful about.
     """
 
     scene: Scene
@@ -81,7 +81,7 @@ class Fit:
         fixed = f", and with {listed(given)}" if given else ""
         name = rewritten.check(self.scene).name
         origin = f"{name} with {listed(self.values)} fitted to {self.data.path.name}{fixed}."
-        about = "\n".join([origin, *cautions(self)])
+        about = "\n".join([origin, *self.notes])
         return rewritten.write(self.scene, self.values, Path(path), overwrite, about)
 
     def __repr__(self) -> str:
@@ -169,7 +169,7 @@ def fit(
         ended = search.found()
         known = sure(found, spans, ended, LOSSES[loss])
         warnings = warnings_of(spans, loom.evaluate().warnings)
-    notes = tuple(note for each in ended.curves if (note := each.note))
+    notes = cautions(ended.curves, known, found.over)
     return Fit(
         loom.scene,
         found,

@@ -2,7 +2,6 @@
 
 from ... import printed
 from ...printed import say
-from .cautions import cautions
 from .fit import HEADINGS, Fit, rows
 
 
@@ -14,7 +13,7 @@ def show(found: Fit) -> None:
         (f"{key}:", value, f"interval {interval};", f"scene {own}") for key, value, interval, own in table
     ]
     printed.show(HEADINGS, table, entries)
-    say(*remains(found), *cautions(found), "", f"{found.runs} runs")
+    say(*remains(found), *found.notes, "", f"{found.runs} runs")
 
 
 def remains(found: Fit) -> list[str]:
