@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ NO_RESULT = "#d0d0d0"
 RED = "#D55E00"
 DASHES: Any = ("-", "--", ":", "-.")
 LEVELS = 14
+TITLE, LEGEND = 80, 95  # letters in a line that is as wide as the picture
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,8 @@ class _Picture:
             for axis in plan.axes
             if plan.map is not None and axis.key in plan.map.at
         ]
-        self.axes.set_title("\n".join([plan.title, *([", ".join(picked)] if picked else [])]), fontsize=11)
+        words = [plan.title, *([", ".join(picked)] if picked else [])]
+        self.axes.set_title("\n".join(fill(each, TITLE) for each in words), fontsize=11)
 
     def save(self, path: Path) -> None:
         """Write it: whole, or not under that name."""
@@ -256,7 +259,7 @@ class _Picture:
     # ---- what they share
 
     def _legend(self, label: str, **style: Any) -> None:
-        self.handles.append(Line2D([], [], label=label, **style))
+        self.handles.append(Line2D([], [], label=fill(label, LEGEND), **style))
 
     def _ticks(self, x: _Scale, y: _Scale | None) -> None:
         for scale, axis, rescale in (

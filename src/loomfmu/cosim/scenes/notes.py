@@ -1,6 +1,8 @@
 """Warnings about a scene."""
 
 from collections.abc import Container, Iterable, Sequence
+from pathlib import Path
+from typing import Any
 
 from ... import machines
 from ...errors import LoomfmuError, listed
@@ -115,6 +117,25 @@ def _unlike(one: Instance, other: Instance) -> list[str]:
         for name in shared
         if name in other.fmu.ports and name not in LOADS_OF_RAPIER and value(one, name) != value(other, name)
     ]
+
+
+def added(tables: dict[str, Any], directory: Path) -> Iterable[str]:
+    """Warnings about numbered tables that add a frame or a belt to a standard loom, perhaps by a slip."""
+    loom = standard_loom.loom(tables["loom"], directory) if "loom" in tables else {}
+    frames = [name for name in loom if standard_loom.stem(name) == "heald"]
+    for name in tables if loom else ():
+        stem = standard_loom.stem(name)
+        if name in loom or stem == name or {"component", "fmu"} & tables[name].keys():
+            continue
+        rapier = name.replace(stem, "weft")
+        meant = f'or write component = "{standard_loom.COMPONENT_OF.get(stem)}" if it is meant'
+        if stem == "heald" and frames:
+            yield f"[{name}] adds a frame to {listed(frames)} of the weave; set one of these, {meant}"
+        elif stem in ("belt", "belt_motion") and rapier not in {*loom, *tables}:
+            yield (
+                f"[{name}] adds another belt to weft, since there is no {rapier};"
+                f" set loom.both_rapiers = true for the belt of the taker, {meant}"
+            )
 
 
 def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:

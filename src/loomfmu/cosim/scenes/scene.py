@@ -151,7 +151,8 @@ def parse(
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     keys = [(owner, key) for owner, table in given.items() for key in table]
     check_free(scene, keys)
-    return replace(scene, notes=(*scene.notes, *notes.without_effect(instances, keys)))
+    doubts = (*notes.added(tables, Path(directory)), *notes.without_effect(instances, keys))
+    return replace(scene, notes=(*scene.notes, *doubts))
 
 
 def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
