@@ -127,6 +127,16 @@ def test_other_axes_stand_at_the_value_that_was_picked(drawn: Any) -> None:
     assert picture.axes.get_lines()[1].get_xdata()[0] == pytest.approx(limit(0.5), abs=TOLERANCE)
 
 
+def test_long_titles_and_claims_fit_into_the_picture(drawn: Any, tmp_path: Path) -> None:
+    asked = '[map]\nx = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
+    picture = drawn("[grid]\n" + SPEEDS + CLEARANCES + asked)
+    picture._legend("a claim whose name is far longer than the picture is wide " * 4)
+    picture.axes.set_title("")
+    picture.save(tmp_path / "long.png")
+    (box,) = (each.get_window_extent() for each in picture.figure.legends[-1:])
+    assert box.x0 >= 0.0 and box.x1 <= 800.0
+
+
 def test_a_sample_is_points(drawn: Any) -> None:
     ranges = '"shaft.speed" = ["500 rpm", "780 rpm"]\n"belt.bending_stiffness" = '
     text = "[sample]\ncount = 25\nseed = 1\n" + ranges + "{ from = 0.1, to = 1.0, logarithmic = true }\n"

@@ -273,6 +273,10 @@ def test_what_cannot_be_searched_is_refused_in_one_line(given: dict[str, Any], s
 def test_values_that_cannot_be_run_are_refused_with_those_that_can() -> None:
     with pytest.raises(LoomfmuError, match=r"heald\.stroke = 49 mm: claim 'clear_shed' .* can be run$"):
         limit(DEMO, vary="heald.stroke", set={"steps_per_revolution": 90, "revolutions": 1})
+    parts = r"of the values tried, -700 to -350 rev/min and 350 to 700 rev/min can be run$"
+    with pytest.raises(LoomfmuError, match=parts):  # the shaft may not stand still between them
+        scene = parse(LOOM + '[[claims]]\nkind = "lowest_margin"\nbound = 0.1\n')
+        limit(scene, vary="shaft.speed=-700rpm..700rpm", points=5)
 
 
 def test_a_scene_without_claims_has_no_limits() -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any
 
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...cosim.scenes.headings import heading
-from ...errors import LoomfmuError, shown
+from ...errors import LoomfmuError, listed, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
 from ..span import Span, warnings_of
@@ -67,13 +67,13 @@ class _Runs(Evaluations):
                 failed[value] = error
             advance(1)
         if failed:
-            good = [value for value in grid if value not in failed]
+            good = [list(each) for fails, each in groupby(grid, failed.__contains__) if not fails]
             first = next(iter(failed.values()))
             if not good:
                 raise first
             (span,) = self._spans
-            hint = f"of the values tried, {span.number(good[0])} to {span.show(good[-1])} can be run"
-            raise LoomfmuError(f"{first}; {hint}")
+            parts = listed(f"{span.number(each[0])} to {span.show(each[-1])}" for each in good)
+            raise LoomfmuError(f"{first}; of the values tried, {parts} can be run")
 
     def distance(self, number: int) -> Function:
         """The distance of a claim, counted from 0, from its bound; NaN where it fails without one."""
