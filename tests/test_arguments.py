@@ -89,9 +89,10 @@ def test_the_package_lists_its_public_names() -> None:
     found: dict[str, Any] = {}
     exec("from loomfmu import *", found)
     assert public <= set(found)
-    assert {"run", "evaluate", "sweep", "judge", "Trace", "design"} <= public
+    assert {"run", "evaluate", "sweep", "judge", "Trace", "design", "report", "live_page"} <= public
     assert not {"annotations", "Any", "TYPE_CHECKING"} & public
     assert loomfmu.design.loom.safe_speed("WL680-3600").speed > 0.0
+    assert all(hasattr(loomfmu.__getattr__(each), "write") for each in ("report", "live_page"))
     assert loomfmu.__version__ == metadata.version("loomfmu")
 
 

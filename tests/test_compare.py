@@ -303,6 +303,23 @@ def test_a_tolerance_that_cannot_be_read_names_its_option(
     assert "--tolerance 5apples: unknown unit 'apples'" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("second", "tolerance", "said"),
+    [
+        ("a.h5", "0.1 mm", r"tolerance = '0\.1 mm': .*does not fit.*; give a share such as \"0\.1 %\""),
+        ("a.h5", "much", r"tolerance = 'much': .* is not a quantity"),
+        (5, 1e-9, "trace = 5 is not a path"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_in_one_line(
+    tmp_path: Path, second: Any, tolerance: Any, said: str
+) -> None:
+    first = trace(tmp_path / "a.h5")
+    with pytest.raises(LoomfmuError, match=said):
+        loomfmu.compare(first, first if second == "a.h5" else second, tolerance=tolerance)
+    assert loomfmu.compare(first, first, tolerance="1 %").equal
+
+
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     a, b = str(trace(tmp_path / "a.h5")), str(trace(tmp_path / "b.h5", lambda angle: 1.001 * np.sin(angle)))
     assert cli.main(["compare", a, a]) == 0

@@ -55,6 +55,11 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
     # the samples themselves: nothing is interpolated
     np.testing.assert_array_equal(folded["belt.margin"].values.ravel(), result.trace["belt.margin"][:720])
     np.testing.assert_array_equal(folded["belt.at_risk"].values.ravel(), result.trace["belt.at_risk"][:720])
+    for wrong in (-3, 0.5):
+        with pytest.raises(
+            LoomfmuError, match=f"fold = {wrong} must be true or a number of angles, 1 or more"
+        ):
+            result.trace.to_xarray("belt.margin", fold=wrong)
     other = result.trace.to_xarray("heald_1.lift", fold=500)
     exact = np.interp(
         np.arange(1000) / 500, result.trace.shaft_angle / (2 * np.pi), result.trace["heald_1.lift"]

@@ -3,7 +3,7 @@
 `run` co-simulates a scene and records it, `evaluate` does so in memory, `prepare` gets it ready for many
 runs, `sweep` runs it with many values, `limit` finds how far a value may go, `optimize` the best design,
 `fit` values from measured curves; `Trace` reads a recorded run, `judge` judges a claim on it, `compare`
-compares two. `design` solves the same physics for a design.
+compares two. `design` solves the same physics for a design; `report` and `live_page` write pages.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,8 @@ from .version import __version__ as __version__
 
 if TYPE_CHECKING:
     from . import design as design
+    from . import live_page as live_page
+    from . import report as report
     from .cosim.claims.claims import judge as judge
     from .cosim.prepared import Prepared as Prepared
     from .cosim.results import Evaluation as Evaluation
@@ -56,6 +58,8 @@ _HOMES = {
     "evaluate": "cosim.run",
     "prepare": "cosim.run",
     "judge": "cosim.claims.claims",
+    "live_page": "",
+    "report": "",
     "fit": "studies.fitting.fit",
     "limit": "studies.limits.boundary",
     "optimize": "studies.optimizing.optimize",

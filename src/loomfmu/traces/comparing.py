@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import units
-from ..errors import LoomfmuError, listed, shown
+from ..errors import LoomfmuError, listed, path_of, shown
 from ..upstream import sources_of, upstream
 from ..variables import SHARED
 from .comparison import Change, Comparison, Difference
@@ -58,7 +58,7 @@ def compare(
     first: str | Path | Trace,
     second: str | Path | Trace,
     *,
-    tolerance: float = TOLERANCE,
+    tolerance: str | float = TOLERANCE,
     absolute: Mapping[str, str | float] | None = None,
     ignore: Sequence[str] = (),
     over: Literal["angle", "time"] | None = None,
@@ -68,7 +68,7 @@ def compare(
     Args:
         first, second: traces or their files
         tolerance: what values may differ by, as a share of their signal's largest magnitude;
-            with 0 they must be equal
+            such as "0.1 %"; with 0 they must be equal
         absolute: amounts for some signals and values instead, such as {"belt.free_length": "0.1 mm"}; * and ?
             stand for parts of names
         ignore: names of signals and values that are left out, such as ["motor.*"]
@@ -78,7 +78,7 @@ def compare(
         LoomfmuError: a trace cannot be read, has no samples, or its grid does not tell whether they differ
     """
     one, two = traces = _opened(first), _opened(second)
-    allowed = Tolerance(float(tolerance), dict(absolute or {}))
+    allowed = Tolerance(_share(tolerance), dict(absolute or {}))
     kept = [_kept(trace, ignore) for trace in traces]
     values = [_kept(trace.parameters, ignore) for trace in traces]
     allowed.check([*SHARED, *(name for names in (*kept, *values) for name in names)])
@@ -139,7 +139,15 @@ def _earliest(trace: Trace, differences: Sequence[Difference]) -> Difference | N
 
 
 def _opened(given: str | Path | Trace) -> Trace:
-    return given if isinstance(given, Trace) else Trace(given)
+    return given if isinstance(given, Trace) else Trace(path_of(given, "trace"))
+
+
+def _share(tolerance: str | float) -> float:
+    try:
+        return units.parse(tolerance, "1")
+    except units.UnitError as error:
+        wanted = 'give a share such as "0.1 %", or an amount for a signal with absolute={"belt.margin": 0.1}'
+        raise LoomfmuError(f"tolerance = {shown(tolerance)}: {error}; {wanted}") from None
 
 
 def _kept(names: Any, ignore: Sequence[str]) -> list[str]:

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from numbers import Integral
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
-from ..errors import LoomfmuError
+from ..errors import LoomfmuError, shown
 from ..extras import need
 
 Floats = NDArray[np.float64]
@@ -52,7 +53,9 @@ def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
     first, last = math.ceil(turned[0] - WHOLE), math.floor(turned[-1] + WHOLE)
     if last <= first:
         raise LoomfmuError(f"{signals.name}: no whole revolution is recorded, so there is nothing to fold")
-    count = _count(turned, first, last) if fold is True else int(fold)
+    count = _count(turned, first, last) if fold is True else fold
+    if not isinstance(count, Integral) or int(count) < 1:
+        raise LoomfmuError(f"fold = {shown(fold)} must be true or a number of angles, 1 or more")
     angles = np.arange(count) / count
     places = (np.arange(first, last)[:, None] + (angles if way > 0 else 1.0 - angles)).ravel()
     dims, shape = ("revolution", "angle"), (last - first, count)

@@ -95,7 +95,7 @@ class Verdict:
         It is continuous across the bound, so a root of it is a limit. NaN where there is none: the claim has
         no value, or fails for another reason than its bound (the note says which), or the trace does not say
         which side is the right one. A claim that counts has whole steps. Where only the curve between two
-        samples passes the bound, by no more than it may be off, the claim holds with a negative distance.
+        samples passes the bound, by no more than it may be off, the claim is undecided with a negative one.
         """
         distance = self.sense * (self.worst - self.bound) + 0.0  # not -0
         known = distance < 0.0 if self.decided else math.isfinite(self.error)
