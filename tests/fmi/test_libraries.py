@@ -1,5 +1,6 @@
 """A library that a package brings is loaded only if it was built of the very source that lies there."""
 
+import ctypes
 import re
 from pathlib import Path
 
@@ -42,6 +43,20 @@ def test_one_that_does_not_match_its_source_is_not(brought: tuple[Path, Path], c
         changed.write_bytes(changed.read_bytes()[:-1])
     found = libraries.library_of.__wrapped__(source)
     assert found != library and found.read_bytes() == b"built anew"
+
+
+def test_a_machine_for_which_no_fmus_are_built_gets_libraries_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("ziglang", reason="ziglang is not installed")
+    monkeypatch.setattr(platforms, "host", lambda: "")
+    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "twice.h").write_text("static int twice(int value) { return 2 * value; }\n")
+    source = tmp_path / "four.c"
+    source.write_text(
+        '#include "twice.h"\n__attribute__((visibility("default"))) int four(void) { return twice(2); }\n'
+    )
+    assert ctypes.CDLL(str(libraries.needed_library(source))).four() == 4
 
 
 def test_make_wheel_builds_nothing_in_the_checkout() -> None:

@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,7 +13,8 @@ from ...errors import LoomfmuError
 from ...extras import install
 from ..cache import compiler_environment
 from .fat_binary import fat_binary
-from .platforms import COMPILER, PLATFORMS, SHIPPED, compiler, platform_of, stamp
+from .platforms import COMPILER, HERE, PLATFORMS, SHIPPED, compiler, platform_of, stamp
+from .sources import code_of
 
 # no fused multiply-add, as in Python; integers wrap alike in every build
 ARITHMETIC = ("-O2", "-ffp-contract=off", "-fwrapv")
@@ -57,23 +57,25 @@ def mingw_licence() -> bytes:
     return (_required() / "lib" / "libc" / "mingw" / "COPYING").read_bytes()
 
 
-def library_identity(source: Path) -> str:
-    """What a shared library of this source depends on, as a name for a cache. Raises as `library`."""
+def library_identity(source: Path, target: str = "") -> str:
+    """What a library of this source depends on, as a name for a cache. Raises as `library`."""
     _required()
-    return hashlib.sha256(source.read_bytes() + stamp(COMPILER).encode()).hexdigest()
+    return hashlib.sha256((target + repr(code_of(source)) + stamp(COMPILER)).encode()).hexdigest()
 
 
 def library(source: Path, platform: str) -> bytes:
-    """One C file as a shared library for all processors of a platform.
+    """One C file, with the headers beside it, as a shared library for a platform.
 
-    Raises LoomfmuError if there is no compiler, or if compilation fails.
+    It is for all processors of the platform; without one it is for this machine. Raises LoomfmuError if there
+    is no compiler, or if compilation fails.
     """
-    suffix, targets = PLATFORMS[platform].suffix, PLATFORMS[platform].targets
+    wanted = PLATFORMS.get(platform, HERE)
     with tempfile.TemporaryDirectory(prefix="loomfmu-") as name:
-        directory, output = Path(name), Path(f"{source.stem}{suffix}")
-        shutil.copy(source, directory)
+        directory, output = Path(name), Path(f"{source.stem}{wanted.suffix}")
+        for file, text in code_of(source).items():
+            (directory / file).write_text(text, encoding="utf-8")
         parts = []
-        for target in targets:
+        for target in wanted.targets:
             _compile(source.name, output, target, directory)
             parts.append((directory / output).read_bytes())
     return parts[0] if len(parts) == 1 else fat_binary(parts)

@@ -1,4 +1,4 @@
-"""Libraries that do in C what this package also does in Python, with the same bits.
+"""Libraries in C: one judges claims, the other does with the same bits what this package does in Python.
 
 Each comes with the package, or is built once where a compiler is installed. One that comes with it is loaded
 only if it is, to the last byte, what was built of the source beside it: each has its digest with it.
@@ -6,36 +6,50 @@ only if it is, to the last byte, what was built of the source beside it: each ha
 
 import hashlib
 from collections.abc import Iterable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from ...errors import LoomfmuError
 from ...files import ANY, write_file
 from ..cache_entries import STEPPER, made_file
 from . import platforms
+from .sources import code_of
 
 
 @cache
 def library_of(source: Path) -> Path | None:
-    """The library of a C file, if there is one or it can be built."""
-    platform = platforms.host()
-    if not platform:
-        return None
-    shipped = _shipped(source, platform)
-    if _is_of(shipped, source):
-        return shipped
-    from . import compiler  # a package that brings its libraries needs none
-
+    """Return the library of a C file, if there is one or it can be built."""
     try:
-        identity = compiler.library_identity(source)
-        return made_file(STEPPER, identity, shipped.name, lambda: compiler.library(source, platform))
+        return needed_library(source)
     except LoomfmuError:  # no compiler, or no place to keep what it makes
         return None
 
 
+def needed_library(source: Path) -> Path:
+    """Return the library of a C file. Raises LoomfmuError if it is not here and cannot be built."""
+    platform = platforms.host()
+    shipped = _shipped(source, platform)
+    if platform and _is_of(shipped, source):
+        return shipped
+    from . import compiler  # a package that brings its libraries needs none
+
+    identity = compiler.library_identity(source)
+    return made_file(STEPPER, identity, shipped.name, lambda: compiler.library(source, platform))
+
+
+def module_of(source: Path) -> bytes:
+    """A C file as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
+    from . import compiler
+
+    name, identity = f"{source.stem}.wasm", compiler.library_identity(source, "wasm")
+    make = partial(compiler.web_assembly, source.name, code_of(source))
+    return made_file(STEPPER, identity, name, make).read_bytes()
+
+
 def _shipped(source: Path, platform: str) -> Path:
     """Where the library of a platform lies in a package that brings it."""
-    return platforms.SHIPPED / platform / f"{source.stem}{platforms.PLATFORMS[platform].suffix}"
+    suffix = platforms.PLATFORMS.get(platform, platforms.HERE).suffix
+    return platforms.SHIPPED / platform / f"{source.stem}{suffix}"
 
 
 def _seal_of(library: Path) -> Path:
@@ -44,7 +58,8 @@ def _seal_of(library: Path) -> Path:
 
 
 def _seal(source: Path, library: bytes) -> bytes:
-    return hashlib.sha256(hashlib.sha256(source.read_bytes()).digest() + library).hexdigest().encode()
+    code = hashlib.sha256(repr(code_of(source)).encode())
+    return hashlib.sha256(code.digest() + library).hexdigest().encode()
 
 
 def _is_of(library: Path, source: Path) -> bool:

@@ -38,6 +38,8 @@ PLATFORMS = {
         ("-fPIC", "-Wl,-install_name,@rpath/{name}.dylib"),
     ),
 }
+# this machine, where it is none of them: libraries are built for it, but no FMUs
+HERE = Platform(".so", {"native": ""}, ("-fPIC", "-lm"))
 SYSTEMS = {"linux": ("linux64", ("x86_64",)), "win32": ("win64", ("AMD64",)), "darwin": ("darwin64", ())}
 MACHINE = f"{sys.platform} on {platform.machine()}"
 
@@ -59,7 +61,7 @@ def check_platforms(platforms: tuple[str, ...]) -> tuple[str, ...]:
 
 def platform_of(target: str) -> Platform:
     """The platform that a target of the compiler belongs to."""
-    return next(each for each in PLATFORMS.values() if target in each.targets)
+    return next((each for each in PLATFORMS.values() if target in each.targets), HERE)
 
 
 @cache
