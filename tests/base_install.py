@@ -17,6 +17,7 @@ if __name__ == "__main__":
 import loomfmu
 from loomfmu.cli import main
 from loomfmu.design import cam_export
+from loomfmu.fmi.native import platforms
 
 TRACE = "results/scene.h5"
 CALLS: dict[str, Any] = {
@@ -50,5 +51,7 @@ def call(name: str) -> tuple[int, str]:
 
 
 if __name__ == "__main__":
+    if sys.argv[1:]:  # a folder of libraries that a package brings
+        platforms.SHIPPED = Path(sys.argv[1])
     found = [call(line) if line in CALLS else command(line) for line in json.load(sys.stdin)]
     print(json.dumps(found))

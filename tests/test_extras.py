@@ -6,14 +6,18 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import base_install
 import pytest
 from packaging.requirements import Requirement
 
 from loomfmu.cli import COMMANDS
+from loomfmu.cosim.claims import judging
 from loomfmu.extras import EXTRAS
+from loomfmu.fmi.native import libraries, platforms
 
 ROOT = Path(__file__).parents[1]
 SCENE = """
@@ -120,23 +124,41 @@ def test_what_the_package_imports_is_installed_with_it_or_with_an_extra() -> Non
     assert names - base - {"pytest"} <= set(sum(EXTRAS.values(), ()))
 
 
-@pytest.mark.no_cover
-def test_without_extras_everything_works_or_names_what_it_needs(tmp_path: Path, fmu_cache: None) -> None:
+def outcomes(folder: Path, lines: Iterable[str], *shipped: Path) -> dict[str, Any]:
+    """The outcomes of commands and calls, where a package brings libraries in a folder, or none."""
     for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+        (folder / name).write_text(text)
     done = subprocess.run(
-        [sys.executable, base_install.__file__],
-        cwd=tmp_path,
-        input=json.dumps(list(OUTCOMES)),
+        [sys.executable, base_install.__file__, *shipped],
+        cwd=folder,
+        input=json.dumps(list(lines)),
         capture_output=True,
         text=True,
         check=True,
     )
     found = {}
-    for line, (status, said) in zip(OUTCOMES, json.loads(done.stdout), strict=True):
+    for line, (status, said) in zip(lines, json.loads(done.stdout), strict=True):
         named = re.fullmatch(r'[^\n]+ needs? [^\n]*: pip install "loomfmu\[([a-z,]+)\]"', said)
         found[line] = named[1] if named and status == 2 else status if status != 2 else said
-    assert found == OUTCOMES
+    return found
+
+
+@pytest.mark.no_cover
+@pytest.mark.usefixtures("fmu_cache")
+def test_without_library_and_compiler_only_claims_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "plain.toml").write_text(SCENE.partition("[[claims]]")[0])
+    expected = {"run scene.toml": "native", "evaluate": "native", "run plain.toml": 0}
+    assert outcomes(tmp_path, expected) == expected
+
+
+@pytest.mark.no_cover
+@pytest.mark.usefixtures("fmu_cache")
+def test_without_extras_everything_works_or_names_what_it_needs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(platforms, "SHIPPED", tmp_path / "shipped")
+    libraries.build_all([judging.SOURCE], [platforms.host()])  # as a wheel brings it
+    assert outcomes(tmp_path, OUTCOMES, tmp_path / "shipped") == OUTCOMES
     assert {line.partition(" ")[0] for line in OUTCOMES} - set(base_install.CALLS) == set(COMMANDS) - {
         "sweep",
         "optimize",

@@ -1,4 +1,4 @@
-"""The page in which the loom runs judges each kind of claim as a run does: verdict, value, place, note."""
+"""The page in which the loom runs judges each kind of claim as a run does: value, error, place, note."""
 
 import json
 import math
@@ -26,16 +26,7 @@ pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="native FMUs are tested on Linux alone"),
 ]
 NOWHERE = "\u2013"  # as the place of a claim
-NOT_JUDGED = {"energy_balance"}  # by the page
-# instances that each claim reads, beside those of which it is kept where they stay the same
-OTHERS = """() => loomfmu.live.plan.claims.map(claim => {
-    const { current } = loomfmu.live, read = new Set()
-    const noted = look => name => { read.add(name.split(".")[0]); return look(name) }
-    const [signal, parameter] = [current.signal, current.parameter].map(noted)
-    loomfmu.judge({ ...current, signal, parameter, count: () => NaN })(claim)
-    return [...read].filter(name => !claim.parts.includes(name)).join(" ")
-})"""
-
+NEARER = "it is nearer to its bound than the page can tell; loomfmu run judges it"
 # They hold, fail, have no value, or spans that the ends of the run cut off; on carriers and frames.
 ON_THE_LOOM = [
     {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "shaft.speed"},
@@ -64,6 +55,14 @@ ON_THE_LOOM = [
     {"kind": "transfer_in_time", "window": ["0 deg", "360 deg"]},
     {"kind": "transfer_in_time", "window": ["100 deg", "460 deg"]},
     {"kind": "transfer_speed", "at_most": "30 m/s"},
+    {"kind": "below", "signal": "heald_1.inertia_force", "bound": "500 N", "at_samples": True},
+    {
+        "kind": "above",
+        "signal": "belt.margin",
+        "bound": 0.1,
+        "window": ["330 deg", "331 deg"],
+        "at_samples": True,
+    },
 ]
 ON_A_MOTOR = [
     {"kind": "motor_power", "at_most": "1 kW"},
@@ -72,9 +71,11 @@ ON_A_MOTOR = [
     {"kind": "energy_balance"},
     {"kind": "nip_holds", "at_least": 0.5, "at_most": 4.0, "at_samples": True},
     {"kind": "nip_holds", "at_least": 3.5, "at_most": 5.0, "at_samples": True},
+    {"kind": "nip_holds", "at_least": 0.5, "at_most": 4.0},
     {"kind": "belt_deflection", "at_most": "2 mm"},
     {"kind": "belt_deflection", "at_most": "10 mm"},
-    {"kind": "above", "signal": "belt_motion.margin", "bound": -20.0, "window": ["80 deg", "120 deg"]},
+    {"kind": "above", "signal": "belt_motion.margin", "bound": 0.1},
+    {"kind": "above", "signal": "belt_motion.margin", "bound": -5.0, "window": ["80 deg", "120 deg"]},
     {"kind": "below", "signal": "belt_motion.deflection", "bound": "2 mm", "window": ["240 deg", "275 deg"]},
     {"kind": "below", "signal": "belt_motion.largest_deflection", "bound": "10 mm"},
     {"kind": "above", "signal": "belt.margin", "bound": 0.4},
@@ -91,6 +92,7 @@ belt_motion = true
 belt_mass = 0.05
 [shaft]
 component = "DrivenShaft"
+torque_32 = "5 N.m"
 speed = "400 rev/min"
 [roller]
 component = "DetachingRoller"
@@ -110,21 +112,91 @@ def test_each_kind_is_here() -> None:
     assert {claim["kind"] for claim in ON_THE_LOOM + ON_A_MOTOR} == set(KINDS)
 
 
-def test_the_claims_of_a_loom(opened: Open, tmp_path: Path) -> None:
+SHORT = {"revolutions": 0.6, "steps_per_revolution": 25, "shaft.ramp_duration": "0 s"}
+SCENES: dict[str, tuple[Callable[[], Any], tuple[float | None, ...]]] = {  # with speeds [rev/min]
+    "loom": (lambda: on_the_loom({**SHORT, "revolutions": 2, "steps_per_revolution": 360}), (None, 500.0)),
+    "motor": (lambda: with_claims(MOTOR, ON_A_MOTOR), (None, 410.0)),
+    "short": (lambda: on_the_loom(SHORT), (None,)),
+}
+
+
+def on_the_loom(values: dict[str, Any]) -> Any:
     text = (SIMS / "full_loom.toml").read_text().partition("[[claims]]")[0]
-    values = {"revolutions": 2, "steps_per_revolution": 360, "shaft.ramp_duration": "0 s"}
-    values["loom.weave"] = "10/01/10/01"
-    agree(opened, tmp_path, with_claims(text, ON_THE_LOOM, values), 500.0)
+    return with_claims(text, ON_THE_LOOM, values | {"loom.weave": "10/01/10/01"})
 
 
-def test_those_of_a_motor_a_comber_and_a_belt_in_motion(opened: Open, tmp_path: Path) -> None:
-    agree(opened, tmp_path, with_claims(MOTOR, ON_A_MOTOR), 410.0)
+@pytest.fixture(scope="module")
+def said(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, float | None], Any]:
+    """What the page of a scene says at a speed, None for its own, beside what a run does: made once."""
+    pages: dict[str, Any] = {}
+    known: dict[tuple[str, float | None], Any] = {}
+
+    def of(name: str, speed: float | None) -> Any:
+        if (name, speed) not in known:
+            scene = SCENES[name][0]()
+            if name not in pages:
+                path = live_page.write(scene, [], tmp_path_factory.mktemp(name) / "page.html")
+                pages[name] = chromium.new_page()
+                pages[name].goto(path.as_uri())
+            known[name, speed] = both(pages[name], scene, speed)
+        return known[name, speed]
+
+    return of
+
+
+def both(page: Any, scene: Any, speed: float | None) -> list[tuple[dict[str, Any], list[str], Verdict]]:
+    if speed is not None:
+        until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+        page.locator(".knob input[type=number]").fill(str(speed))
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
+    rows = page.locator("#claims tbody tr").evaluate_all(
+        "rows => rows.map(row => [...row.cells].map(cell => cell.innerText))"
+    )
+    settings = {} if speed is None else {"shaft.speed": f"{speed} rpm"}
+    with loomfmu.prepare(scene) as loom:
+        native = loom.evaluate(settings, errors="all").claims
+    return list(zip(page.evaluate("loomfmu.live.verdicts"), rows, native, strict=True))
+
+
+CASES = [
+    pytest.param(name, speed, number, id=f"{name}-{speed or 'own'}-{number}-{claim['kind']}")
+    for name, claims in (("loom", ON_THE_LOOM), ("motor", ON_A_MOTOR), ("short", ON_THE_LOOM))
+    for speed in SCENES[name][1]
+    for number, claim in enumerate(claims)
+]
+
+
+@pytest.mark.parametrize(("name", "speed", "number"), CASES)
+def test_the_page_says_what_the_run_says(said: Any, name: str, speed: float | None, number: int) -> None:
+    """At other values than the scene's it leaves a claim undecided that is near to its bound."""
+    mine, (word, text, *shown, place), its = said(name, speed)[number]
+    if NEARER in mine["note"]:  # by what other steps change, not by what the model leaves open
+        assert speed is not None
+        assert mine["holds"] is None
+        assert abs(its.worst - its.bound) < max(20.0 * its.spread, 1.1e-4 * abs(its.bound))
+        mine["note"] = mine["note"].removesuffix(NEARER).removesuffix("; ")
+    else:
+        assert word.strip("\u2713\u2717 \n") == its.word
+        assert mine["holds"] == (its.holds if its.decided else None)
+    assert alike(mine["note"], its.note), (mine["note"], its.note)
+    assert its.signal in text
+    # 1e-9: edges of spans are times, sums of some 1e3 steps; blows amplify rounding
+    for key in ("worst", "bound", "time"):
+        value = mine[key] if mine[key] is not None else math.nan
+        tolerance = {"rel": 1e-9, "abs": 1e-8 if key == "time" else 1e-12, "nan_ok": True}
+        assert value == pytest.approx(getattr(its, key), **tolerance), key
+    assert alike(shown[0], its.shown(its.worst)) and alike(shown[1], its.shown(its.bound))
+    assert alike(place, its.place or NOWHERE), (place, its)
+    if speed is None and math.isfinite(its.worst):
+        # differences of values that agree to 1e-9
+        error = mine["error"] if mine["error"] is not None else math.inf
+        assert error == pytest.approx(its.error, rel=1e-3, abs=1e-8 * (abs(its.worst) + abs(its.bound)))
 
 
 def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_path: Path) -> None:
     """Its error was taken for 0, and the claim held, where a run says that it is undecided."""
     values = {"shaft.speed": "400 rpm", "steps_per_revolution": 1000, "revolutions": 1}
-    values |= {"belt_motion.guide_end": "play", "belt_motion.head_end": "guided"}
+    values |= {"shaft.torque_32": "0 N.m", "belt_motion.guide_end": "play", "belt_motion.head_end": "guided"}
     scene = with_claims(MOTOR, [{"kind": "belt_deflection", "at_most": "5 mm"}], values)
     with loomfmu.prepare(scene) as loom:
         assert "coarser steps give no value" in loom.evaluate({}).claims[0].note
@@ -132,50 +204,7 @@ def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_
     until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
     (found,) = page.evaluate("loomfmu.live.verdicts")
     assert found["holds"] is None
-    assert "too far apart" in found["note"]
-
-
-def agree(opened: Open, tmp_path: Path, scene: Any, other: float) -> None:
-    """The page says what native runs say, at the scene's own speed and at another one [rev/min]."""
-    page = opened(live_page.write(scene, [], tmp_path / "page.html"))
-    for speed in (None, other):
-        if speed is not None:
-            page.locator(".knob input[type=number]").fill(str(speed))
-        until(page, lambda: page.evaluate("Boolean(loomfmu.live.pace)"))
-        assert not any(page.evaluate(OTHERS))
-        found = page.evaluate("loomfmu.live.verdicts")
-        rows = page.locator("#claims tbody tr").evaluate_all(
-            "rows => rows.map(row => [...row.cells].map(cell => cell.innerText))"
-        )
-        settings = {} if speed is None else {"shaft.speed": f"{speed} rpm"}
-        with loomfmu.prepare(scene) as loom:
-            native = loom.evaluate(settings, errors="none").claims
-        for claim, mine, row, its in zip(scene.claims, found, rows, native, strict=True):
-            verdict_agrees(claim, mine, row, its)
-
-
-def verdict_agrees(claim: dict[str, Any], mine: dict[str, Any], row: list[str], its: Verdict) -> None:
-    nothing = math.isnan(its.worst)
-    judged = its.decided and claim["kind"] not in NOT_JUDGED
-    assert (mine["holds"] is None) != judged, (claim, mine, its)
-    if mine["holds"] is None:
-        same = nothing and claim["kind"] not in NOT_JUDGED
-        assert alike(mine["note"], its.note) if same else mine["note"]
-        return
-    assert mine["holds"] == its.holds, (mine, its)
-    assert "nan" not in its.note
-    assert alike(mine["note"], its.note), (mine["note"], its.note)
-    word, name, *shown, place = row
-    assert word.strip("✓✗ \n") == its.word
-    assert its.signal in name and mine["note"] in name
-    for text, value in zip(shown, (its.worst, its.bound), strict=False):
-        assert alike(text, its.shown(value)), (text, its)
-    assert alike(place, its.place or NOWHERE), (place, its)
-    # 1e-9: edges of spans are times, sums of some 1e3 steps; blows amplify rounding
-    assert mine["worst"] == pytest.approx(its.worst, rel=1e-9, abs=1e-12, nan_ok=True), (mine, its)
-    assert mine["bound"] == pytest.approx(its.bound, rel=1e-14)
-    if math.isfinite(its.time):
-        assert mine["time"] == pytest.approx(its.time, abs=1e-8), its
+    assert "coarser steps give no value" in found["note"]
 
 
 def alike(one: str, other: str) -> bool:

@@ -237,7 +237,7 @@ def test_a_claim_without_a_value_fails_as_it_does_in_a_run(opened: Open, tmp_pat
     result = loomfmu.run(scene, set={late: "-40 deg"}, output=tmp_path / "run.h5")
     verdicts_agree(page, result.claims)
     row = page.locator("#claims tbody tr").nth(1)
-    assert "not judged" in row.inner_text()
+    assert "undecided" in row.inner_text()
     assert result.claims[1].note in row.inner_text()
 
 
@@ -259,8 +259,8 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
     assert "free lengths above 5 times bow_length do not count" in found[2]["note"]
 
 
-def test_what_the_belt_leaves_undecided_with_other_ends_is_not_judged(opened: Open, tmp_path: Path) -> None:
-    """Modes leave 1 % of a deflection; the page leaves ten times that at the scene's own values to a run."""
+def test_what_the_model_leaves_open_counts_once_with_other_ends(opened: Open, tmp_path: Path) -> None:
+    """Modes leave 1 % of a deflection, on any steps: within that it is undecided, not within ten times."""
     text = (
         "revolutions = 1\nsteps_per_revolution = 360\n[loom]\nbelt_motion = true\n"
         "[shaft]\nspeed = '600 rpm'\n"
@@ -268,7 +268,7 @@ def test_what_the_belt_leaves_undecided_with_other_ends_is_not_judged(opened: Op
     claim = '[[claims]]\nkind = "below"\nsignal = "belt_motion.largest_deflection"\nbound = '
     scene, play = tmp_path / "ends.toml", {"belt_motion.guide_end": "play"}
     scene.write_text(f"{text}{claim}1\n")
-    bounds = [share * loomfmu.evaluate(scene, set=play).claims[0].worst for share in (1.005, 1.2)]
+    bounds = [share * loomfmu.evaluate(scene, set=play).claims[0].worst for share in (1.005, 1.05)]
     scene.write_text(text + "".join(f"{claim}{bound!r}\n" for bound in bounds))
     page = running(opened(live_page.write(scene, ["belt_motion.guide_end"], tmp_path / "page.html")))
     page.evaluate("loomfmu.live.verdicts = null")
@@ -288,7 +288,7 @@ def test_a_claim_that_the_page_would_judge_otherwise_is_left_out(
     head, mark, rest = content.partition('id="data-live">')
     odd, end, rest = rest.partition("</script>")
     data = json.loads(odd)
-    data["claims"][2]["native"]["worst"] *= 1.001
+    data["judging"]["claims"][2]["native"]["worst"] *= 1.001
     (tmp_path / "odd.html").write_text(head + mark + json.dumps(data) + end + rest)
     page = running(opened(tmp_path / "odd.html"))
     found = page.evaluate("loomfmu.live.verdicts.map(each => each.holds)")
@@ -323,11 +323,10 @@ def test_the_slider_past_the_safe_speed_turns_the_verdicts(written: Path, opened
 
     turned(page, 646.0)
     assert words()[:2] == ["holds", "holds"]
-    turned(page, 646.8164)  # within the numerical error of the margin's bound, where a run is undecided
-    assert page.inner_text("#claims tbody td:first-child").strip() == "not judged"
-    assert "nearer to its bound, 0.1, than the page can tell" in page.inner_text(
-        "#claims tbody tr:first-child"
-    )
+    turned(page, 646.815)  # 4e-6 from the margin's bound, of which the page cannot tell the numerical error
+    first = page.inner_text("#claims tbody tr:first-child")
+    assert first.startswith("undecided")
+    assert "nearer to its bound than the page can tell" in first
     turned(page, 648.0)  # the margin's bound of 0.1 is passed at 646.8 rev/min
     assert words()[:2] == ["FAILS", "holds"]
     turned(page, 681.0)

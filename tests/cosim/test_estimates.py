@@ -6,15 +6,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, prepare, run
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim.claims.judging import Form, Question, Run
 from loomfmu.cosim.estimates import MEMORY, PRESENT, SHARES
 from loomfmu.cosim.master.grid import uniform
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.design import loom
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, dwell_angle
+from loomfmu.traces import Channel, Recording
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
 STEPS = (24, 45, 60, 90, 144, 180, 360, 720, 1440)
@@ -81,17 +84,27 @@ def verdict(**given: Any) -> Verdict:
     return replace(usual, **given)
 
 
+def settled(found: Verdict, error: float, spread: float) -> str:
+    """The word of a verdict with an error, of which `spread` differs between resolutions."""
+    trace = Recording("one", [Channel("a", "b", "1", "1", "", 0)], lambda _instance, _name: None)
+    trace.append(np.zeros(1), np.zeros(1), np.array([[found.worst]]), np.zeros((1, 0), np.int32))
+    question = Question(
+        "given", [Form("", "a.b", ("m", "m"), found.sense)], [], [found.bound, found.worst, 0.0, 0.0]
+    )
+    return Run(trace).settled(trace, question, found, spread, error, 0.0, 0.0).word
+
+
 def test_a_bound_that_all_resolutions_meet_is_met() -> None:
-    assert verdict().estimated(error=1e-9, spread=0.0).word == "holds"
-    assert verdict(bound=0.0, worst=0.0).estimated(error=0.0, spread=0.0).word == "holds"
-    assert verdict().estimated(error=1e-9, spread=1e-10).word == "undecided"
-    assert verdict(worst=1.0 + 1e-10).estimated(error=1e-9, spread=0.0).word == "undecided"
-    assert verdict(bound=3.0, worst=3.0).estimated(error=1.0, spread=1.0).word == "undecided"  # a count
+    assert settled(verdict(), error=1e-9, spread=0.0) == "holds"
+    assert settled(verdict(bound=0.0, worst=0.0), error=0.0, spread=0.0) == "holds"
+    assert settled(verdict(), error=1e-9, spread=1e-10) == "undecided"
+    assert settled(verdict(worst=1.0 + 1e-10), error=1e-9, spread=0.0) == "undecided"
+    assert settled(verdict(bound=3.0, worst=3.0), error=1.0, spread=1.0) == "undecided"  # a count
 
 
 def test_what_fails_without_a_distance_is_decided() -> None:
     failing = verdict(holds=False, worst=2.0, note="the samples are too far apart")
-    assert failing.estimated(error=5.0, spread=5.0).word == "FAILS"
+    assert settled(failing, error=5.0, spread=5.0) == "FAILS"
 
 
 def test_verdicts_of_earlier_traces_have_no_error() -> None:
@@ -161,7 +174,7 @@ def test_a_coarser_run_that_fails_gives_no_error() -> None:
 
 def test_the_method_follows_from_what_a_claim_depends_on() -> None:
     with prepare(DEMO) as loom:
-        methods = loom._base._estimates._methods
+        methods = loom._base._estimates._dependence.methods
     assert methods[2] == PRESENT and methods[5] == MEMORY  # a dwell of the drive, the load of a carrier
     assert COMPONENTS["HealdDamper"].keeps == "motion"
 

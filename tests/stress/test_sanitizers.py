@@ -9,7 +9,7 @@ import pytest
 from foreign_motors import gcc, motor2, motor3
 from motor_scenes import LENGTH, MOTOR, SHAFT3
 
-from loomfmu.cosim.claims import compiled
+from loomfmu.cosim.claims import judging
 from loomfmu.cosim.master import steppers
 
 pytestmark = [
@@ -29,14 +29,14 @@ RUN = """
 import sys, threading
 from pathlib import Path
 import loomfmu
-from loomfmu.cosim.claims import compiled
+from loomfmu.cosim.claims import judging
 from loomfmu.cosim.master import steppers
 folder, at_once, *scenes = sys.argv[1:]
 used = set()
 def library_of(source):
     used.add(source.stem)
     return Path(folder) / f"{source.stem}.so"
-compiled.library_of = steppers.library_of = library_of
+judging.needed_library = steppers.library_of = library_of
 def run():
     for scene in scenes:
         loomfmu.evaluate(scene)
@@ -50,7 +50,7 @@ print(*sorted(used))
 def sanitized(folder: Path, sanitizers: str, scenes: list[Path], threads: int) -> str:
     """What the sanitizers say of runs of some scenes in so many threads at once."""
     runtime = {"thread": "libtsan.so"}.get(sanitizers, "libasan.so")
-    for source in (steppers.SOURCE, compiled.SOURCE):
+    for source in (steppers.SOURCE, judging.SOURCE):
         subprocess.run(
             [
                 gcc(),
@@ -82,7 +82,7 @@ def sanitized(folder: Path, sanitizers: str, scenes: list[Path], threads: int) -
         },
     )
     assert done.returncode == 0, done.stderr[-4000:]
-    assert done.stdout.split() == ["bernstein", "stepper"]
+    assert done.stdout.split() == ["judge", "stepper"]
     return done.stderr
 
 

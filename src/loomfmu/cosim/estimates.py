@@ -76,16 +76,11 @@ class Coarser:
     why: str = ""
 
 
-class Estimates:
-    """Errors of the verdicts on one scene.
+class Dependence:
+    """The FMUs that the claims of one scene depend on, and what follows for the errors of their verdicts."""
 
-    `run` runs it, with other values, on any grid, and keeps so many `signals`.
-    """
-
-    def __init__(
-        self, scene: Scene, claims: Sequence[Claim], run: Callable[[Scene, Grid], Signals], signals: int
-    ):
-        self._scene, self.claims, self._run, self._signals = scene, claims, run, signals
+    def __init__(self, scene: Scene, claims: Sequence[Claim]):
+        self._scene, self.claims = scene, claims
 
     @cached_property
     def _upstream(self) -> list[set[str]]:
@@ -96,8 +91,8 @@ class Estimates:
         return [set(upstream(each, sources)) for each in owners]
 
     @cached_property
-    def _methods(self) -> list[Method]:
-        """Return the method that estimates each claim's error, by the FMUs that its signals depend on."""
+    def methods(self) -> list[Method]:
+        """The method that estimates each claim's error."""
         scene = self._scene
         _order, lagged = step_order(scene.instances, scene.wires)
         delayed = bool(lagged) and scene.coupling != ITERATED
@@ -110,6 +105,30 @@ class Estimates:
             scatter = max(each.scatter if each else 0.0 for each in components)
             found.append(method._replace(scatter=scatter))
         return found
+
+    def unshown(self, scene: Scene) -> dict[int, str]:
+        """The claims, counted from 0, on mechanisms that equal steps of this length do not show, and why."""
+        found = dict[int, str]()
+        shown = {name: longest_step(scene, name) for name in scene.instances}
+        for number, names in enumerate(self._upstream):
+            longest, why = min((shown[name] for name in names if shown[name][0]), default=(math.inf, ""))
+            if scene.step_size > TOO_LONG * longest:
+                found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
+        return found
+
+
+class Estimates:
+    """Errors of the verdicts on one scene.
+
+    `run` runs it, with other values, on any grid, and keeps so many `signals`.
+    """
+
+    def __init__(
+        self, scene: Scene, claims: Sequence[Claim], run: Callable[[Scene, Grid], Signals], signals: int
+    ):
+        self.claims, self._run, self._signals = claims, run, signals
+        self._dependence = Dependence(scene, claims)
+        self.unshown = self._dependence.unshown
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
@@ -133,21 +152,11 @@ class Estimates:
                 return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
         return Coarser(wanted, unshown, tuple(values))
 
-    def unshown(self, scene: Scene) -> dict[int, str]:
-        """The claims, counted from 0, on mechanisms that equal steps of this length do not show, and why."""
-        found = dict[int, str]()
-        shown = {name: longest_step(scene, name) for name in scene.instances}
-        for number, names in enumerate(self._upstream):
-            longest, why = min((shown[name] for name in names if shown[name][0]), default=(math.inf, ""))
-            if scene.step_size > TOO_LONG * longest:
-                found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
-        return found
-
     def near(self, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
         return {
             number
-            for number, (verdict, method) in enumerate(zip(verdicts, self._methods, strict=True))
+            for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))
             if not verdict.bound or abs(verdict.relative_distance) <= method.near
         }
 
@@ -169,7 +178,7 @@ class Estimates:
                 found[number],
                 self.claims[number],
                 trace,
-                self._methods[number],
+                self._dependence.methods[number],
                 [run[number] for run in coarser.values],
             )
         for number, why in coarser.unshown.items():
@@ -190,21 +199,7 @@ def _estimated(
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
-    floor = max(
-        claim.noise,
-        method.floor * max(abs(worst), abs(verdict.bound)),
-        method.scatter * _moved(trace, verdict),
-    )
-    left = claim.unresolved(trace, verdict)
-    if left == math.inf:  # a sample may fail the claim, but does not say by how much the signal does
-        return replace(verdict.estimated(max(spread, floor), spread), error=math.inf)
-    return verdict.estimated(max(spread, left, floor), spread)
-
-
-def _moved(trace: Signals, verdict: Verdict) -> float:
-    """The distance of the worst value from the first sample of its signal, from 0 where it has no samples."""
-    start = float(trace[verdict.signal][0]) if verdict.signal in trace else 0.0
-    return abs(verdict.worst - start)
+    return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:
@@ -212,7 +207,8 @@ def _noted(verdict: Verdict, note: str) -> Verdict:
 
 
 def _undecided(verdict: Verdict, why: str) -> Verdict:
-    return replace(_noted(verdict, why), error=math.inf, decided=False, holds=False)
+    noted = _noted(verdict, why)
+    return replace(noted, error=math.inf, spread=math.inf, decided=False, holds=False)
 
 
 def _enough(scene: Scene, longest: float) -> str:

@@ -13,6 +13,7 @@ from typing import Any, Literal, get_args
 from ..errors import LoomfmuError, path_of, shown, suggestion
 from ..traces import Signals, Verdict
 from . import accuracy
+from .claims import judging
 from .claims.claim import Claim
 from .claims.measures import measure
 from .estimates import Coarser, Estimates
@@ -45,6 +46,8 @@ class Pattern:
         self.claims = claims_of(scene)
         wanted = with_rates(scene, [*shaft_angle(scene), *values])
         self._all = [*self.claims, *measures]
+        if self._all:
+            judging.library()  # before the run, which could not be judged without
         self.judged = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
         self._estimates = Estimates(scene, self._all, self._on, len(self.judged))

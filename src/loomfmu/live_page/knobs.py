@@ -1,7 +1,8 @@
 """The sliders of a page: parameters of a scene, each with its range or its choices."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from .. import units
@@ -52,6 +53,14 @@ def knobs(scene: Scene, parameters: Iterable[str], vary: Sequence[str]) -> list[
             raise LoomfmuError(f"--vary {key} is given twice")
         found[key] = _knob(scene, known, key, wanted)
     return list(found.values())
+
+
+def ends_of(scene: Scene, varied: Iterable[Knob]) -> Iterator[Scene]:
+    """Yield the scene with each knob at either end of its range, or at each choice, if it can be run."""
+    for knob in varied:
+        for value in [choice for choice, _name in knob.choices] or (knob.low, knob.high):
+            with suppress(LoomfmuError):
+                yield read(scene, scene.overrides | {knob.key: value})
 
 
 def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:

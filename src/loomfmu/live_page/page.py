@@ -3,7 +3,6 @@
 Beside them it holds a run of the scene, which can be read and printed before anything is varied.
 """
 
-import math
 import tempfile
 from base64 import b64encode
 from collections.abc import Callable, Sequence
@@ -12,9 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
-from ..cosim.claims.lifted import frames_of, lift_of
-from ..cosim.estimates import NO_VALUE
-from ..cosim.planning.requested import claims_of, shaft_angle, signals_of
 from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
 from ..cosim.run import run
@@ -33,8 +29,9 @@ from ..report.section import Section, Subject
 from ..report.templates import template
 from ..traces import Trace
 from ..upstream import sources_of, upstream
-from ..variables import Beside, Variable, variables_of
-from .knobs import Knob, knobs
+from ..variables import Variable, variables_of
+from .claims import claims
+from .knobs import Knob, ends_of, knobs
 
 MARK = "<!DOCTYPE html>\n<!-- a page of loomfmu -->\n"
 PAGE = starts_with("a page of loomfmu", MARK.encode(), suffix=".html", advice=PRINT)
@@ -44,8 +41,6 @@ SCRIPTS = (
     "live_steps.js",
     "live.js",
     "live_rules.js",
-    "live_curves.js",
-    "live_latches.js",
     "live_judge.js",
     "live_claims.js",
 )
@@ -88,6 +83,7 @@ def write(
         with started.trace as trace:
             subject = Subject([trace], live=True)
             data = _data(loaded, subject, rows, varied) | _stepping(whole, trace, rows)
+            data["judging"] = claims(loaded, ends_of(loaded, varied), trace, started.claims)
             data["wasm"] = b64encode(wasm).decode()
             controls = template("live.html.j2").render(knobs=varied)
             live = Section("live", "Values", controls, SCRIPTS, data)
@@ -116,7 +112,6 @@ def _data(scene: Scene, subject: Subject, rows: Rows, varied: Sequence[Knob]) ->
         "constants": constants,
         "knobs": [asdict(knob) for knob in varied],
         "turns": subject.turns,
-        "claims": _claims(scene, trace),
     }
 
 
@@ -140,52 +135,8 @@ def _stepping(whole: System, trace: Trace, rows: Rows) -> dict[str, Any]:
 def _signal(trace: Trace, name: str, variable: Variable) -> dict[str, Any]:
     display = trace.display(name)
     return {
-        "rate": trace.rate(name),
-        **{role: trace.beside(name, role) for role in Beside._fields},
         "unit": "" if display == "1" else display,
         "factor": units.unit(display).factor,
         "about": trace.description(name),
         "steps": variable.type is not float,
     }
-
-
-def _claims(scene: Scene, trace: Trace) -> list[dict[str, Any]]:
-    """Return the claims that the script judges: kind, arguments, and the unit and format of the values.
-
-    `parts` are the instances that it depends on, `lifts` are the lifts of the warps of frames that it is
-    about, `repeat` is the revolutions after which their weave repeats, and `native` is the verdict on the run
-    that the page holds, whether its bound is met exactly, and its numerical error: the script leaves out a
-    claim that it would judge otherwise, that is too near to its bound for that error, or whose error coarser
-    steps could not tell (`coarse`).
-    """
-    found = []
-    for table, claim, verdict in zip(scene.claims, claims_of(scene), trace.verdicts, strict=True):
-        arguments = {name: getattr(claim, name) for name in type(claim).declared() if name != "name"}
-        frames = arguments.get("healds") or [arguments[key] for key in ("heald",) if key in arguments]
-        if arguments.get("healds") == ():  # all of them
-            frames = frames_of(trace)
-        unit = "" if verdict.label == "1" else verdict.label
-        lifts = {frame: lift_of(frame, str(arguments.get("lifted_by", "")), trace) for frame in frames}
-        estimated = math.isfinite(verdict.error)
-        read = [*signals_of(scene, claim), *shaft_angle(scene), *lifts.values()]
-        found.append(
-            {
-                **arguments,
-                "kind": table["kind"],
-                "sense": verdict.sense,
-                "signal": verdict.signal,
-                "drawn": verdict.signal in trace and verdict.unit == trace.unit(verdict.signal),
-                "parts": sorted({*(name.partition(".")[0] for name in read), *claim.parameter_owners()}),
-                "lifts": lifts,
-                "repeat": claim.repeat(trace),
-                "shown": {"factor": verdict.displayed(1.0), "unit": unit},
-                "native": {
-                    "holds": verdict.holds or verdict.distance >= 0.0,
-                    "worst": verdict.worst,
-                    "error": verdict.error if estimated else 0.0,
-                    "coarse": NO_VALUE in verdict.note,
-                    "met": verdict.decided and verdict.distance == 0.0,
-                },
-            }
-        )
-    return found

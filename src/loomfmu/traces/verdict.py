@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import MISSING, dataclass, fields, replace
+from dataclasses import MISSING, dataclass, field, fields
 from types import NoneType
 from typing import Any, Self
 
@@ -12,7 +12,6 @@ from ..errors import shown
 HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "error", "at", "note")
 HOLDS, FAILS, UNDECIDED = "holds", "FAILS", "undecided"
 SHED_OPENING = "smallest shed opening at the head"  # a claim whose bound is the height of the head
-MET = 1e-12  # of worst value or bound: a bound met by construction is met to rounding
 
 # what JSON makes of the types of the fields
 JSON: dict[Any, tuple[type, ...]] = {
@@ -35,7 +34,8 @@ class Verdict:
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
     alone, in the same unit; NaN where nothing was estimated, infinite where the note says why it is
     not known. Where the bound is that near, or the signal is not known in part of the run, the claim is not
-    `decided`, and does not hold.
+    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions; traces
+    do not keep it.
     """
 
     claim: str
@@ -52,6 +52,7 @@ class Verdict:
     sense: int = 0
     error: float = math.nan
     decided: bool = True
+    spread: float = field(default=math.nan, compare=False)
 
     def __bool__(self) -> bool:
         return self.holds
@@ -66,19 +67,6 @@ class Verdict:
             f"{self.word}: {self.claim} ({self.signal}), {self.shown(self.worst)}{place},"
             f" bound {self.shown(self.bound)}{self.reason}{note}"
         )
-
-    def estimated(self, error: float, spread: float) -> Self:
-        """The verdict with an estimate of its error, of which `spread` is what differs between resolutions.
-
-        Within the error of its bound it is undecided. A bound that all resolutions meet to rounding is met:
-        that is how a count, a value at rest or a limited one meets it.
-        """
-        distance = self.distance
-        if not math.isnan(self.error):
-            error = max(error, self.error)
-        met = abs(distance) <= MET * max(abs(self.bound), abs(self.worst)) and spread <= MET * abs(self.worst)
-        decided = self.decided and (met or not abs(distance) <= error)
-        return replace(self, error=error, decided=decided, holds=self.holds and decided)
 
     @property
     def reason(self) -> str:
@@ -173,7 +161,7 @@ class Verdict:
     def as_dict(self) -> dict[str, Any]:
         """The verdict for JSON, null for what is not finite; `display` has the values in the display unit."""
         known = {field.name: getattr(self, field.name) for field in fields(self)}
-        del known["display_unit"]
+        del known["display_unit"], known["spread"]
         known |= {"distance": self.distance, "relative_distance": self.relative_distance}
         display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance", "error")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}
@@ -183,12 +171,12 @@ class Verdict:
         """The verdict that `as_dict` made this of. Raises ValueError for what it cannot have made."""
         if not isinstance(stored, dict):
             raise ValueError(f"{shown(stored)} is not a JSON object")
-        known = {field.name: stored[field.name] for field in fields(cls) if field.name in stored}
-        for field in fields(cls):
-            if field.name not in known and field.default is MISSING and field.name != "display_unit":
-                raise ValueError(f"{field.name} is missing")
-            if field.name in known and not isinstance(known[field.name], JSON[field.type]):
-                raise ValueError(f"{field.name} = {shown(known[field.name])}")
+        known = {each.name: stored[each.name] for each in fields(cls) if each.name in stored}
+        for each in fields(cls):
+            if each.name not in known and each.default is MISSING and each.name != "display_unit":
+                raise ValueError(f"{each.name} is missing")
+            if each.name in known and not isinstance(known[each.name], JSON[each.type]):
+                raise ValueError(f"{each.name} = {shown(known[each.name])}")
         for name in ("bound", "worst", "time", "angle", "error"):
             if name in known:  # a trace of an earlier version has no errors
                 known[name] = math.nan if known[name] is None else float(known[name])

@@ -15,14 +15,16 @@ from scipy.optimize import brentq
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
 from loomfmu.components import DobbyDrive
-from loomfmu.cosim.claims import curves, shaft
+from loomfmu.cosim.claims import judging
 from loomfmu.cosim.claims.arguments import Name, Quantity, argument
 from loomfmu.cosim.claims.claim import AT_MOST, Claim
 from loomfmu.cosim.claims.claims import KINDS, Kind
+from loomfmu.cosim.claims.judging import Form, Question, Run
 from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
+from loomfmu.fmi.native import compiler, platforms
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 from loomfmu.traces import Channel, Signals, TraceWriter
@@ -510,16 +512,20 @@ def test_a_run_that_begins_exactly_on_the_level_of_a_dwell(loom: Callable[..., T
     assert math.isclose(found.worst, math.radians(60), abs_tol=1e-9)  # the quintic at 90 steps
 
 
+def crossings(trace: Signals, level: float) -> list[float]:
+    """The times at which `a.x` passes a level, as a claim on the transfer takes them."""
+    return Run(trace).landings(trace, Question("transfer_speed", [], ["a.x"], [0.0, level]))
+
+
 def test_a_level_that_is_passed_twice_between_two_samples_is_passed_twice(tmp_path: Path) -> None:
     # h (u - 3 u^2 + 2 u^3), which goes as far as h sqrt(3) / 18 to either side
     trace = drawn(tmp_path, lambda t: t, lambda t: 0 * t, np.cos, np.array([0.0, TURN]))
-    motion = curves.Motion(trace, "a.x")
     for level in (0.5, -0.5):
-        times = motion.crossings(level)
+        times = crossings(trace, level)
         assert len(times) == 2
         shares = np.roots([2.0, -3.0, 1.0, -level / TURN])
         assert np.allclose(np.sort(times), np.sort(TURN * shares[(shares > 0) & (shares < 1)]), rtol=1e-12)
-    assert motion.crossings(0.61) == []
+    assert crossings(trace, 0.61) == []
 
 
 def test_clear_shed_is_the_dwell_at_another_height(loom: Callable[..., Trace]) -> None:
@@ -830,6 +836,22 @@ def kept_kinds() -> Iterator[None]:
     KINDS.update(before)
 
 
+@pytest.mark.usefixtures("fmu_cache")
+def test_without_the_library_a_scene_with_claims_is_refused_before_it_runs(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(platforms, "SHIPPED", tmp_path)
+    monkeypatch.setattr(platforms, "compiler", lambda: None)
+    monkeypatch.setattr(compiler, "compiler", lambda: None)
+    judging.library.cache_clear()
+    with pytest.raises(LoomfmuError) as raised:
+        run(DEMO, output=tmp_path / "run.h5")
+    said = 'this needs a compiler, which is not installed: pip install "loomfmu[native]"'
+    assert str(raised.value) == f"claims cannot be judged: {said}"
+    assert not list(tmp_path.iterdir())
+    judging.library.cache_clear()
+
+
 @pytest.mark.usefixtures("kept_kinds", "fmu_cache")
 def test_a_new_kind_of_claim_is_one_class() -> None:
     class EndsNear(Claim):
@@ -841,9 +863,11 @@ def test_a_new_kind_of_claim_is_one_class() -> None:
         needs = ("heald.lift",)
         sense, unit = AT_MOST, ("m", "mm")
 
-        def judge(self, trace: Signals) -> Verdict:
-            lift = float(trace[f"{self.heald}.lift"][-1])
-            return self.verdict(trace, "ends near", f"{self.heald}.lift", self.height, lift, trace.time[-1])
+        def question(self, trace: Signals) -> Question:
+            signal = f"{self.heald}.lift"
+            worst, time = float(trace[signal][-1]), float(trace.time[-1])
+            numbers = [self.height, worst, time, 0.0]
+            return Question("given", [self.form("ends near", signal)], [signal], numbers)
 
     claim = '[[claims]]\nkind = "ends_near"\nheald = "heald_1"\nheight = {}\n'
     text = "record = []\n" + LOOM.format(weave="10/01", rest=claim)
@@ -1030,19 +1054,30 @@ def test_a_negative_speed_is_refused_as_a_bound(loom: Callable[..., Trace]) -> N
     assert not judge(backwards, kind="above", signal="belt.lowest_speed_limit", bound="800 rpm")
 
 
+def test_a_limit_of_speed_that_turns_negative_in_a_page_is_not_compared(loom: Callable[..., Trace]) -> None:
+    trace = loom(90)
+    question = KINDS["above"](signal="belt.lowest_speed_limit", bound="shaft.speed").question(trace)
+    negative = question._replace(numbers=[-80.0, *question.numbers[1:]])
+    found = Run(trace).verdict(trace, negative)
+    assert found.word == "undecided"
+    assert found.note == "the bound is negative, but a limit of speed is positive"
+
+
 @pytest.mark.parametrize("start", [0, 45])
 @pytest.mark.parametrize("way", [1, -1])
 def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
     loom: Callable[..., Trace], start: int, way: int
 ) -> None:
     trace = loom(360, shaft__speed=f"{600 * way} rpm", shaft__start_angle=f"{start * way} deg")
-    places = [
-        shaft.place(curves.Motion(trace, "shaft.angle"), revolutions * 0.1)
-        for revolutions in (0.0, 0.3, 1.3, 2.6)
+    steps = [round(360 * revolutions) for revolutions in (0.0, 0.3, 1.3, 2.6)]
+    form = Form("", "shaft.angle", ("rad", "deg"), 1)
+    asked = [
+        Question("given", [form], [form.signal], [0.0, 1.0, float(trace.time[step]), 0.0]) for step in steps
     ]
-    assert [revolution for _angle, revolution in places] == [1, 1, 2, 3]
+    found = [Run(trace).verdict(trace, each) for each in asked]
+    assert [each.revolution for each in found] == [1, 1, 2, 3]
     expected = [(way * (start + turned)) % 360 for turned in (0, 108, 108, 216)]
-    assert [math.degrees(angle) for angle, _revolution in places] == pytest.approx(expected, abs=1e-9)
+    assert [math.degrees(each.angle) for each in found] == pytest.approx(expected, abs=1e-9)
 
 
 ROLLER = """title = "Roller"

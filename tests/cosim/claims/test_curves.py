@@ -4,29 +4,38 @@ import numpy as np
 import pytest
 from numpy.polynomial import polynomial
 
-from loomfmu.cosim.claims import bernstein
-from loomfmu.cosim.claims.compiled import ROOM
-from loomfmu.cosim.claims.curves import Motion
+from loomfmu import judge
+from loomfmu.cosim.claims.judging import ROOM, Question, Run
 from loomfmu.traces import Channel, Recording
 
 RANDOM = np.random.default_rng(5)
+TURN = 2.0 * np.pi
 
 
-def motion_of_noise(size: int, rates: int) -> Motion:
-    """A motion whose values and rates have nothing to do with each other; the same for a size."""
-    random = np.random.default_rng(size)
-    samples = random.normal(size=(size, 3))
+def recorded(time: np.ndarray, samples: np.ndarray, rates: int = 2) -> Recording:
+    """A recording of `a.x`, of so many of its rates, and of a shaft that turns once in 1 s."""
+    named = ("v", "w", None)[:rates] + (None,) * (3 - rates)
     channels = [
         Channel("a", name, "m", "m", "", column, rate=rate)
-        for column, (name, rate) in enumerate((("x", "v"), ("v", "w"), ("w", None)))
+        for column, (name, rate) in enumerate(zip("xvw", named, strict=True))
+    ]
+    channels += [
+        Channel("shaft", "angle", "rad", "deg", "", 3, rate="velocity"),
+        Channel("shaft", "velocity", "rad/s", "rev/min", "", 4),
     ]
     recording = Recording("samples", channels, lambda _instance, _name: None)
-    time = np.cumsum(random.uniform(0.01, 1.0, size=size))
-    recording.append(time, np.zeros(size), samples, np.zeros((size, 0), np.int32))
-    return Motion(recording, "a.x", rates)
+    turning = np.stack([TURN * time, np.full(len(time), TURN)], axis=1)
+    none = np.zeros((len(time), 0), np.int32)
+    recording.append(time, TURN * time, np.concatenate([samples, turning], axis=1), none)
+    return recording
 
 
-def hermite(ends: list[tuple[float, float]]) -> np.ndarray:
+def noise(size: int, rates: int) -> Recording:
+    """A motion whose values and rates have nothing to do with each other."""
+    return recorded(np.cumsum(RANDOM.uniform(0.01, 1.0, size=size)), RANDOM.normal(size=(size, 3)), rates)
+
+
+def hermite(ends: np.ndarray) -> np.ndarray:
     """Coefficients of the polynomial with given values and rates at 0 and 1, by solving for them."""
     rows, right = [], []
     for order, values in enumerate(ends):
@@ -37,78 +46,78 @@ def hermite(ends: list[tuple[float, float]]) -> np.ndarray:
     return np.linalg.solve(rows, right)
 
 
+def within(roots: np.ndarray, low: float = 0.0, high: float = 1.0) -> np.ndarray:
+    """The real ones of some roots that lie between two places, in order."""
+    real = roots[np.abs(roots.imag) < 1e-12].real
+    return np.sort(real[(real > low) & (real < high)])
+
+
+def crossings(trace: Recording) -> list[float]:
+    """The times at which `a.x` passes 0, as a claim on the transfer takes them."""
+    return Run(trace).landings(trace, Question("transfer_speed", [], ["a.x"], [0.0, 0.0]))
+
+
 @pytest.mark.parametrize("rates", [0, 1, 2])
 def test_values_extremes_and_zeros_are_those_of_the_joining_polynomial(rates: int) -> None:
     for _ in range(200):
-        ends = [(RANDOM.normal(), RANDOM.normal()) for _ in range(rates + 1)]
-        coefficients = hermite(ends)
-        points = np.stack(bernstein.joining([(np.array([a]), np.array([b])) for a, b in ends]))
-        share = RANDOM.uniform()
+        trace = recorded(np.array([0.0, 1.0]), RANDOM.normal(size=(2, 3)), rates)
+        run, ends = Run(trace), np.stack([trace[f"a.{name}"] for name in "xvw"[: rates + 1]])
+        coefficients, share = hermite(ends), RANDOM.uniform()
         # rounding of a handful of terms of order 10
-        assert abs(bernstein.value(points, share)[0] - polynomial.polyval(share, coefficients)) < 1e-12
-        turns = polynomial.polyroots(polynomial.polyder(coefficients))
-        turns = turns[np.abs(turns.imag) < 1e-12].real
-        places = np.array([0.0, 1.0, *turns[(turns > 0.0) & (turns < 1.0)]])
-        lowest, at = bernstein.lowest(points)
-        assert abs(lowest[0] - polynomial.polyval(places, coefficients).min()) < 1e-12
-        assert abs(polynomial.polyval(at[0], coefficients) - lowest[0]) < 1e-12
-        zeros = polynomial.polyroots(coefficients)
-        zeros = np.sort(zeros[(np.abs(zeros.imag) < 1e-12) & (zeros.real > 0) & (zeros.real < 1)].real)
-        found = bernstein.sign_changes(points[:, 0].tolist())
-        assert len(found) == len(zeros)
-        assert np.allclose(found, zeros, rtol=0.0, atol=1e-9)  # of zeros that lie close together
+        assert abs(run.at(trace, "a.x", share) - polynomial.polyval(share, coefficients)) < 1e-12
+        turns = within(polynomial.polyroots(polynomial.polyder(coefficients)))
+        values = polynomial.polyval(np.array([0.0, 1.0, *turns]), coefficients)
+        for sign in (1.0, -1.0):
+            found = judge(trace, kind="above" if sign > 0.0 else "below", signal="a.x", bound=0.0)
+            assert abs(found.worst - sign * (sign * values).min()) < 1e-12
+            assert (
+                abs(polynomial.polyval(found.time, coefficients) - found.worst) < 1e-11
+            )  # times that are equal
+        zeros, passed = within(polynomial.polyroots(coefficients)), crossings(trace)
+        assert len(passed) == len(zeros)
+        assert np.allclose(passed, zeros, rtol=0.0, atol=1e-9)  # of zeros that lie close together
+        points = run.points(trace, "a.x")[0]
+        assert points[[0, -1]].tolist() == ends[0].tolist()
+        assert points.mean() == pytest.approx(
+            np.diff(polynomial.polyval([0, 1], polynomial.polyint(coefficients)))[0]
+        )
 
 
-def test_a_piece_is_cut_exactly_or_left_as_it_is() -> None:
-    points = RANDOM.normal(size=(6, 3))
-    low, high = np.array([0.0, 0.25, 0.0]), np.array([1.0, 0.75, 0.5])
-    parts = bernstein.clipped(points, low, high)
-    assert np.array_equal(parts[:, 0], points[:, 0])
-    for share in (0.0, 0.3, 1.0):
-        inside = low + share * (high - low)
-        assert np.allclose(bernstein.value(parts, share), bernstein.value(points, inside), rtol=0, atol=1e-14)
+@pytest.mark.parametrize("rates", [1, 2])
+def test_the_lowest_in_a_window_is_that_of_the_polynomials_there(rates: int) -> None:
+    time = np.linspace(0.0, 1.0, 25)
+    for _ in range(20):
+        trace = recorded(time, RANDOM.normal(size=(25, 3)) * (1.0, 10.0, 100.0), rates)
+        low, high = np.sort(RANDOM.uniform(0.0, 1.0, size=2))
+        lowest = np.inf
+        for k in range(24):
+            h, (start, end) = time[k + 1] - time[k], np.clip((np.array([low, high]) - time[k]) * 24, 0.0, 1.0)
+            if start < end:
+                rows = [
+                    trace[f"a.{name}"][k : k + 2] * h**order for order, name in enumerate("xvw"[: rates + 1])
+                ]
+                polynom = hermite(np.stack(rows))
+                turns = within(polynomial.polyroots(polynomial.polyder(polynom)), start, end)
+                lowest = min(lowest, polynomial.polyval(np.array([start, end, *turns]), polynom).min())
+        window = [f"{360.0 * each:.17g} deg" for each in (low, high)]
+        found = judge(trace, kind="above", signal="a.x", bound=0.0, window=window)
+        assert found.worst == pytest.approx(lowest, abs=1e-10)  # edges of the window to 1e-12 turns
 
 
 def test_a_zero_that_is_touched_is_not_passed() -> None:
-    touching = bernstein.joining([(1.0, 1.0), (-4.0, 4.0)])
-    assert bernstein.sign_changes(touching) == []  # (1 - 2 u)^2
+    touching = np.array([[1.0, -4.0, 0.0], [1.0, 4.0, 0.0]])  # (1 - 2 u)^2
+    trace = recorded(np.array([0.0, 1.0]), touching, rates=1)
+    assert crossings(trace) == []
 
 
-@pytest.mark.no_cover
-@pytest.mark.parametrize("rates", [0, 1, 2])
-def test_c_and_python_find_the_same_bits(rates: int) -> None:
-    for size in (2, 3, 50):
-        motion, reference = (motion_of_noise(size, rates) for _ in range(2))
-        reference._compiled = None
-        if motion._compiled is None:
-            pytest.skip("the compiled library is not available")
-        assert motion.survey == reference.survey
-        # samples as levels, where a sign is that of rounding; between them pieces with several changes
-        levels = [*motion.values[0].tolist(), *RANDOM.normal(size=300).tolist()]
-        found = [motion.crossings(level) for level in levels]
-        assert found == [reference.crossings(level) for level in levels]
-        assert size < 50 or max(map(len, found)) > ROOM
-        for level in levels:  # which are samples, too
-            assert motion.passes(level, 0.7) == reference.passes(level, 0.7)
-        times = [-1.0, *motion.time.tolist(), *RANDOM.uniform(0.0, 60.0, size=200).tolist()]
-        assert [motion.at(time) for time in times] == [reference.at(time) for time in times]
+def test_all_passages_are_found_however_many() -> None:
+    trace = noise(500, 1)
+    assert len(crossings(trace)) > 10 * ROOM
 
 
-@pytest.mark.parametrize("compiled", [True, False])
-def test_where_a_value_is_not_finite_nothing_is_crossed(compiled: bool) -> None:
-    motion = motion_of_noise(50, 2)
-    if not compiled:
-        motion._compiled = None
-    whole = motion.crossings(0.0)
-    motion.values[1][20] = np.nan
-    assert not motion.finite
-    outside = (motion.time[19], motion.time[21])
-    assert motion.crossings(0.0) == [time for time in whole if not outside[0] < time <= outside[1]]
-
-
-@pytest.mark.parametrize("rates", [0, 1, 2])
-def test_one_value_is_that_of_many_to_the_last_bit(rates: int) -> None:
-    motion = motion_of_noise(50, rates)
-    time = motion.time
-    times = np.concatenate([time, RANDOM.uniform(time[0], time[-1], size=200)])
-    assert [motion.at(each) for each in times.tolist()] == motion.along(times).tolist()
+def test_where_a_value_is_not_finite_nothing_is_crossed() -> None:
+    trace = noise(50, 2)
+    whole, time = crossings(trace), trace.time
+    trace["a.v"][20] = np.nan
+    kept = [each for each in whole if not time[19] < each <= time[21]]
+    assert crossings(trace) == kept

@@ -2,11 +2,14 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from loomfmu import LoomfmuError, evaluate, judge, prepare
 from loomfmu.cosim.claims.lifted import lift_of
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.standard_loom import pattern
+from loomfmu.traces import Channel, Recording
 
 LOOM = """
 revolutions = 4
@@ -180,3 +183,26 @@ def test_an_unknown_choice_is_rejected_before_the_run(claim: str, named: str, tm
     path.write_text(LOOM + claim)
     with pytest.raises(LoomfmuError, match=re.escape(named)):
         prepare(path)
+
+
+@pytest.mark.parametrize(
+    ("weave", "repeat"),
+    [
+        (["10" * 20], 2),
+        (["1" * 40 + "0"], 41),
+        ([("1" * 15 + "0") * 8], 16),
+        (["110", "10"], 6),
+        (["1100", "10"], 4),
+        (["10" * 7 + "1", "1" * 127 + "0"], 1920),
+    ],
+)
+def test_the_weave_repeats_where_all_frames_that_a_claim_depends_on_do(weave: list[str], repeat: int) -> None:
+    frames = {f"h_{number}": pattern(pegs, "") for number, pegs in enumerate(weave)}
+    channels = [Channel("a", "x", "m", "m", "", 0), Channel("shaft", "angle", "rad", "deg", "", 1)]
+    wires = {f"a.u_{number}": f"h_{number}.lift" for number in range(len(weave))}
+    trace = Recording("one", channels, lambda frame, name: frames.get(frame, {}).get(name), wires)
+    angle = np.linspace(0.0, 3.0 * np.pi, 50)
+    trace.append(angle, angle, np.stack([0.0 * angle, angle], axis=1), np.zeros((50, 0), np.int32))
+    found = judge(trace, kind="above", signal="a.x", bound=-1.0, at_samples=True)
+    why = f"and the weave repeats after {repeat}; set revolutions = {repeat} or more"
+    assert found.note == f"the shaft turns by only 1.5 revolutions, {why}"

@@ -10,7 +10,7 @@ from loomfmu import LoomfmuError, Verdict
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.components.weft_transfer import WeftTransfer
 from loomfmu.cosim.claims.claims import read
-from loomfmu.cosim.claims.shaft import times_at
+from loomfmu.cosim.claims.judging import Run
 from loomfmu.traces import Channel, Recording
 
 TURN = 2.0 * math.pi
@@ -128,7 +128,7 @@ def test_a_shaft_that_comes_back_to_an_angle_is_there_twice() -> None:
     rows = np.stack([np.sin(1.5 * math.pi * time), 1.5 * math.pi * np.cos(1.5 * math.pi * time)], axis=1)
     trace.append(time, rows[:, 0], rows, np.zeros((101, 0), dtype="i4"))
     # from 0 to 1 rad, back to 0 and on to -1; begins at 0
-    assert times_at(trace, 0.0) == pytest.approx([0.0, 2.0 / 3.0], abs=1e-9)
+    assert Run(trace).stands_at(0.0) == pytest.approx([0.0, 2.0 / 3.0], abs=1e-9)
 
 
 @pytest.mark.parametrize("late", [0.0, 0.05])

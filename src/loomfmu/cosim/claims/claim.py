@@ -1,19 +1,15 @@
-"""The base class of claims: its arguments, its signals and how it is judged."""
+"""The base class of claims: its arguments, its signals and the question that it asks of a run."""
 
-import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple, dataclass_transform
 
 from ...traces import Signals, Verdict
-from . import shaft
 from .arguments import Argument, Name, argument, argument_of
-from .curves import Doubt, Stretch, Unknown
-from .extremes import COARSE_NOTE
-from .lifted import Wired, repeat_of
-from .validity import gaps, off_by, unknown_note
+from .judging import Form, Question, run_of
+from .lifted import Wired
 
 AT_LEAST, AT_MOST = 1, -1
 
@@ -47,8 +43,7 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit. `final` says whether it fails once its bound is passed,
-    whatever the rest of a run would show.
+    may be off by with any steps, in its unit. `judge.c` holds the rule by which it is judged.
     """
 
     name: str = argument(Name(), "")
@@ -60,7 +55,6 @@ class Claim(ABC):
     unit: ClassVar[tuple[str, str]] = ONE
     grid: ClassVar[str] = EVERY_STEP
     noise: ClassVar[float] = 0.0
-    final: ClassVar[bool] = True
 
     def __init_subclass__(cls, kind: bool = True) -> None:
         dataclass(frozen=True, kw_only=True)(cls)
@@ -85,97 +79,37 @@ class Claim(ABC):
         """Refuse what the parameters of its instances, NaN where unknown, rule out before the run."""
 
     @abstractmethod
+    def question(self, trace: Signals) -> Question:
+        """Return the rule by which it is judged, with the signals and numbers that this takes of a run."""
+
+    def form(self, text: str, signal: str) -> Form:
+        """Return a verdict's form with this text on a signal, in the claim's own unit."""
+        return Form(text, signal, self.unit, self.sense)
+
     def judge(self, trace: Signals) -> Verdict:
         """Return the verdict on a run."""
+        return run_of(trace).verdict(trace, self.question(trace), self.name)
 
-    def unseen(self, trace: Signals) -> str:
-        """Return what the run lacks for a judgement, or an empty text if it is complete.
+    def settled(
+        self, trace: Signals, verdict: Verdict, spread: float, share: float, scatter: float
+    ) -> Verdict:
+        """Return its verdict with the numerical error, of which `spread` differs between resolutions.
 
-        A claim on a loom takes a whole revolution.
+        Changes below that share of the value, or below `scatter` times how far the signal has moved since the
+        start, do not show the order of an error.
         """
-        return shaft.short(trace)
-
-    def repeat(self, trace: Signals) -> int:
-        """Return the revolutions after which the weave that it depends on repeats; 1 without frames."""
-        owners = {signal.partition(".")[0] for signal in self.signals(trace)}
-        return math.lcm(*(repeat_of(each, trace) for each in owners))
-
-    def unresolved(self, trace: Signals, verdict: Verdict) -> float:
-        """Return the error of a verdict that runs on other steps may not show."""
-        return self.left_by_model(trace, verdict)
+        return run_of(trace).settled(trace, self.question(trace), verdict, spread, self.noise, share, scatter)
 
     def left_by_model(self, trace: Signals, verdict: Verdict) -> float:
         """Return the model's own error, on any steps, as the error output of the judged signal states it."""
-        return off_by(trace, verdict, self.within(trace)) if _judges(trace, verdict) else 0.0
+        return run_of(trace).model_error(trace, self.question(trace), verdict)
 
-    def within(self, trace: Signals) -> list[Stretch] | None:
-        """The stretches of time that are judged; None for the whole run."""
-        return None
+    def extremes(self) -> list[tuple[str, float]]:
+        """Return the signals whose lowest values count for the window grid, or with -1 the highest ones."""
+        return []
 
     def landings(self, trace: Signals) -> Landings:
         """Return where steps of the window grid must land, as a coarse run of its signals shows."""
-        return Landings([], [])
-
-    def verdict(
-        self,
-        trace: Signals,
-        text: str,
-        signal: str,
-        bound: float,
-        worst: float,
-        time: float,
-        *notes: str,
-        holds: bool | None = None,
-        unit: tuple[str, str] | None = None,
-        sense: int | None = None,
-        unknown: Sequence[Stretch] | None = None,
-    ) -> Verdict:
-        """The verdict, with the place on the shaft at its time.
-
-        Unless `holds` says so, the worst value decides. Without one, NaN, a claim is undecided. So is one
-        that holds as far as its signal is known, where this is `unknown` in some stretches of time, by
-        default those of the whole run, where the samples are too far apart, and where a note is a `Doubt`;
-        and one that does not fail, or may not in the end, where the run was cut short or shows too little.
-        """
-        turning = shaft.angle(trace)
-        if turning is not None and shaft.too_coarse(turning):
-            notes = (*notes, COARSE_NOTE)
-        if holds is None:
-            holds = self.sense * worst >= self.sense * bound
-        unknown = gaps(trace, signal) if unknown is None else unknown
-        if unknown:
-            notes = (Doubt(unknown_note(trace, signal, unknown[0])), *notes)
-        short = trace.cut_short or self.unseen(trace) or shaft.unwoven(trace, self.repeat(trace))
-        open_ = bool(short) and (holds or not self.final)
-        kind = Doubt if holds else Unknown
-        doubted = any(isinstance(note, kind) for note in notes) and (holds or not self.final)
-        decided = not (math.isnan(worst) or doubted or open_)
-        if not decided:
-            notes = (short, *notes)
-        if not decided and (unknown or open_) and not math.isnan(worst):
-            worst, time = math.nan, math.nan
-        angle, revolution = math.nan, None
-        if turning is not None and math.isfinite(time):
-            angle, revolution = shaft.place(turning, time)
-        note = "; ".join(dict.fromkeys(note for note in notes if note))
-        claim = f"{self.name}: {text}" if self.name else text
-        return Verdict(
-            claim,
-            signal,
-            bool(holds) and decided,
-            bound,
-            worst,
-            *(unit or self.unit),
-            time,
-            angle,
-            revolution,
-            note,
-            sense=sense or self.sense,
-            error=math.nan if decided else math.inf,
-            decided=decided,
-        )
-
-
-def _judges(trace: Signals, verdict: Verdict) -> bool:
-    """Return whether the verdict's number is a value of its signal, which may only name where to look."""
-    return verdict.signal in trace and verdict.unit == trace.unit(verdict.signal)
+        if self.grid != LANDINGS:
+            return Landings([], [])
+        return Landings(run_of(trace).landings(trace, self.question(trace)), self.extremes())

@@ -1,16 +1,11 @@
 """Claims on extremes that a component itself finds on its continuous curve, and keeps."""
 
-import math
-
-import numpy as np
-
-from ... import units
-from ...traces import Signals, Verdict
+from ...traces import Signals
 from .arguments import Name, Quantity, argument
-from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim, Landings
-from .latches import reached
+from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim
+from .judging import Question
 
-NO_RISK = "the belt is never at risk in this run"
+AS_IT_IS, NEGATIVE, MAGNITUDE = range(3)  # how the extreme of what a latch follows is its lowest value
 
 
 class LowestMargin(Claim):
@@ -23,14 +18,13 @@ class LowestMargin(Claim):
     grid = LANDINGS
     noise = 3e-9  # of the critical force: what the monitor takes for noise of its samples
 
-    def judge(self, trace: Signals) -> Verdict:
+    def question(self, trace: Signals) -> Question:
         latch = f"{self.belt}.lowest_margin"
-        worst, time = float(trace[latch][-1]), reached(trace, latch, trace[f"{self.belt}.margin"])
-        note = NO_RISK if worst >= 1.0 else ""
-        return self.verdict(trace, "lowest margin", latch, self.bound, worst, time, note)
+        signals = [latch, f"{self.belt}.margin"]
+        return Question("margin", [self.form("lowest margin", latch)], signals, [self.bound, AS_IT_IS])
 
-    def landings(self, trace: Signals) -> Landings:
-        return Landings([], [(f"{self.belt}.lowest_margin", 1.0)])
+    def extremes(self) -> list[tuple[str, float]]:
+        return [(f"{self.belt}.lowest_margin", 1.0)]
 
 
 class BeltDeflection(Claim):
@@ -48,17 +42,11 @@ class BeltDeflection(Claim):
     )
     sense, unit, grid = AT_MOST, LENGTH, NOTHING
 
-    def judge(self, trace: Signals) -> Verdict:
-        latch = f"{self.belt}.largest_deflection"
-        worst, time = float(trace[latch][-1]), reached(trace, latch, -trace[f"{self.belt}.deflection"])
-        pushed = units.show(float(trace[f"{self.belt}.largest_at_risk"][-1]), "mm")
-        notes = [f"while the head was pushed: {pushed}"]
-        if trace[f"{self.belt}.folded"][-1]:
-            notes.append("the belt folded")
-        if trace[f"{self.belt}.too_long"][-1]:
-            notes.append("free lengths above 5 times bow_length do not count")
-        text = "largest deflection"
-        return self.verdict(trace, text, latch, self.at_most, worst, time, *notes)
+    def question(self, trace: Signals) -> Question:
+        names = ("largest_deflection", "deflection", "largest_at_risk", "folded", "too_long")
+        signals = [f"{self.belt}.{name}" for name in names]
+        form = self.form("largest deflection", signals[0])
+        return Question("deflection", [form], signals, [self.at_most, NEGATIVE])
 
 
 class PeakLoad(Claim):
@@ -70,10 +58,10 @@ class PeakLoad(Claim):
     needs = ("damper.transmitted_force", "damper.peak_load")
     sense, unit, grid = AT_MOST, FORCE, NOTHING
 
-    def judge(self, trace: Signals) -> Verdict:
-        latch, force = f"{self.damper}.peak_load", trace[f"{self.damper}.transmitted_force"]
-        worst, time = float(trace[latch][-1]), reached(trace, latch, -np.abs(force))
-        return self.verdict(trace, "peak load", latch, self.at_most, worst, time)
+    def question(self, trace: Signals) -> Question:
+        latch = f"{self.damper}.peak_load"
+        signals = [latch, f"{self.damper}.transmitted_force"]
+        return Question("held", [self.form("peak load", latch)], signals, [self.at_most, MAGNITUDE])
 
 
 class StopContacts(Claim):
@@ -85,12 +73,9 @@ class StopContacts(Claim):
     needs = ("damper.stop_contacts",)
     sense, grid = AT_MOST, NOTHING
 
-    def judge(self, trace: Signals) -> Verdict:
+    def question(self, trace: Signals) -> Question:
         counter = f"{self.damper}.stop_contacts"
-        counted = trace[counter]
-        worst = float(counted[-1])
-        time = float(trace.time[np.argmax(counted == counted[-1])]) if worst > 0.0 else math.nan
-        return self.verdict(trace, "stop contacts", counter, self.at_most, worst, time)
+        return Question("contacts", [self.form("stop contacts", counter)], [counter], [self.at_most])
 
 
 class HealdBlows(Claim):
@@ -102,11 +87,7 @@ class HealdBlows(Claim):
     needs = ("play.hardest_blow", "play.blows")
     sense, unit, grid = AT_MOST, VELOCITY, NOTHING
 
-    def judge(self, trace: Signals) -> Verdict:
+    def question(self, trace: Signals) -> Question:
         latch = f"{self.play}.hardest_blow"
-        hardest, blows = trace[latch], int(trace[f"{self.play}.blows"][-1])
-        worst = float(hardest[-1])
-        time = float(trace.time[np.argmax(hardest == worst)]) if blows else math.nan
-        return self.verdict(
-            trace, "hardest blow", latch, self.at_most, worst, time, f"{blows} blow{'s' * (blows != 1)}"
-        )
+        signals = [latch, f"{self.play}.blows"]
+        return Question("blows", [self.form("hardest blow", latch)], signals, [self.at_most])

@@ -1,13 +1,16 @@
 """The lift of the warp of a heald frame: that of its sprung carrier, or of the frame itself."""
 
 import math
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
+from contextlib import suppress
+from itertools import chain
 from typing import Any, Protocol
 
 from ...errors import LoomfmuError, listed, shown
 from ...traces import Signals
 from ...upstream import sources_of, upstream
 
+LENGTH = "pattern_length"  # of the pattern of a heald frame
 WORDS = [f"pattern_{number}" for number in range(1, 9)]  # parameters of a heald frame: picks, as bits
 PICKS_IN_A_WORD = 16
 FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
@@ -49,29 +52,25 @@ def pegs(values: Mapping[str, Any]) -> str:
     '1100'
     """
     every = "".join(f"{int(values[word]):0{PICKS_IN_A_WORD}b}"[::-1] for word in WORDS if word in values)
-    return every[: int(values["pattern_length"])]
+    return every[: int(values[LENGTH])]
 
 
-def repeat_of(instance: str, trace: Signals) -> int:
-    """Return the revolutions after which the weave repeats that an instance depends on; 1 without a weave."""
-    known = trace.shared.setdefault(repeat_of, {})  # several claims ask
-    if not known:
+def weave_of(instances: Iterable[str], trace: Signals) -> tuple[str, ...]:
+    """Return the patterns of all frames on which these instances depend: 9 parameters of each."""
+    known, wanted = trace.shared.setdefault(weave_of, {}), frozenset(instances)  # several claims ask
+    if wanted not in known:
         owners = ((source.partition(".")[0], sink.partition(".")[0]) for sink, source in trace.wires.items())
-        known[""] = sources_of(owners)
-    if instance not in known:
-        known[instance] = math.lcm(*(_own_repeat(each, trace) for each in upstream([instance], known[""])))
-    return int(known[instance])
+        patterns = (_pattern(each, trace) for each in sorted(upstream(wanted, sources_of(owners))))
+        known[wanted] = tuple(chain.from_iterable(patterns))
+    found: tuple[str, ...] = known[wanted]
+    return found
 
 
-def _own_repeat(instance: str, trace: Signals) -> int:
-    try:
-        length = trace.parameter(f"{instance}.pattern_length")
-        words = WORDS[: math.ceil(length / PICKS_IN_A_WORD)]
-        values = {word: trace.parameter(f"{instance}.{word}") for word in words}
-        found = pegs(values | {"pattern_length": length})
-    except (LoomfmuError, ValueError, OverflowError):  # it has no such parameters, or no numbers in them
-        return 1
-    return max((found + found).find(found, 1), 1)
+def _pattern(instance: str, trace: Signals) -> list[str]:
+    names = [f"{instance}.{name}" for name in (LENGTH, *WORDS)]
+    with suppress(LoomfmuError):  # it has no such parameters
+        return names if all(math.isfinite(trace.parameter(each)) for each in names) else []
+    return []
 
 
 def dampers_of(run: Wired) -> list[str]:

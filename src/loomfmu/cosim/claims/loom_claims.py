@@ -1,23 +1,14 @@
 """Claims on the whole loom: its mechanisms keep out of each other's way."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ... import units
 from ...errors import LoomfmuError
-from ...traces import Signals, Verdict
+from ...traces import Signals
 from ...traces.verdict import SHED_OPENING
-from . import shaft
 from .arguments import Edges, Flag, Name, Names, Quantity, Window, argument
-from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Landings
-from .curves import SAME, Doubt, Motion, Stretch, advised, motion_of
-from .extremes import first_lowest, lowest, nearest
+from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
+from .judging import Form, Question, needs_shaft
 from .lifted import Wired, check_lifted_by, frames_of, lift_of
-
-NEVER = "the head never enters the shed in this run"
 
 
 class _InShed(Claim, kind=False):
@@ -28,15 +19,6 @@ class _InShed(Claim, kind=False):
 
     reads = ("belt",)
     unit = LENGTH
-
-    def _travel(self, trace: Signals) -> Motion:
-        return motion_of(trace, f"{self.weft}.travel")
-
-    def _in_shed(self, trace: Signals) -> list[Stretch]:
-        return self._travel(trace).beyond(trace.parameter(f"{self.belt}.idle_travel"), 1.0)
-
-    def unseen(self, trace: Signals) -> str:
-        return "" if any(each.whole for each in self._in_shed(trace)) else shaft.short(trace)
 
 
 class RapierInOpenShed(_InShed):
@@ -59,43 +41,20 @@ class RapierInOpenShed(_InShed):
         carriers = [lift_of(frame, self.lifted_by, scene) for frame in frames]
         return list(dict.fromkeys([f"{self.weft}.travel", *wanted, *carriers]))
 
-    def judge(self, trace: Signals) -> Verdict:
+    def question(self, trace: Signals) -> Question:
         frames = self.healds or frames_of(trace)
         if not frames:
             raise LoomfmuError("rapier_in_open_shed: the run records no heald frame")
         check_lifted_by(self.lifted_by, ())
-        text, limit, travel = SHED_OPENING, self.head_height, self._travel(trace)
-        in_shed = self._in_shed(trace)
-        warps = {frame: lift_of(frame, self.lifted_by, trace) for frame in frames}
-        if not in_shed:
-            signal = _opening(frames[0], warps[frames[0]])
-            return self.verdict(trace, text, signal, limit, math.nan, math.nan, NEVER, travel.note)
-        worst, time, signal, notes = self._least(trace, warps, in_shed)
-        if any(lift != f"{frame}.lift" for frame, lift in warps.items()):
-            frames_alone, *_rest = self._least(trace, {frame: f"{frame}.lift" for frame in frames}, in_shed)
-            notes.append(f"the frames: {units.show(frames_alone, 'mm')}")
-        return self.verdict(trace, text, signal, limit, worst, time, travel.note, *notes)
-
-    def _least(
-        self, trace: Signals, warps: Mapping[str, str], in_shed: Sequence[Stretch]
-    ) -> tuple[float, float, str, list[str]]:
-        """The least opening by the lifts of the frames' warps: value, time, whose, and notes."""
-        openings, notes = [], []
-        for frame, signal in warps.items():
-            lift = motion_of(trace, signal)
-            stroke, ratio = trace.parameter(f"{frame}.stroke"), trace.parameter(f"{frame}.warp_ratio")
-            closest = nearest(lift, 0.5 * stroke, in_shed)
-            openings.append((2.0 * ratio * closest.value, closest.time, _opening(frame, signal)))
-            notes += [lift.note, closest.note]
-        worst = float(np.min([opening for opening, _time, _name in openings]))  # NaN if there is one
-        equal = [each for each in openings if not each[0] > worst + SAME]
-        _value, time, named = min(equal, key=lambda each: each[1])
-        return worst, time, named, notes
-
-
-def _opening(frame: str, lift: str) -> str:
-    """Return the name of the opening at a frame, or at the carrier in it."""
-    return f"2 |{frame}.warp_height|" if lift == f"{frame}.lift" else f"2 |warp height by {lift}|"
+        signals = [f"{self.weft}.travel"]
+        forms, numbers = list[Form](), list[float | str]()
+        for frame in frames:
+            own, lift = f"{frame}.lift", lift_of(frame, self.lifted_by, trace)
+            named = f"2 |{frame}.warp_height|" if lift == own else f"2 |warp height by {lift}|"
+            forms.append(self.form(SHED_OPENING, named))
+            signals += (lift, own)
+            numbers += (f"{frame}.stroke", f"{frame}.warp_ratio")
+        return Question("shed", forms, signals, [self.head_height, f"{self.belt}.idle_travel", *numbers])
 
 
 class ReedClearOfRapier(_InShed):
@@ -106,19 +65,11 @@ class ReedClearOfRapier(_InShed):
 
     needs = ("reed.position", "reed.front_limit", "weft.travel")
 
-    def judge(self, trace: Signals) -> Verdict:
-        text, signal = (
-            "smallest distance from the front limit",
-            f"{self.reed}.front_limit - {self.reed}.position",
-        )
-        travel, position = self._travel(trace), motion_of(trace, f"{self.reed}.position")
-        in_shed = self._in_shed(trace)
-        if not in_shed:
-            return self.verdict(trace, text, signal, self.clearance, math.nan, math.nan, NEVER, travel.note)
-        foremost = lowest(position, -1.0, in_shed)
-        worst = float(trace[f"{self.reed}.front_limit"][-1]) - foremost.value
-        notes = (travel.note, position.note, foremost.note)
-        return self.verdict(trace, text, signal, self.clearance, worst, foremost.time, *notes)
+    def question(self, trace: Signals) -> Question:
+        limit, position = f"{self.reed}.front_limit", f"{self.reed}.position"
+        form = self.form("smallest distance from the front limit", f"{limit} - {position}")
+        signals = [f"{self.weft}.travel", position, limit]
+        return Question("reed", [form], signals, [self.clearance, f"{self.belt}.idle_travel"])
 
 
 class _Transfer(Claim, kind=False):
@@ -128,11 +79,6 @@ class _Transfer(Claim, kind=False):
 
     reads = ("transfer",)
     grid = LANDINGS
-
-    def _overlap(self, trace: Signals) -> tuple[Motion, float]:
-        """The overlap, and what the hooks need of it."""
-        name = self.transfer
-        return motion_of(trace, f"{name}.overlap"), trace.parameter(f"{name}.needed_overlap")
 
 
 class TransferInTime(_Transfer):
@@ -147,34 +93,16 @@ class TransferInTime(_Transfer):
     needs = ("transfer.overlap",)
     unit = LENGTH
 
-    def judge(self, trace: Signals) -> Verdict:
-        text, signal = f"overlap of the heads {self.window.words}", f"{self.transfer}.overlap"
-        overlap, needed = self._overlap(trace)
-        found = [lowest(overlap, -1.0, [each]) for each in shaft.passes(trace, self.window)]
-        if not found:
-            nothing = math.nan, math.nan, overlap.note, shaft.UNPASSED
-            return self.verdict(trace, text, signal, needed, *nothing)
-        worst, time = first_lowest([each.value for each in found], [each.time for each in found])
-        notes = (overlap.note, *(each.note for each in found), *self._hand_over(trace, overlap, needed, time))
-        return self.verdict(trace, text, signal, needed, worst, time, *notes)
+    def question(self, trace: Signals) -> Question:
+        needs_shaft(trace)
+        signal, window = f"{self.transfer}.overlap", self.window
+        numbers = (f"{self.transfer}.needed_overlap", window.start, window.width)
+        return Question(
+            "transfer", [self.form(f"overlap of the heads {window.words}", signal)], [signal], numbers
+        )
 
-    def unseen(self, trace: Signals) -> str:
-        return shaft.unpassed(trace, self.window)
-
-    def _hand_over(self, trace: Signals, overlap: Motion, needed: float, time: float) -> list[str]:
-        """A note on the shaft angles between which the heads overlap enough about a time."""
-        turning = shaft.needed_angle(trace)
-        return [
-            "hand-over from {} to {}".format(
-                *(units.show(shaft.place(turning, end)[0], "deg") for end in each[:2])
-            )
-            for each in overlap.beyond(needed, 1.0)
-            if each.whole and each.start <= time <= each.end
-        ]
-
-    def landings(self, trace: Signals) -> Landings:
-        edges = [each.start for each in shaft.times_within(trace, self.window)]
-        return Landings(edges, [(f"{self.transfer}.overlap", -1.0)])
+    def extremes(self) -> list[tuple[str, float]]:
+        return [(f"{self.transfer}.overlap", -1.0)]
 
 
 class TransferSpeed(_Transfer):
@@ -185,25 +113,12 @@ class TransferSpeed(_Transfer):
     needs = ("transfer.overlap", "transfer.closing_velocity")
     sense, unit = AT_MOST, VELOCITY
 
-    def unseen(self, trace: Signals) -> str:
-        overlap, needed = self._overlap(trace)
-        return "" if any(each.whole for each in overlap.beyond(needed, 1.0)) else shaft.short(trace)
-
-    def judge(self, trace: Signals) -> Verdict:
-        text, signal = "highest relative speed of the heads", f"{self.transfer}.closing_velocity"
-        (overlap, needed), closing = self._overlap(trace), motion_of(trace, signal)
-        during = overlap.beyond(needed, 1.0)
-        if not during:
-            note = "the heads never overlap by what the hooks need in this run"
-            return self.verdict(trace, text, signal, self.at_most, math.nan, math.nan, overlap.note, note)
-        ends = [lowest(closing, sign, during) for sign in (1.0, -1.0)]
-        fastest = max(ends, key=lambda found: abs(found.value))
-        notes = (overlap.note, closing.note, *(each.note for each in ends))
-        return self.verdict(trace, text, signal, self.at_most, abs(fastest.value), fastest.time, *notes)
-
-    def landings(self, trace: Signals) -> Landings:
-        overlap, needed = self._overlap(trace)
-        return Landings(overlap.crossings(needed), [])
+    def question(self, trace: Signals) -> Question:
+        signal = f"{self.transfer}.closing_velocity"
+        signals = [f"{self.transfer}.overlap", signal]
+        numbers = (self.at_most, f"{self.transfer}.needed_overlap")
+        form = self.form("highest relative speed of the heads", signal)
+        return Question("transfer_speed", [form], signals, numbers)
 
 
 class NipHolds(Claim):
@@ -219,33 +134,13 @@ class NipHolds(Claim):
     at_samples: bool = argument(Flag(), False)
 
     needs = ("roller.holding_force", "roller.drafting_force")
-    final = False
 
-    def judge(self, trace: Signals) -> Verdict:
-        drafting = motion_of(trace, f"{self.roller}.drafting_force")
-        holding = motion_of(trace, f"{self.roller}.holding_force")
-        most = lowest(drafting, -1.0)
+    def question(self, trace: Signals) -> Question:
         text = "holding force over drafting force" + " at the samples" * self.at_samples
         signal = f"{self.roller}.holding_force / drafting_force"
-        if not most.value > 0.0:
-            note = "no fibres are drafted in this run"
-            return self.verdict(trace, text, signal, self.at_least, math.nan, math.nan, note)
-        held = lowest(holding, -1.0, drafting.beyond(0.0, 1.0))
-        ratio = held.value / most.value
-        high = ratio - self.at_least > self.at_most - ratio
-        notes = [most.note, held.note]
-        notes += [] if self.at_samples else map(advised, (drafting.note, holding.note))
-        return self.verdict(
-            trace,
-            text,
-            signal,
-            self.at_most if high else self.at_least,
-            ratio,
-            most.time,
-            *notes,
-            holds=self.at_least - SAME <= ratio <= self.at_most + SAME,
-            sense=AT_MOST if high else AT_LEAST,
-        )
+        forms = [Form(text, signal, self.unit, sense) for sense in (AT_LEAST, AT_MOST)]
+        signals = [f"{self.roller}.drafting_force", f"{self.roller}.holding_force"]
+        return Question("nip", forms, signals, [self.at_least, self.at_most, float(self.at_samples)])
 
 
 class LocksInTime(Claim):
@@ -259,35 +154,11 @@ class LocksInTime(Claim):
     needs = ("lock.in_time", "lock.torque_margin", "lock.speed_limit")
     sense, unit = AT_MOST, SPEED
 
-    def judge(self, trace: Signals) -> Verdict:
-        text, limit = "highest speed of the shaft", float(trace[f"{self.lock}.speed_limit"][-1])
-        in_time = np.asarray(trace[f"{self.lock}.in_time"], dtype=bool)
-        speed = motion_of(trace, "shaft.velocity", rates=1) if "shaft.velocity" in trace else None
-        if speed is None or not np.array_equal(np.abs(speed.values[0]) <= limit, in_time):
-            return self._at_samples(trace, in_time)
-        fastest = min(lowest(speed, 1.0), lowest(speed, -1.0), key=lambda found: -abs(found.value))
-        highest = abs(fastest.value)
-        notes = (speed.note, fastest.note)
-        return self.verdict(trace, text, "shaft.velocity", limit, highest, fastest.time, *notes)
-
-    def _at_samples(self, trace: Signals, in_time: NDArray[np.bool_]) -> Verdict:
-        """The verdict on a lock that does not follow the main shaft: what it says at the samples."""
-        signal = f"{self.lock}.torque_margin"
-        margin = np.asarray(trace[signal])
-        late = np.flatnonzero(~in_time)
-        place = int(late[0]) if len(late) else int(np.argmin(margin))
-        note = Doubt(
-            f"{self.lock}.in_time is known only at the samples: the lock does not follow shaft.velocity"
-        )
-        return self.verdict(
-            trace,
-            "torque margin",
-            signal,
-            0.0,
-            float(margin[place]),
-            float(trace.time[place]),
-            note,
-            holds=not len(late),
-            unit=ONE,
-            sense=AT_LEAST,
-        )
+    def question(self, trace: Signals) -> Question:
+        velocity, margin = "shaft.velocity", f"{self.lock}.torque_margin"
+        forms = [
+            self.form("highest speed of the shaft", velocity),
+            Form("torque margin", margin, ONE, AT_LEAST),  # of a lock that does not follow the shaft
+        ]
+        signals = [f"{self.lock}.speed_limit", f"{self.lock}.in_time", margin]
+        return Question("locks", forms, [*signals, velocity if velocity in trace else ""], [0.0])

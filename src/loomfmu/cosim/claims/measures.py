@@ -12,13 +12,11 @@ import numpy as np
 from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
-from . import shaft
 from .arguments import Name, Quantity, argument
 from .claim import Claim
-from .curves import motion_of
+from .judging import Form, Question, needs_shaft, run_of
 from .lifted import Wired
 from .signal_claims import Above, Below
-from .validity import gaps
 
 FORMS = "'highest {0}', 'lowest {0}', 'mean {0}' or '{0} at 90 deg'"
 _FORM = re.compile(r"(?:(highest|lowest|mean)\s+)?([^\s]+)(?:\s+at\s+(.+))?")
@@ -32,11 +30,11 @@ class Measure(Claim, kind=False):
     def signals(self, scene: Wired) -> list[str]:
         return [self.signal]
 
-    def judge(self, trace: Signals) -> Verdict:
+    def question(self, trace: Signals) -> Question:
         value, time = self.of(trace)
-        value = math.nan if gaps(trace, self.signal) else value
-        unit = (trace.unit(self.signal), trace.display(self.signal))
-        return self.verdict(trace, "", self.signal, 0.0, value, time, holds=True, unit=unit, unknown=())
+        value = value if _known(trace, self.signal) else math.nan
+        form = Form("", self.signal, (trace.unit(self.signal), trace.display(self.signal)), self.sense)
+        return Question("given", [form], [self.signal], [0.0, value, time, 1.0])
 
     def of(self, trace: Signals) -> tuple[float, float]:
         """The number, and its time where it has one. Raises LoomfmuError where the signal gives none."""
@@ -48,7 +46,7 @@ class Highest(Below, kind=False):
 
     def judge(self, trace: Signals) -> Verdict:
         found = super().judge(trace)
-        return replace(found, worst=math.nan) if gaps(trace, self.signal) else found
+        return found if _known(trace, self.signal) else replace(found, worst=math.nan)
 
 
 class Lowest(Above, kind=False):
@@ -56,18 +54,17 @@ class Lowest(Above, kind=False):
 
     def judge(self, trace: Signals) -> Verdict:
         found = super().judge(trace)
-        return replace(found, worst=math.nan) if gaps(trace, self.signal) else found
+        return found if _known(trace, self.signal) else replace(found, worst=math.nan)
 
 
 class Mean(Measure, kind=False):
     """The mean of a signal over the time of the run."""
 
     def of(self, trace: Signals) -> tuple[float, float]:
-        motion = motion_of(trace, self.signal)
-        intervals = np.arange(len(motion.time) - 1)
+        points, time = run_of(trace).points(trace, self.signal), trace.time
         # the mean of a polynomial is that of its Bernstein points
-        total = float(np.sum(np.mean(motion.points(intervals), axis=0) * motion.length(intervals)))
-        return total / float(motion.time[-1] - motion.time[0]), math.nan
+        total = float(np.sum(np.mean(points.T, axis=0) * np.diff(time)))
+        return total / float(time[-1] - time[0]), math.nan
 
 
 class At(Measure, kind=False):
@@ -76,11 +73,12 @@ class At(Measure, kind=False):
     angle: float = argument(Quantity("rad", "deg"))
 
     def of(self, trace: Signals) -> tuple[float, float]:
-        times = shaft.times_at(trace, self.angle)
+        needs_shaft(trace)
+        times = run_of(trace).stands_at(self.angle)
         if not times:
             where = units.show(self.angle, "deg")
             raise LoomfmuError(f"{self.signal} at {where}: the shaft does not pass this angle; run longer")
-        return motion_of(trace, self.signal).at(times[-1]), times[-1]
+        return run_of(trace).at(trace, self.signal, times[-1]), times[-1]
 
 
 class Held(Measure, kind=False):
@@ -95,6 +93,12 @@ class Held(Measure, kind=False):
                 f" {FORMS.format(self.signal)}"
             )
         return float(values[-1]), math.nan
+
+
+def _known(trace: Signals, signal: str) -> bool:
+    """Return whether a signal is known throughout the run."""
+    flag = trace.validity(signal)
+    return flag is None or bool(np.all(trace[flag]))
 
 
 def signal_in(text: str) -> str:

@@ -1,6 +1,6 @@
 /* The page whose FMUs run: its sliders, and what follows them. `loomfmu.live.follow(part, run => ...)` is called after
  * every run, and once more when FMUs that take long have followed. Of a run there are `time`, `positions`,
- * `signal(name)`, `rate(name)`, `beside(name, role)` and `parameter(name)`, all in SI; `waits(name)` while its FMU is still
+ * `signal(name)` and `parameter(name)`, all in SI; `waits(name)` while its FMU is still
  * being stepped, so that its samples are of other values; `count(name)`, another number for other samples. It is null
  * where the values cannot be run. */
 loomfmu.live = (() => {
@@ -127,20 +127,26 @@ loomfmu.live = (() => {
   });
   for (const show of shows) show();
 
-  // ---- the module
+  // ---- the modules: the FMUs, and the rules of claims
+
+  async function module(text) {
+    const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+    const { exports } = (await WebAssembly.instantiate(bytes)).instance;
+    exports._initialize();
+    return exports;
+  }
 
   addEventListener("load", async () => {
-    let wasm;
+    let wasm, rules;
     try {
-      const bytes = Uint8Array.from(atob(plan.wasm), letter => letter.charCodeAt(0));
-      wasm = (await WebAssembly.instantiate(bytes)).instance.exports;
+      [wasm, rules] = await Promise.all([plan.wasm, plan.judging.wasm].map(module));
     } catch (error) {
       problem.hidden = false;
       problem.textContent = `The FMUs cannot run here: ${error.message}. The page shows the run of the scene’s own values, without plots.`;
       return;
     }
-    wasm._initialize();
     steps = loomfmu.steps(plan, wasm);
+    loomfmu.live.judge = loomfmu.judge(plan.judging, plan.steps + 1, rules);
     for (const input of form.elements) input.disabled = false;
     run();
   });

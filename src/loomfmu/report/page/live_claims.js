@@ -6,11 +6,11 @@ loomfmu.general = (value, digits = 7) => {
   const short = text.includes(".") ? text.replace(/\.?0+(?=e|$)/, "") : text;
   return short.replace(/e([+-])(\d)$/, "e$10$2");
 };
-/* A value of a claim with its unit. */
-loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
-  Number.isNaN(value) ? "no value" : `${loomfmu.general(value * factor)}${unit && ` ${unit}`}`;
+/* A value of a verdict with its unit. */
+loomfmu.shownIn = ({ factor, unit }, value, digits = 7) =>
+  Number.isFinite(value) ? `${loomfmu.general(value * factor, digits)}${unit && ` ${unit}`}` : "no value";
 (() => {
-  const { claims } = loomfmu.live.plan, TURN = 2 * Math.PI, DEGREE = Math.PI / 180;
+  const { claims } = loomfmu.live.plan.judging, DEGREE = Math.PI / 180;
 
   const rows = document.querySelectorAll("#claims tbody tr"), outcome = document.querySelector("#claims .outcome");
   const kept = [], bases = []; // verdicts, and the samples that they are of
@@ -18,93 +18,96 @@ loomfmu.shownIn = ({ shown: { factor, unit } }, value) =>
 
   /* A claim that is judged otherwise than loomfmu did at the scene's own values is left out from then on. */
   function check(claim, { holds, worst }) {
-    const { native } = claim, scale = Math.max(Math.abs(native.worst), Math.abs(worst));
-    const same = native.worst === null ? Number.isNaN(worst) : Math.abs(worst - native.worst) <= 1e-6 * scale;
-    claim.left = holds !== null && !(holds === native.holds && same);
+    const { native, noise } = claim, scale = Math.max(Math.abs(native.worst), Math.abs(worst));
+    const same = native.worst === null ? Number.isNaN(worst) : Math.abs(worst - native.worst) <= 1e-6 * scale + noise;
+    claim.unlike = !(holds === (native.decided ? native.holds : null) && same);
   }
 
-  function place(run, { time, at }) {
-    if (!Number.isFinite(time)) return null;
+  function placeOf({ time, angle, revolution }) {
     const text = `${loomfmu.general(time, 6)} s`;
-    if (!loomfmu.turns) return { text, position: time };
-    const turn = Math.floor(at / TURN), first = Math.floor(run.signal("shaft.angle")[0] / TURN);
-    return { text: `${text}, ${((at - turn * TURN) / DEGREE).toFixed(3)} deg, rev. ${turn - first + 1}`, position: at };
+    return Number.isNaN(angle) ? text : `${text}, ${(angle / DEGREE).toFixed(3)} deg, rev. ${revolution}`;
+  }
+
+  const wordOf = ({ holds, waits, left }) =>
+    waits ? "computing" : left ? "not judged" : holds === null ? "undecided" : holds ? "holds" : "FAILS";
+
+  function line(tag, text) {
+    const made = document.createElement(tag);
+    made.textContent = text;
+    return [document.createElement("br"), made];
   }
 
   function show(row, claim, verdict) {
-    const [word, name, worst, bound, distance, where] = row.cells;
-    const shown = value => loomfmu.shownIn(claim, value), code = name.querySelector("code");
-    const known = verdict.holds !== null, unknown = verdict.waits ? "computing" : "not judged";
-    word.className = known ? (verdict.holds ? "holds" : "fails") : "";
+    const [word, name, worst, bound, distance, where] = row.cells, { form = claim.forms[0], place: at } = verdict;
+    const shown = value => loomfmu.shownIn(form, value), code = name.querySelector("code"), known = verdict.form;
+    word.className = { holds: "holds", FAILS: "fails", undecided: "undecided" }[wordOf(verdict)] || "";
     word.replaceChildren();
     const mark = document.createElement("span");
     mark.className = "mark";
     mark.setAttribute("aria-hidden", "true");
-    word.append(...(known ? [mark, verdict.holds ? "holds" : "FAILS"] : [unknown]));
-    code.textContent = verdict.signal || claim.signal;
+    word.append(...(word.className ? [mark] : []), wordOf(verdict));
+    code.textContent = form.signal;
     for (const old of name.querySelectorAll("small, code + br")) old.remove();
-    if (verdict.note) {
-      const note = document.createElement("small");
-      note.textContent = verdict.note;
-      name.append(document.createElement("br"), note);
-    }
-    const gap = verdict.sense * (verdict.worst - verdict.bound), share = 100 * gap / Math.abs(verdict.bound);
+    if (verdict.note) name.append(...line("small", verdict.note));
+    const { distance: gap } = verdict, share = 100 * gap / Math.abs(verdict.bound);
     worst.textContent = known ? shown(verdict.worst) : "–";
     bound.textContent = known ? shown(verdict.bound) : "–";
     distance.textContent = !known ? "–" : shown(gap)
-      + (verdict.bound && !Number.isNaN(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)}%)` : "");
+      + (verdict.bound && Number.isFinite(gap) ? ` (${share < 0 ? "" : "+"}${share.toFixed(1)}%)` : "");
+    if (Number.isFinite(verdict.error)) distance.append(...line("small", `error ${loomfmu.shownIn(form, verdict.error, 1)}`));
     where.textContent = "–";
-    if (verdict.place) {
+    if (at) {
       const button = document.createElement("button");
       button.type = "button";
       button.className = "place";
-      button.dataset.position = verdict.place.position;
+      button.dataset.position = at.position;
       button.title = "Move the cursor there";
-      button.textContent = verdict.place.text;
+      button.textContent = at.text;
       where.replaceChildren(button);
     }
   }
 
   function conclude(verdicts, failed) {
-    const failing = verdicts.filter(each => each.holds === false).length, all = verdicts.length;
-    const open = verdicts.filter(each => each.holds === null).length, waiting = verdicts.filter(each => each.waits).length;
-    const text = failed ? "Not judged: these values cannot be run" : !all ? "No claims"
-      : failing ? `${failing} of ${all} claims fail${failing === 1 ? "s" : ""}`
-      : open ? `${all - open} of ${all} claims hold` : all === 1 ? "The claim holds" : `All ${all} claims hold`;
-    const mark = outcome.querySelector(".mark");
-    const rest = [open > waiting && `${open - waiting} not judged here`, waiting && `${waiting} being computed`];
-    outcome.replaceChildren(mark, [text, ...rest.filter(each => each && !failed)].join(", "));
+    const count = word => verdicts.filter(each => wordOf(each) === word).length, all = verdicts.length;
+    const failing = count("FAILS"), undecided = count("undecided"), left = count("not judged"), waiting = count("computing");
+    const open = undecided + left + waiting, of = ` of ${all} claims`, is = undecided === 1 ? "is" : "are";
+    const text = failed ? ["Not judged: these values cannot be run"] : !all ? ["No claims"]
+      : !failing && !open ? [all === 1 ? "The claim holds" : `All ${all} claims hold`]
+      : [failing ? `${failing}${of} fail${failing === 1 ? "s" : ""}` : !undecided && `${all - open}${of} hold`,
+         undecided && `${undecided}${failing ? "" : of} ${is} undecided`, left && `${left} not judged here`, waiting && `${waiting} being computed`];
+    outcome.replaceChildren(outcome.querySelector(".mark"), text.filter(Boolean).join(", "));
     outcome.className = `outcome ${failed || !all ? "unknown" : failing ? "fails" : open ? "unknown" : "holds"}`;
   }
 
-  /* Bounds of the claims on a signal, as the plots draw them: a line for each, empty where it is not judged. */
-  loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, holds }, number) => {
-    const { signal, drawn, shown: { factor } } = claims[number];
-    if (signal !== name || !drawn) return [];
+  /* Bounds of the claims on a signal, as the plots draw them: a line for each, empty where it is undecided. */
+  loomfmu.live.bounds = name => (loomfmu.live.verdicts || []).flatMap(({ bound, holds, form }, number) => {
+    const its = form || claims[number].forms[0];
+    if (its.signal !== name || !its.drawn) return [];
     if (holds === null) return [{ value: null, text: "", holds }];
-    return [{ value: bound * factor, text: `bound ${loomfmu.shownIn(claims[number], bound)}`, holds }];
+    return [{ value: bound * its.factor, text: `bound ${loomfmu.shownIn(its, bound)}`, holds }];
   });
 
   /* Where the claim is that is nearest to its bound, or farthest beyond it; null where none is judged. */
   loomfmu.live.worst = () => {
     const [nearest] = (loomfmu.live.verdicts || [])
       .filter(verdict => verdict.holds !== null && verdict.place)
-      .map(verdict => ({ verdict, away: verdict.sense * (verdict.worst - verdict.bound) / (Math.abs(verdict.bound) || 1) }))
+      .map(verdict => ({ verdict, away: verdict.distance / (Math.abs(verdict.bound) || 1) }))
       .sort((one, other) => one.verdict.holds - other.verdict.holds || one.away - other.away);
     return nearest ? nearest.verdict.place.position : null;
   };
 
   function verdictOf(run, judge, claim) {
     const waiting = run ? claim.parts.filter(run.waits) : [];
-    if (!run) return { holds: null, note: "these values cannot be run" };
+    if (!run) return { holds: null, left: true, note: "these values cannot be run" };
     if (waiting.length) return { holds: null, waits: true, note: `${waiting.join(", ")} still being stepped` };
-    const verdict = judge(claim);
-    return verdict.holds === null ? verdict : { ...verdict, place: place(run, verdict) };
+    const verdict = judge(claim), { time } = verdict;
+    if (!Number.isFinite(time)) return verdict;
+    return { ...verdict, place: { text: placeOf(verdict), position: loomfmu.interpolate(run.time, run.positions, time) } };
   }
 
   outcome.setAttribute("aria-live", "polite");
   loomfmu.live.follow("claims", run => {
-    const judge = run && loomfmu.judge(run);
+    const judge = run && loomfmu.live.judge(run, !loomfmu.live.changed().length);
     if (run && !checked) {
       for (const claim of claims) check(claim, judge(claim));
       checked = true;

@@ -88,8 +88,7 @@ loomfmu.steps = (plan, wasm) => {
     const table = new Map(names.map((name, place) =>
       [name, new Float64Array(wasm.memory.buffer, samples + 8 * place * length, length)]));
     return {
-      time, has: name => table.has(name), signal: name => table.get(name), rate: name => plan.signals[name].rate,
-      beside: (name, role) => plan.signals[name]?.[role],
+      time, has: name => table.has(name), signal: name => table.get(name),
       positions: plan.turns ? table.get("shaft.angle") : time,
       parameter: name => {
         if (!parameters.has(name))

@@ -1,0 +1,83 @@
+"""The claims of a page: the rules as WebAssembly, and the question that each claim asks them."""
+
+import math
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ..cosim.claims.claim import Claim
+from ..cosim.claims.judging import FIELDS, SOURCE, Form, Table, beside, number_of
+from ..cosim.estimates import Dependence, Method
+from ..cosim.planning.requested import SHAFT_ANGLE, claims_of
+from ..cosim.scenes.scene import Scene
+from ..fmi.native.libraries import module_of
+from ..traces import Trace, Verdict
+
+
+def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """Return the data with which the script judges: the rules, their signals, and a row for each claim.
+
+    Args:
+        scene: the scene that is run
+        ends: the scene with each value that is varied at either end of its range
+        trace: the run that the page holds
+        verdicts: those on that run
+    """
+    table, found = Table(), claims_of(scene)
+    number_of(table, trace, SHAFT_ANGLE)
+    dependence = Dependence(scene, found)
+    unshown = [dependence.unshown(each) for each in ends]
+    asked = zip(found, dependence.methods, verdicts, strict=True)
+    rows = [
+        _claim(claim, method, verdict, trace, table)
+        | {"unshown": next((each[number] for each in unshown if number in each), "")}
+        for number, (claim, method, verdict) in enumerate(asked)
+    ]
+    signals = [
+        {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table
+    ]
+    wasm = b64encode(module_of(SOURCE)).decode()
+    return {"wasm": wasm, "fields": FIELDS, "signals": signals, "claims": rows}
+
+
+def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: Table) -> dict[str, Any]:
+    """Return one claim: its question, the forms of its verdict, the instances that it reads, its verdict.
+
+    Of the numerical error the script has the part that differs between resolutions, `spread`, with what the
+    run says of it: the rest it takes from the signals. It leaves out a claim that it would judge otherwise.
+    """
+    question, read = claim.question(trace), Table()
+    for name in (SHAFT_ANGLE, *question.signals, *(form.signal for form in question.forms)):
+        number_of(read, trace, name)
+    parameters = [each for each in question.numbers if isinstance(each, str)]
+    return {
+        "question": question.written(trace, lambda signal: number_of(table, trace, signal)),
+        "forms": [_form(form, verdict, trace) for form in question.forms],
+        "parts": sorted({name.partition(".")[0] for name in (*read, *parameters)}),
+        "words": question.words,
+        "noise": claim.noise,
+        "share": method.floor,
+        "scatter": method.scatter,
+        "native": {
+            "holds": verdict.holds,
+            "decided": verdict.decided,
+            "worst": verdict.worst,
+            "estimated": not math.isnan(verdict.spread),
+            "spread": 0.0 if math.isnan(verdict.spread) else verdict.spread,
+            "remark": verdict.note.removeprefix(claim.judge(trace).note).removeprefix("; "),
+        },
+    }
+
+
+def _form(form: Form, verdict: Verdict, trace: Trace) -> dict[str, Any]:
+    """Return the signal of a verdict, its sense, and the unit and factor of its values."""
+    unit, display = form.unit
+    shown = replace(verdict, unit=unit, display_unit=display)
+    return {
+        "signal": form.signal,
+        "sense": form.sense,
+        "drawn": form.judges(trace),
+        "factor": shown.displayed(1.0),
+        "unit": "" if shown.label == "1" else shown.label,
+    }
