@@ -17,7 +17,7 @@ from browser import NARROW, until
 import loomfmu
 from loomfmu import LoomfmuError, report
 from loomfmu.cli import main
-from loomfmu.report import plots
+from loomfmu.report import pictures, plots
 from loomfmu.report.section import Subject
 from loomfmu.report.templates import text
 from loomfmu.traces import Channel, Trace, TraceWriter
@@ -238,6 +238,20 @@ def test_a_picture_lies_beside_its_trace(
     assert capsys.readouterr().out.strip() == str(copied.with_name("demo_plot.png"))
 
 
+def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
+    copied: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Any] = []
+    monkeypatch.setattr(pictures, "save", lambda figure, path, *_more: (drawn.append(figure), path)[1])
+    assert main(["plot", str(copied), "belt.margin", "--ylim", "0..0.5"]) == 0
+    assert main(["plot", str(copied), "heald_1.lift", "--ylim", "0mm..20mm"]) == 0
+    margin, lift = (each.axes[0] for each in drawn)
+    assert margin.get_ylim() == (0.0, 0.5) and lift.get_ylim() == (0.0, 20.0)
+    # of a claim on belt.lowest_margin, which is the extreme of this signal
+    _curve, bound = margin.get_lines()
+    assert bound.get_label() == "bound 0.1" and set(bound.get_ydata()) == {0.1}
+
+
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
@@ -247,6 +261,9 @@ def test_a_picture_lies_beside_its_trace(
         (["belt.margin", "--output", "x.gif"], "x.gif: '.gif' is not a suffix of a picture; use .svg, .png"),
         (["belt.margin", "--over", "time", "--fold"], "can be folded, not one over time"),
         (["belt.margin", "--output", "demo.h5"], "use .svg, .png or .pdf"),
+        (["belt.margin", "--ylim", "1"], "ylim 1: the range is empty; write LOW..HIGH, such as 0..1 or"),
+        (["belt.margin", "--ylim", "0mm..1mm"], "'0mm' is in mm, which does not fit a number without a unit"),
+        (["belt.margin", "heald_1.lift", "--ylim", "0..1"], "are in different panels; plot them apart"),
     ],
 )
 def test_a_mistake_is_one_line(

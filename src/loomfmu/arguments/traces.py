@@ -53,6 +53,11 @@ def plot(commands: Any) -> None:
     )
     plot.add_argument("--fold", action="store_true", help="lay the revolutions over one another")
     plot.add_argument(
+        "--ylim",
+        metavar="LOW..HIGH",
+        help="the range that is drawn, with its unit, such as 0..1 or 0mm..5mm",
+    )
+    plot.add_argument(
         "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
     )
     add_force(plot, "the picture even if it is not one")

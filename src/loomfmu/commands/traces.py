@@ -137,7 +137,8 @@ def plot(options: argparse.Namespace) -> int:
     signals = [name for name in options.names if name not in more]
     output = Path(options.output) if options.output else None
     traces = [Trace(path) for path in paths]
-    say(pictures.plot(traces, signals, output, options.over, options.fold, options.force))
+    over, fold, force, ylim = options.over, options.fold, options.force, options.ylim
+    say(pictures.plot(traces, signals, output, over, fold, force, ylim))
     return 0
 
 

@@ -1,12 +1,15 @@
 """Single pictures: what files they may be, and plots of signals as such files."""
 
+import math
 from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError
+from .. import units
+from ..errors import LoomfmuError, listed
 from ..files import Kind, check_target, starts_with, write_file
 from ..traces import Trace, plotting
 from .section import labels
@@ -16,6 +19,8 @@ PICTURES = {
     ".png": starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n"),
     ".pdf": starts_with("a PDF", b"%PDF"),
 }
+HELD = ("lowest", "highest")  # roles of the extremes of a signal that its component holds
+BOUND = "#1a1a1a"
 WIDTH, PANEL, REST = 8.0, 2.6, 0.6  # of a picture of one panel or more [in]
 
 
@@ -57,6 +62,7 @@ def plot(
     over: str | None = None,
     fold: bool = False,
     overwrite: bool = False,
+    ylim: str | None = None,
 ) -> Path:
     """Write a picture of signals, a panel for each unit, and return its path.
 
@@ -67,10 +73,11 @@ def plot(
         over: `"angle"` or `"time"`; the shaft's angle if a shaft turns, by default
         fold: lay the revolutions over one another, at 0 to 360 deg
         overwrite: also replace a file that is not such a picture
+        ylim: the range that is drawn, such as "0..1" or "0 mm..50 mm"; of signals in one panel
 
     Raises:
-        LoomfmuError: a signal is not recorded, no shaft turns, the file cannot be written, or matplotlib is
-            not installed
+        LoomfmuError: a signal is not recorded, no shaft turns, a range does not fit the signals, the file
+            cannot be written, or matplotlib is not installed
     """
     if not signals:
         raise LoomfmuError("name at least one signal to plot, such as belt.margin")
@@ -83,7 +90,9 @@ def plot(
         plotting.checked(trace, over, fold)
     title = _title(traces)
     named = list(dict.fromkeys(each for name in signals for each in _named(traces[0], name)))
-    return save(_figure(traces, named, over, fold, title), path, title, inputs, overwrite)
+    panels = _panels(traces[0], named)
+    limits = None if ylim is None else _limits(ylim, traces[0], panels)
+    return save(_figure(traces, panels, over, fold, title, limits), path, title, inputs, overwrite)
 
 
 def _title(traces: Sequence[Trace]) -> str:
@@ -98,22 +107,70 @@ def _named(trace: Trace, name: str) -> list[str]:
     return [each for each in trace if fnmatchcase(each, name)] or [name]
 
 
-@plotting.fixed_style()
-def _figure(traces: Sequence[Trace], signals: Sequence[str], over: str, fold: bool, title: str) -> Any:
+def _panels(trace: Trace, signals: Sequence[str]) -> list[list[str]]:
+    """The signals of each panel."""
     panels: dict[str, list[str]] = {}
     for name in signals:
-        unit = traces[0].displayed(name)[1]
+        unit = trace.displayed(name)[1]
         key = name if unit == "1" else unit  # pure numbers have no scale in common
         panels.setdefault(key, []).append(name)
+    return list(panels.values())
+
+
+def _limits(ylim: str, trace: Trace, panels: Sequence[Sequence[str]]) -> tuple[float, float]:
+    """The ends of a range in the unit that its panel shows. Raises LoomfmuError."""
+    if len(panels) > 1:
+        names = listed(each[0] for each in panels)
+        raise LoomfmuError(f"ylim {ylim}: {names} are in different panels; plot them apart")
+    name = panels[0][0]
+    low, dots, high = ylim.partition("..")
+    try:
+        ends = [units.parse(each.strip(), trace.unit(name)) for each in (low, high if dots else low)]
+    except units.UnitError as error:
+        raise LoomfmuError(f"ylim {ylim}: {error}; write LOW..HIGH, such as 0..1 or 0mm..50mm") from None
+    if not ends[0] < ends[1]:
+        raise LoomfmuError(f"ylim {ylim}: the range is empty; write LOW..HIGH, such as 0..1 or 0mm..50mm")
+    factor = trace.displayed(name)[0]
+    return ends[0] / factor, ends[1] / factor
+
+
+def _bounds(trace: Trace, names: Sequence[str]) -> dict[str, float]:
+    """The bounds of the claims on signals, or on their held extremes, in the unit that is shown."""
+    judged = {each: name for name in names for each in (name, *map(partial(trace.beside, name), HELD))}
+    return {
+        f"bound {each.shown(each.bound)}": each.bound / trace.displayed(judged[each.signal])[0]
+        for each in trace.verdicts
+        if each.signal in judged
+        and each.unit == trace.unit(judged[each.signal])
+        and math.isfinite(each.bound)
+    }
+
+
+@plotting.fixed_style()
+def _figure(
+    traces: Sequence[Trace],
+    panels: Sequence[Sequence[str]],
+    over: str,
+    fold: bool,
+    title: str,
+    limits: tuple[float, float] | None,
+) -> Any:
     figure = plotting.figure((WIDTH, PANEL * len(panels) + REST))
     all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
-    for axes, names in zip(all_axes, panels.values(), strict=True):
+    for axes, names in zip(all_axes, panels, strict=True):
         curves = [
             (trace, name, " ".join(([name] if len(names) > 1 else []) + ([label] if len(traces) > 1 else [])))
             for name in names
             for trace, label in zip(traces, labels(traces), strict=True)
         ]
         plotting.draw(axes, curves, over, fold)
+        bounds = _bounds(traces[0], names)
+        for text, bound in bounds.items():
+            axes.axhline(bound, color=BOUND, linestyle=":", linewidth=1.5, label=text)
+        if bounds:
+            axes.legend(frameon=False)
+        if limits:
+            axes.set_ylim(limits)
         axes.label_outer()
     figure.suptitle(title, fontsize=11)
     return figure
