@@ -215,7 +215,7 @@ class Component:
     # how accurate its outputs are for given inputs, if it keeps a motion; they are exact to rounding if not
     accuracy: ClassVar[str] = ""
     # how much its outputs differ from step size to step size, however short the steps: a share of how far
-    # they have moved since the start
+    # they have moved since the start, unless an output says how far they may be off
     scatter: ClassVar[float] = 0.0
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()

@@ -91,7 +91,8 @@ def test_a_run_up_turns_the_shaft_less_than_the_nominal_revolutions(
 
 def test_warnings_go_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
     text = (
-        HEAD
+        'coupling = "lagged"\n'
+        + HEAD
         + LOOM
         + '[belt]\nguide_clearance = "1.2 mm"\n[wires]\nbelt.yarn_tension = "belt.inertia_force"\n'
     )

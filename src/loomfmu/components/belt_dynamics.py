@@ -27,6 +27,7 @@ MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six mod
 LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
 MORE_LEFT = 1e-2  # later, when the belt swings on and comes back, or where an end may be clamped
 MOST_LEFT = 3e-2  # where both may be: under a load that lasts beyond Euler's
+UNKNOWN_LEFT = 100.0  # with fewer than six modes, of which one gives an eighth of the deflection of six
 SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number any more
 
 
@@ -334,6 +335,8 @@ class BeltDynamics(BeltRest):
 
     def left(self) -> float:
         """Share of the largest deflection by which deflections may be off with any steps."""
+        if self.modes < 6:
+            return UNKNOWN_LEFT
         if self.guide_end != CALIBRATED and self.head_end == GUIDED:
             return MOST_LEFT
         pushed_out = self.compression > 0.0 and self.velocity > 0.0

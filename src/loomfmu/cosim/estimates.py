@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
@@ -20,7 +22,7 @@ from .claims.claim import Claim
 from .master.grid import SAME, Grid, period, uniform
 from .planning.requested import signals_of
 from .planning.windows import longest_step
-from .scenes.graph import step_order
+from .scenes.graph import Wire, step_order
 from .scenes.keys import ITERATED, WINDOWS
 from .scenes.scene import Scene
 
@@ -31,6 +33,7 @@ NO_VALUE = "coarser steps give no value: take more steps"
 # of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
 # to the coarsest run
 TOO_LONG = 2.0
+WELL_KNOWN = 180.0  # steps in a revolution, with which numbers are known to their method's `near`
 SHARES = (0.62, 0.38, 0.24)  # of the steps: powers of the golden ratio are farthest from fractions
 
 
@@ -67,7 +70,8 @@ class Coarser:
     """The worst values of the claims in each coarser run, NaN where there is none.
 
     `wanted` are the claims, counted from 0, that were judged. Without values `why` says why. `unshown` are
-    those that no number of coarser runs can judge, since all steps are too long for them, and why.
+    those that no number of coarser runs can judge, since all steps are too long for them, or since a loop
+    that could be iterated carries values of the step before, and why.
     """
 
     wanted: Collection[int]
@@ -91,6 +95,14 @@ class Dependence:
         return [set(upstream(each, sources)) for each in owners]
 
     @cached_property
+    def _delayed(self) -> list[Wire]:
+        """The wires that carry values of the step before, although their loops could be iterated."""
+        scene = self._scene
+        _order, lagged = step_order(scene.instances, scene.wires)
+        ours = all(instance.fmu.trusted for instance in scene.instances.values())
+        return lagged if ours and scene.coupling != ITERATED else []
+
+    @cached_property
     def methods(self) -> list[Method]:
         """The method that estimates each claim's error."""
         scene = self._scene
@@ -107,13 +119,15 @@ class Dependence:
         return found
 
     def unshown(self, scene: Scene) -> dict[int, str]:
-        """The claims, counted from 0, on mechanisms that equal steps of this length do not show, and why."""
+        """The claims, counted from 0, of which coarser runs say nothing, and why."""
         found = dict[int, str]()
         shown = {name: longest_step(scene, name) for name in scene.instances}
         for number, names in enumerate(self._upstream):
             longest, why = min((shown[name] for name in names if shown[name][0]), default=(math.inf, ""))
             if scene.step_size > TOO_LONG * longest:
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
+            elif wire := next((wire for wire in self._delayed if wire.sink[0] in names), None):
+                found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
         return found
 
 
@@ -152,12 +166,13 @@ class Estimates:
                 return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
         return Coarser(wanted, unshown, tuple(values))
 
-    def near(self, verdicts: Sequence[Verdict]) -> set[int]:
+    def near(self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
+        coarse = max(1.0, WELL_KNOWN / (period(scene) / scene.step_size)) ** 2
         return {
             number
             for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))
-            if not verdict.bound or abs(verdict.relative_distance) <= method.near
+            if not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(trace, verdict)
         }
 
     def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
@@ -200,6 +215,12 @@ def _estimated(
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
+
+
+def _scale(trace: Signals, verdict: Verdict) -> float:
+    """The largest of a verdict's numbers and of its signal: a bound near 0 may be far inside the error."""
+    samples = trace[verdict.signal] if verdict.signal in trace else np.empty(0)
+    return max(abs(verdict.bound), abs(verdict.worst), float(np.max(np.abs(samples), initial=0.0)))
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:

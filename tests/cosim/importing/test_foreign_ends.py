@@ -97,7 +97,8 @@ def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
         f"warning: motor ended the simulation at {end} s; the run would have gone on to 0.2 s\n"
     )
     assert main(["show", str(tmp_path / "x.h5")]) == status
-    assert f"complete, ended by motor at {end} s)" in capsys.readouterr().out
+    extent = "complete" if head else "cut short"
+    assert f"{extent}, ended by motor at {end} s)" in capsys.readouterr().out
     again = judge(Trace(tmp_path / "x.h5"), kind="below", signal="motor.flange_w", bound=bound)
     assert again.word == word
 

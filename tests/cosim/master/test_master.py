@@ -144,7 +144,7 @@ SELF = '[wires]\n"belt.yarn_tension" = "belt.inertia_force"\n'
 
 
 def test_a_wire_back_to_itself_carries_the_value_of_the_step_before(tmp_path: Path) -> None:
-    result = run(small(360, rest=SELF), output=tmp_path / "loop.h5")
+    result = run(small(360, rest=SELF, coupling="lagged"), output=tmp_path / "loop.h5")
     assert (
         "loop: belt.inertia_force -> belt.yarn_tension carries the value of the step before"
         in result.warnings
@@ -169,7 +169,7 @@ yarn_tension = "5 N"
 "damper_1.velocity" = false
 "damper_1.acceleration" = false
 """
-    scene = small(90, rest=rest)
+    scene = small(90, rest=rest, coupling="lagged")
     result = run(scene, output=tmp_path / "loop.h5")
     assert [text for text in result.warnings if text.startswith("loop")] == [
         "loop: damper_1.carrier_acceleration -> belt.acceleration carries the value of the step before"

@@ -40,7 +40,7 @@ SCENES = {
     "constant": {},
     "ramp and ripple": {"shaft__ramp_duration": 0.05, "shaft__ripple_amplitude": 0.05},
     "driven": {"rest": DRIVEN},
-    "loop": {"rest": '[wires]\n"belt.yarn_tension" = "belt.inertia_force"\n'},
+    "loop": {"coupling": "lagged", "rest": '[wires]\n"belt.yarn_tension" = "belt.inertia_force"\n'},
 }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from ...errors import LoomfmuError, shown, suggestion
 from .graph import Wire, step_order
 from .instances import Instance
-from .keys import ACCURACY, CHOSEN, COUPLINGS, ITERATED
+from .keys import ACCURACY, CHOSEN, COUPLINGS, ITERATED, LAGGED
 from .tables import choice, number
 from .times import Times
 
@@ -34,11 +34,10 @@ def accuracy(tables: dict[str, Any], times: Times) -> float | None:
 
 
 def coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire]) -> str:
-    """Return how loops are closed: with an accuracy iterated, since a delay costs far more steps."""
-    if ACCURACY in tables and "coupling" not in tables:
-        _order, lagged = step_order(instances, wires)
-        if lagged and all(each.fmu.trusted for each in instances.values()):
-            return ITERATED
+    """Return how loops are closed: iterated, unless the scene says otherwise or an FMU is not ours."""
+    if "coupling" not in tables:
+        _order, closing = step_order(instances, wires)
+        return ITERATED if closing and all(each.fmu.trusted for each in instances.values()) else LAGGED
     return choice(tables, "coupling", COUPLINGS)
 
 

@@ -45,7 +45,7 @@ def limits_of(
             values |= set(_touched(runs.distance(number), grid))
     tried = sorted(values)
     found = [
-        _claim_limits(loom.scene.claims[number], verdict, runs.distance(number), tried, depends)
+        _claim_limits(loom.scene.claims[number], verdict, number, runs, tried, depends)
         for number, (verdict, depends) in enumerate(zip(own.claims, dependent, strict=True))
     ]
     resolution = (span.high - span.low) / (points - 1)
@@ -108,17 +108,15 @@ def _touched(distance: Function, grid: Sequence[float]) -> Iterator[float]:
 
 
 def _claim_limits(
-    claim: dict[str, Any], verdict: Verdict, distance: Function, tried: Sequence[float], depends: bool
+    claim: dict[str, Any], verdict: Verdict, number: int, runs: _Runs, tried: Sequence[float], depends: bool
 ) -> ClaimLimits:
-    """The limits of a claim between the values that were tried."""
-    limits = []
-    for low, high in pairwise(tried) if depends else ():
-        after = holds(distance(high))
-        if holds(distance(low)) != after:
-            found = root(distance, low, high)
-            limits.append(
-                Limit(found.value, found.low, found.high, "to hold" if after else "to fail", found.jumps)
-            )
+    """The limits of a claim, counted from 0, between the values that were tried."""
+    distance = runs.distance(number)
+    limits = [
+        _limit(number, runs, low, high)
+        for low, high in (pairwise(tried) if depends else ())
+        if holds(distance(low)) != holds(distance(high))
+    ]
     edges = [tried[0], *(each.value for each in limits), tried[-1]]
     holding = holds(distance(tried[0]))
     ranges = []
@@ -128,6 +126,23 @@ def _claim_limits(
         holding = not holding
     points = tuple((value, distance(value)) for value in tried)
     return ClaimLimits(called(claim, verdict), tuple(limits), tuple(ranges), depends, verdict, points)
+
+
+def _limit(number: int, runs: _Runs, low: float, high: float) -> Limit:
+    """The limit of a claim, counted from 0, in a bracket.
+
+    The slope of the distance that its error is divided by is the mean one in the bracket.
+    """
+    distance = runs.distance(number)
+    found = root(distance, low, high)
+    begins = "to hold" if holds(distance(high)) else "to fail"
+    if found.jumps:
+        return Limit(*found[:3], begins, jumps=True)
+    verdict = runs.estimated(found.value)[number]
+    steepness = abs(distance(high) - distance(low)) / (high - low)
+    known = math.isfinite(verdict.error) and steepness > 0.0
+    error = verdict.error / steepness if known else math.inf
+    return Limit(*found[:3], begins, jumps=False, error=error, doubt="" if known else verdict.note)
 
 
 def _common(claims: Sequence[ClaimLimits], span: Span) -> tuple[Stretch, ...]:

@@ -1,5 +1,6 @@
 """Limits as people read them: tables, sentences, CSV."""
 
+import math
 from collections.abc import Sequence
 
 from ... import printed
@@ -16,7 +17,7 @@ from .results import (
     rows,
 )
 
-CSV_LIMITS = ("claim", "begins", "value", "low", "high", "unit", "jumps")
+CSV_LIMITS = ("claim", "begins", "value", "low", "high", "error", "unit", "jumps")
 
 
 def show(found: Limits) -> None:
@@ -29,7 +30,7 @@ def show(found: Limits) -> None:
         for claim, ranges, limits, own in table
     ]
     printed.show((*HEADINGS[:3], f"distance at {at}"), table, entries)
-    say(*conclusion(found), "", _effort(found.runs, found))
+    say(*conclusion(found), "", _effort(found.runs, [found]))
 
 
 def _remark(limits: str) -> str:
@@ -37,9 +38,17 @@ def _remark(limits: str) -> str:
     return f"{limits}; " if "jumps" in limits or limits.startswith(SAME_EVERYWHERE) else ""
 
 
-def _effort(runs: int, found: Limits) -> str:
-    resolution = found.span.show(found.resolution)
-    return f"{runs} runs; limits to 1e-9 of their value; intervals narrower than {resolution} may be missed"
+def _effort(runs: int, found: Sequence[Limits]) -> str:
+    """Return how many runs it took, how far the limits may be off, and what may be missed."""
+    span, resolution = found[0].span, found[0].span.show(found[0].resolution)
+    limits = [limit for row in found for each in row.claims for limit in each.limits if not limit.jumps]
+    off = max(limits, key=lambda limit: limit.error, default=None)
+    parts = [f"{runs} runs"]
+    if off and math.isfinite(off.error):
+        parts.append(f"numerical error of the limits up to {off.error / span.factor:.1g} {span.unit}")
+    elif off:
+        parts.append(f"numerical error of the limits unknown ({off.doubt or 'steps too few'})")
+    return "; ".join((*parts, f"intervals narrower than {resolution} may be missed"))
 
 
 def table(found: Limits) -> str:
@@ -47,7 +56,7 @@ def table(found: Limits) -> str:
     lines: list[Sequence[str]] = [CSV_LIMITS]
     for each in found.claims:
         for limit in each.limits:
-            numbers = _numbers(found.span, limit.value, limit.low, limit.high)
+            numbers = _numbers(found.span, limit.value, limit.low, limit.high, limit.error)
             lines.append((each.claim, limit.begins, *numbers, found.span.unit, str(limit.jumps).lower()))
     return printed.as_csv(lines)
 
@@ -66,7 +75,7 @@ def show_boundary(found: Boundary) -> None:
         say(
             f"No claim depends on {first.key} between {first.number(first.low)} and {first.show(first.high)}."
         )
-    say(_effort(sum(each.runs for each in found.rows), found.rows[0]))
+    say(_effort(sum(each.runs for each in found.rows), found.rows))
 
 
 def boundary_table(found: Boundary) -> str:

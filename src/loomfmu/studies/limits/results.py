@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -19,7 +20,8 @@ class Limit:
     """A value of the variable at which a claim begins to fail, or to hold, as the variable rises (SI).
 
     The claim changes between `low` and `high`. If it `jumps`, its distance does not pass 0 there: it counts,
-    or has no value on one side.
+    or has no value on one side. `error` is what the numerical error of the claim makes of the value:
+    infinite where that is unknown, and `doubt` says why; NaN for a jump.
     """
 
     value: float
@@ -27,6 +29,8 @@ class Limit:
     high: float
     begins: str
     jumps: bool
+    error: float = math.nan
+    doubt: str = ""
 
 
 @dataclass(frozen=True)

@@ -139,16 +139,18 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
     const struct form form = form_of(&call, (int)verdict->form);
     const double sense = form.sense;
     BEGIN(run, false);
+    const double model = left_by_model(run, &call, verdict); /* which includes the scatter */
     const double start = form.signal < 0 ? 0.0 : sample_of(run, form.signal, 0);
     const double least = larger(larger(noise, share * larger(fabs(verdict->worst), fabs(verdict->bound))),
-                                scatter * fabs(verdict->worst - start));
+                                model > 0.0 ? 0.0 : scatter * fabs(verdict->worst - start));
     const double left = unresolved(run, &call, verdict);
     if (left == INFINITY) { /* a sample may fail the claim, but does not say by how much the signal does */
         estimate(verdict, sense, larger(spread, least), spread);
         verdict->error = INFINITY;
         verdict->distance = distance_from_bound(verdict, sense);
     } else
-        estimate(verdict, sense, larger(larger(spread, left), least), spread);
+        /* a bound is met to rounding only where the model itself is sure of the value */
+        estimate(verdict, sense, larger(larger(spread, left), least), larger(spread, left));
     return true;
 }
 
