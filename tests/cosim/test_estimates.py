@@ -212,11 +212,11 @@ def test_steps_that_pass_an_event_by_leave_a_claim_undecided(tables: str, signal
 
 
 def test_numbers_of_a_belt_in_motion_are_no_better_known_than_they_scatter() -> None:
-    """Energies change by up to 3e-4 from step size to step size: three runs agreed on a wrong one."""
+    """Energies change by up to 3.6e-3 from step size to step size: all runs agreed on a wrong one."""
     text = LOOM.format(steps=93, bound=0.1).replace("[shaft]", "belt_motion = true\n[shaft]")
     claim = '[[claims]]\nkind = "below"\nsignal = "belt_motion.energy_through"\nbound = 1000\n'
     found = evaluate(parse(text + claim)).claims[-1]
-    assert found.error >= 1e-3 * abs(found.worst)
+    assert found.error >= 5e-3 * abs(found.worst)
 
 
 def test_two_coarser_runs_may_agree_by_chance() -> None:
@@ -323,3 +323,44 @@ def test_coarser_runs_are_coarser_however_many_rows_a_table_has() -> None:
     whole, *coarser = (uniform(scene, share).steps for share in (1.0, *SHARES))
     assert whole > 353
     assert coarser == pytest.approx([share * whole for share in SHARES], abs=1)
+
+
+def test_a_bound_of_0_is_not_met_by_what_a_component_may_have_missed() -> None:
+    """Without blows below `least_speed` a bound of 0 held, and 0.1 m/s was undecided."""
+    text = LOOM.format(steps=90, bound=0.1).replace("[shaft]", 'weave = "10/01"\nplay = true\n[shaft]')
+    text = text.replace("revolutions = 1", "revolutions = 2") + '[play]\nleast_speed = "1 m/s"\n'
+    claims = "".join(f'[[claims]]\nkind = "heald_blows"\nplay = "play_1"\nat_most = {bound}\n' for bound in (0.0, 0.1, 2.0))
+    found = evaluate(parse(text + claims)).claims[1:]
+    assert [each.word for each in found] == ["undecided", "undecided", "holds"]
+
+
+HUNG = """
+revolutions = 1
+steps_per_revolution = 360
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[shaft]
+component = "DrivenShaft"
+speed = "400 rev/min"
+inertia = 5
+torque_slope = 40
+torque_32 = 97.63
+[weft]
+belt_mass = 0.05
+wheel_inertia = 0.03
+[[claims]]
+kind = "below"
+signal = "shaft.velocity"
+bound = "400.005 rev/min"
+"""
+
+
+def test_a_loop_is_iterated_or_its_claims_are_undecided() -> None:
+    """All runs had their highest speed at the start, where it is exact, and that at 178 deg 0.01 too low."""
+    lagged, iterated = (
+        evaluate(parse(HUNG, overrides=each)).claims[0] for each in ({"coupling": "lagged"}, {})
+    )
+    assert (lagged.word, iterated.word) == ("undecided", "FAILS")
+    assert 'set coupling = "iterated"' in lagged.note
+    assert iterated.worst == pytest.approx(400.01 * math.pi / 30.0, rel=1e-6)
