@@ -8,6 +8,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from . import units
 from .components import COMPONENTS
 from .errors import LoomfmuError, listed, suggestion
 from .files import ANY, write_file
@@ -144,20 +145,24 @@ def _name(numbered: Sequence[Variable]) -> str:
 
 
 def _file(fmu: "Fmu", width: int) -> Iterator[str]:
-    """An FMU that was given as a file: its variables by the names that scenes use, in its own units."""
+    """An FMU that was given as a file: its variables by the names that scenes use, in its display units."""
     yield f"{fmu.name}: FMI {fmu.fmi}.0, version {fmu.version or 'unknown'}"
     for causality, heading in HEADINGS.items():
         chosen = [port for port in fmu.ports.values() if port.causality == causality]
         if chosen:
             yield f"\n{heading}"
         for port in chosen:
-            unit = f" {port.unit}" if port.unit and port.unit != "1" else ""
+            shown = port.unit if port.display == "1" else port.display
+            factor = units.unit(shown).factor if port.kind == "Real" and shown in units.UNITS else 1.0
+            unit = f" {shown}" if shown and shown != "1" else ""
             start = "" if port.start is None else str(port.start).lower()
+            if port.start is not None and factor != 1.0:
+                start = f"{port.start / factor:.9g}"
             if port.choices and port.start in port.numbers:
                 start = port.choices[port.numbers.index(int(port.start))]
             line = port.name + (f" = {start}{unit}" if start else unit.replace(" ", " in "))
             limits = {"from": port.minimum, "to": port.maximum} if not port.choices else {}
-            words = [f"{word} {limit:g}" for word, limit in limits.items() if limit is not None]
+            words = [f"{word} {limit / factor:g}" for word, limit in limits.items() if limit is not None]
             line += f"  [{' '.join(words)}]" if words else ""
             for text, indent in ((line, 2), (port.description, 6)):
                 yield from textwrap.wrap(text, width, initial_indent=indent * " ", subsequent_indent=6 * " ")

@@ -76,10 +76,12 @@ def show(
     rows: Sequence[Sequence[str]],
     entries: Sequence[Sequence[str]],
     stacked: bool = False,
+    further: bool = False,
 ) -> None:
     """Print rows below headings if the terminal is wide enough for them, and else entries, given in parts.
 
-    Each part of a `stacked` entry begins a line, unless all fit on one. Piped, there are 80 columns, unless
+    Each part of a `stacked` entry begins a line, unless all fit on one. A `further` table has an empty line
+    before it already. Piped, there are 80 columns, unless
     the environment's COLUMNS says otherwise.
     """
     width = shutil.get_terminal_size().columns
@@ -88,7 +90,7 @@ def show(
         lines = [
             line for entry in entries for line in as_entry([safe(part) for part in entry], width, stacked)
         ]
-    say("", *lines, "")
+    say(*([] if further else [""]), *lines, "")
 
 
 def as_csv(rows: Iterable[Sequence[object]]) -> str:

@@ -62,6 +62,11 @@ MISTAKES = {
         'when="loud")',
         "pitch: when = 'loud' is not one of its parameters",
     ),
+    "a method with the name of an output": (
+        "    def step(",
+        "    def rate(self) -> float:\n        return 0.0\n\n    def step(",
+        "rate is a variable and a method: give one of them another name",
+    ),
     "a taken name": ("pitch", "machine", "line 14: a variable cannot be called machine"),
     "a key of every instance": ("pitch", "isolated", "line 14: a variable cannot be called isolated"),
     "a number that vouches": (
@@ -98,7 +103,11 @@ MISTAKES = {
         "        self.sound = self.sound + self.pitch * step_size",
         "line 15: sound depends on earlier steps, but keeps is not MOTION: remove keeps",
     ),
-    "a problem without words": ("return 0\n\n", "return 2\n\n", "line 18: initialize returns problem 2"),
+    "a problem without words": (
+        "return 0\n\n",
+        "return 2\n\n",
+        "line 18: initialize returns problem 2, but `problems` has only 1",
+    ),
     "words that show nothing": ("{pitch}", "{pich}", r"line 13: problems: \{pich\} .* did you mean 'pitch'"),
     "a terminal of other members": (
         "    pitch",

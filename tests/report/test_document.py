@@ -72,7 +72,7 @@ def test_the_command_names_its_page_as_the_trace_was_named(
     os.link(demo.path, tmp_path / "demo.h5")
     monkeypatch.chdir(tmp_path)
     assert main(["report", "demo.h5"]) == 0
-    assert capsys.readouterr().out == "demo.html\n"
+    assert capsys.readouterr().out == "written: demo.html\n"
 
 
 def test_it_is_small_enough_to_mail(written: Path) -> None:
@@ -100,7 +100,7 @@ def test_the_command_writes_it_beside_the_trace(
     copy = tmp_path / "copy.h5"
     os.link(demo.path, copy)
     assert main(["report", str(copy)]) == 0
-    assert capsys.readouterr().out.strip() == str(tmp_path / "copy.html")
+    assert capsys.readouterr().out.strip() == f"written: {tmp_path / 'copy.html'}"
     assert main(["report", str(copy)]) == 0  # one of ours is replaced
     (tmp_path / "copy.html").write_text("my notes")
     assert main(["report", str(copy)]) == 2
@@ -117,7 +117,7 @@ def test_the_report_of_two_traces_leaves_that_of_the_first(
         os.link(demo.path, name)
     (tmp_path / "worn.html").write_text(MARK)
     assert main(["report", *names]) == 0
-    assert capsys.readouterr().out.strip() == str(tmp_path / "worn_and_new.html")
+    assert capsys.readouterr().out.strip() == f"written: {tmp_path / 'worn_and_new.html'}"
     assert (tmp_path / "worn.html").read_text() == MARK
 
 

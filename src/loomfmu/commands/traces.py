@@ -106,7 +106,7 @@ def report(options: argparse.Namespace) -> int:
 
     for path in options.traces:
         check(Path(path))
-    say(write(options.traces, options.output, options.force))
+    say(f"written: {write(options.traces, options.output, options.force)}")
     return 0
 
 
@@ -120,7 +120,8 @@ def diagram(options: argparse.Namespace) -> int:
     check(path)
     output = Path(options.output) if options.output else path.with_name(f"{path.stem}_diagram.svg")
     with Trace(path) as trace:
-        say(timing.write(trace, output, options.revolution, options.round, options.force))
+        drawn = timing.write(trace, output, options.revolution, options.round, options.force)
+    say(f"written: {drawn}")
     return 0
 
 
@@ -138,7 +139,7 @@ def plot(options: argparse.Namespace) -> int:
     output = Path(options.output) if options.output else None
     traces = [Trace(path) for path in paths]
     over, fold, force, ylim = options.over, options.fold, options.force, options.ylim
-    say(pictures.plot(traces, signals, output, over, fold, force, ylim))
+    say(f"written: {pictures.plot(traces, signals, output, over, fold, force, ylim)}")
     return 0
 
 

@@ -69,6 +69,8 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
     for declared in fields(component):
         if "causality" not in declared.metadata:
             name = declared.name
+            if callable(declared.default):  # the method came last, and took the name of the variable
+                yield Fault(name, f"{name} is a variable and a method: give one of them another name")
             yield Fault(name, f"{name} is not declared by {MAKERS}")
     for variable in variables_of(component):
         text = _of_variable(component, variable)
@@ -171,10 +173,8 @@ def _of_problems(component: type[Component]) -> Iterator[Fault]:
     for method in ("check", "initialize", "step"):
         for number in _returned(getattr(component, method)):
             if number > len(component.problems):
-                text = (
-                    f"{method} returns problem {number}, but there are {len(component.problems)} `problems`"
-                )
-                yield Fault(method, text)
+                count = len(component.problems)
+                yield Fault(method, f"{method} returns problem {number}, but `problems` has only {count}")
 
 
 def _returned(method: Callable[..., Any]) -> Iterator[int]:

@@ -81,7 +81,7 @@ def plot(
     """
     if not signals:
         raise LoomfmuError("name at least one signal to plot, such as belt.margin")
-    first = traces[0].path
+    first = traces[0].given
     path = output or first.with_name(f"{first.stem}_plot.png")
     inputs = [trace.path for trace in traces]
     check(path, inputs, overwrite)

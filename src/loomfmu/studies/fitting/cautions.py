@@ -1,4 +1,4 @@
-"""What to be careful about in a fit, in words."""
+"""Cautions about a fit, in words."""
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations

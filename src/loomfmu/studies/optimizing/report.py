@@ -26,6 +26,7 @@ def show(found: Optimum) -> None:
                 (f"{word}  {claim}", f"{worst}, bound {bound}", _bracketed(distance, note))
                 for word, claim, worst, bound, distance, note in rows
             ],
+            further=True,
         )
     elif found.front:
         headings, rows = front_table(found)
