@@ -329,7 +329,9 @@ def test_a_bound_of_0_is_not_met_by_what_a_component_may_have_missed() -> None:
     """Without blows below `least_speed` a bound of 0 held, and 0.1 m/s was undecided."""
     text = LOOM.format(steps=90, bound=0.1).replace("[shaft]", 'weave = "10/01"\nplay = true\n[shaft]')
     text = text.replace("revolutions = 1", "revolutions = 2") + '[play]\nleast_speed = "1 m/s"\n'
-    claims = "".join(f'[[claims]]\nkind = "heald_blows"\nplay = "play_1"\nat_most = {bound}\n' for bound in (0.0, 0.1, 2.0))
+    claims = "".join(
+        f'[[claims]]\nkind = "heald_blows"\nplay = "play_1"\nat_most = {bound}\n' for bound in (0.0, 0.1, 2.0)
+    )
     found = evaluate(parse(text + claims)).claims[1:]
     assert [each.word for each in found] == ["undecided", "undecided", "holds"]
 
@@ -364,3 +366,14 @@ def test_a_loop_is_iterated_or_its_claims_are_undecided() -> None:
     assert (lagged.word, iterated.word) == ("undecided", "FAILS")
     assert 'set coupling = "iterated"' in lagged.note
     assert iterated.worst == pytest.approx(400.01 * math.pi / 30.0, rel=1e-6)
+
+
+def test_a_bound_near_0_is_near_where_a_row_of_a_sweep_is_judged(tmp_path: Path) -> None:
+    """A margin of 1.03e-5, 3 % from its bound and 2e-6 off, held without an error."""
+    (tmp_path / "loom.toml").write_text(LOOM.format(steps=90, bound=1e-5))
+    with prepare(tmp_path / "loom.toml") as scene:
+        near, far = (
+            scene.evaluate({"shaft.speed": speed}, errors="near").claims[0]
+            for speed in ("681.8017 rpm", "500 rpm")
+        )
+    assert near.word == "undecided" and math.isnan(far.error)

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-import numpy as np
-
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
@@ -166,13 +164,13 @@ class Estimates:
                 return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
         return Coarser(wanted, unshown, tuple(values))
 
-    def near(self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict]) -> set[int]:
+    def near(self, scene: Scene, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
         coarse = max(1.0, WELL_KNOWN / (period(scene) / scene.step_size)) ** 2
         return {
             number
             for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))
-            if not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(trace, verdict)
+            if not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(scene, verdict)
         }
 
     def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
@@ -217,10 +215,12 @@ def _estimated(
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 
-def _scale(trace: Signals, verdict: Verdict) -> float:
-    """The largest of a verdict's numbers and of its signal: a bound near 0 may be far inside the error."""
-    samples = trace[verdict.signal] if verdict.signal in trace else np.empty(0)
-    return max(abs(verdict.bound), abs(verdict.worst), float(np.max(np.abs(samples), initial=0.0)))
+def _scale(scene: Scene, verdict: Verdict) -> float:
+    """The largest of a verdict's numbers and what is usual for its signal: a bound may be near 0."""
+    name, _, variable = verdict.signal.partition(".")
+    port = scene.instances[name].fmu.ports.get(variable) if name in scene.instances else None
+    usual = (port.nominal or float(verdict.unit == "1")) if port else 0.0
+    return max(abs(verdict.bound), abs(verdict.worst), usual)
 
 
 def _noted(verdict: Verdict, note: str) -> Verdict:

@@ -94,8 +94,7 @@ class Pattern:
         found = self._in_memory(scene, self.judged, grid)
         verdicts = self._judged(found.recording)
         if errors != "none":
-            near = errors == "near"
-            wanted = self._estimates.near(scene, found.recording, verdicts) if near else range(len(verdicts))
+            wanted = self._estimates.near(scene, verdicts) if errors == "near" else range(len(verdicts))
             coarser = known or self._estimates.coarser(scene, grid, wanted)
             verdicts = self._estimates.of(found.recording, verdicts, coarser)
         count = len(self.claims)
