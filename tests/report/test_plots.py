@@ -209,6 +209,10 @@ def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
         ElementTree.fromstring(first)
     assert main(arguments) == 0  # ours is replaced
     assert output.read_bytes()[:4] == first[:4]
+    for command in (arguments, ["diagram", str(copied), "--output", str(output)]):
+        output.write_bytes(first.replace(b"loomfmu", b"another"))
+        assert main(command) == 2 and b"another" in output.read_bytes()
+        assert main([*command, "--force"]) == main(command) == 0
 
 
 @pytest.mark.parametrize(("command", "signals"), [("plot", ["belt.margin"]), ("diagram", [])])

@@ -67,7 +67,7 @@ def tolerances(commands: Any) -> None:
     )
     add_set(tolerances)
     tolerances.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
-    add_force(tolerances, "the picture even if it is not one")
+    add_force(tolerances, "the picture even if loomfmu did not draw it")
 
 
 def optimize(commands: Any) -> None:

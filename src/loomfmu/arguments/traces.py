@@ -35,7 +35,7 @@ def diagram(commands: Any) -> None:
     diagram.add_argument(
         "--output", metavar="FILE.svg|png|pdf", help="FILE_diagram.svg beside the trace by default"
     )
-    add_force(diagram, "the picture even if it is not one")
+    add_force(diagram, "the picture even if loomfmu did not draw it")
 
 
 def plot(commands: Any) -> None:
@@ -60,7 +60,7 @@ def plot(commands: Any) -> None:
     plot.add_argument(
         "--output", metavar="FILE.png|svg|pdf", help="FILE_plot.png beside the trace by default"
     )
-    add_force(plot, "the picture even if it is not one")
+    add_force(plot, "the picture even if loomfmu did not draw it")
 
 
 def compare(commands: Any) -> None:

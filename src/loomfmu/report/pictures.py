@@ -14,10 +14,19 @@ from ..files import Kind, check_target, starts_with, write_file
 from ..traces import Trace, plotting
 from .section import labels
 
+MAKER = "loomfmu"  # that a picture of ours names
+
+
+def _ours(name: str, *starts: bytes) -> Kind:
+    """The kind of pictures that begin in one of these ways and name their maker."""
+    begun = starts_with(name, *starts).ours
+    return Kind(f"{name} of {MAKER}", lambda path: begun(path) and MAKER.encode() in path.read_bytes())
+
+
 PICTURES = {
-    ".svg": starts_with("an SVG picture", b"<svg", b"<?xml"),
-    ".png": starts_with("a PNG picture", b"\x89PNG\r\n\x1a\n"),
-    ".pdf": starts_with("a PDF", b"%PDF"),
+    ".svg": _ours("an SVG picture", b"<svg", b"<?xml"),
+    ".png": _ours("a PNG picture", b"\x89PNG\r\n\x1a\n"),
+    ".pdf": _ours("a PDF", b"%PDF"),
 }
 HELD = ("lowest", "highest")  # roles of the extremes of a signal that its component holds
 BOUND = "#1a1a1a"
@@ -49,9 +58,13 @@ def save(figure: Any, path: Path, title: str, inputs: Iterable[Path] = (), overw
 def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
     drawn = BytesIO()
-    dateless = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}[suffix]
+    about = {
+        ".svg": {"Date": None, "Creator": MAKER},
+        ".pdf": {"CreationDate": None, "Creator": MAKER},
+        ".png": {"Software": MAKER},
+    }[suffix]
     with plotting.fixed_style(**{"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
-        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **dateless})
+        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **about})
     return drawn.getvalue()
 
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..traces import plotting
-from .pictures import content
+from .pictures import MAKER, content
 
 MARGIN, LINE, CHARACTER = 10.0, 18.0, 7.0  # px
 
@@ -170,7 +170,7 @@ def _svg_file(drawing: Drawing, size: tuple[float, float], title: str) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}"'
         f' height="{height}" font-family="sans-serif" font-size="12" role="img">\n'
-        f"<title>{escape(title)}</title>\n<style>{rules}{lines}</style>\n"
+        f"<title>{escape(title)}</title>\n<metadata>{MAKER}</metadata>\n<style>{rules}{lines}</style>\n"
         f'<rect width="100%" height="100%" fill="#ffffff"/>\n{svg(drawing)}\n</svg>\n'
     )
 
