@@ -79,6 +79,28 @@ def test_a_frame_or_a_belt_that_the_loom_does_not_have_is_named(table: str, note
 
 
 @pytest.mark.parametrize(
+    ("more", "notes"),
+    [
+        ("", ("belt does not move: travel, velocity and acceleration are cut and have no value",)),
+        ('[belt]\ntravel = "0.5 m"\n', ()),
+        ('[inputs]\n"belt.travel" = [[0, 0.0], [1, 0.5]]\n', ()),
+    ],
+)
+def test_a_mechanism_whose_motion_is_cut_is_named(more: str, notes: tuple[str, ...]) -> None:
+    wires = "".join(f'"belt.{each}" = false\n' for each in ("travel", "velocity", "acceleration"))
+    loom = '[loom]\nmachine = "WL680-3600"\n'
+    assert scenes.parse(f"{loom}[wires]\n{wires}{more}").notes == notes
+
+
+def test_a_tolerance_from_high_to_low_is_refused() -> None:
+    loom = '[loom]\nmachine = "WL680-3600"\n[tolerances]\n'
+    assert scenes.parse(loom + '"belt.guide_clearance" = ["0.2 mm", "0.5 mm"]\n').tolerances
+    said = "tolerances: belt.guide_clearance: the range from 0.5 mm to 0.2 mm is empty"
+    with pytest.raises(LoomfmuError, match=said):
+        scenes.parse(loom + '"belt.guide_clearance" = ["0.5 mm", "0.2 mm"]\n')
+
+
+@pytest.mark.parametrize(
     ("values", "its_own"),
     [
         ("", ""),

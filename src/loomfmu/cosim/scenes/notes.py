@@ -138,6 +138,17 @@ def added(tables: dict[str, Any], directory: Path) -> Iterable[str]:
             )
 
 
+def still(
+    instances: dict[str, Instance], wires: dict[str, Any], fed: Container[tuple[str, str]]
+) -> Iterable[str]:
+    """Warnings about mechanisms whose motion is cut off and has no other source or value."""
+    for name, each in instances.items():
+        for inputs in standard_loom.motions(each.fmu.component) if each.fmu.component else ():
+            cut = all(wires.get(f"{name}.{key}") is False for key in inputs)
+            if cut and not any((name, key) in fed or key in each.values for key in inputs):
+                yield f"{name} does not move: {listed(inputs)} are cut and have no value"
+
+
 def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:
     """Warnings about values that a scene gives, but that another value switches off."""
     return (note for _, note in _switched_off(instances, keys))

@@ -151,7 +151,13 @@ def parse(
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     keys = [(owner, key) for owner, table in given.items() for key in table]
     check_free(scene, keys)
-    doubts = (*notes.added(tables, Path(directory)), *notes.without_effect(instances, keys))
+    doubts = (
+        *notes.added(tables, Path(directory)),
+        *notes.still(
+            instances, tables.get("wires", {}), fed | {(d.instance, d.variable) for d in scene.drives}
+        ),
+        *notes.without_effect(instances, keys),
+    )
     return replace(scene, notes=(*scene.notes, *doubts))
 
 
@@ -258,7 +264,11 @@ def _check_tolerances(scene: Scene) -> None:
             check_free(scene, pairs)
             for owner, variable in pairs:
                 probe = Instance(owner, scene.instances[owner].fmu)
+                found = []
                 for end in ends:
                     probe.set(variable, end)
+                    found.append(probe.values.get(probe.fmu.name_of(variable), 0.0))
+                if all(isinstance(each, float) for each in found) and not found[0] < found[1]:
+                    raise LoomfmuError(f"{key}: the range from {ends[0]} to {ends[1]} is empty")
         except LoomfmuError as error:
             raise LoomfmuError(f"tolerances: {error}") from None

@@ -360,6 +360,12 @@ def turning(speed: float, start_angle: float) -> dict[str, float | bool]:
     return {FOLLOWING: False, "speed": speed, "start_angle": start_angle}
 
 
+def motions(component: type[Component]) -> list[tuple[str, ...]]:
+    """The groups of inputs by which a mechanism follows another one than a shaft."""
+    ends = _terminals(component, "input")
+    return [each.variables for each in ends if each.name in SOURCES and each.name != SHAFT.name]
+
+
 def turns_alone(component: type[Component]) -> bool:
     """Return whether a mechanism has a speed of its own and no way to follow a shaft."""
     turning = any(v.causality == "parameter" and v.unit == "rad/s" for v in variables_of(component))
