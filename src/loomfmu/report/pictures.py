@@ -28,6 +28,12 @@ PICTURES = {
     ".png": _ours("a PNG picture", b"\x89PNG\r\n\x1a\n"),
     ".pdf": _ours("a PDF", b"%PDF"),
 }
+# what a picture says of itself: its maker, and no date
+ABOUT: dict[str, dict[str, str | None]] = {
+    ".svg": {"Date": None, "Creator": MAKER},
+    ".pdf": {"CreationDate": None, "Creator": MAKER},
+    ".png": {"Software": MAKER},
+}
 HELD = ("lowest", "highest")  # roles of the extremes of a signal that its component holds
 BOUND = "#1a1a1a"
 WIDTH, PANEL, REST = 8.0, 2.6, 0.6  # of a picture of one panel or more [in]
@@ -58,13 +64,8 @@ def save(figure: Any, path: Path, title: str, inputs: Iterable[Path] = (), overw
 def content(figure: Any, suffix: str, title: str) -> bytes:
     """A figure of matplotlib as the content of a file, the same whenever it is drawn."""
     drawn = BytesIO()
-    about = {
-        ".svg": {"Date": None, "Creator": MAKER},
-        ".pdf": {"CreationDate": None, "Creator": MAKER},
-        ".png": {"Software": MAKER},
-    }[suffix]
     with plotting.fixed_style(**{"svg.hashsalt": "loomfmu"}):  # else the names within an SVG are random
-        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **about})
+        figure.savefig(drawn, format=suffix[1:], dpi=200, metadata={"Title": title, **ABOUT[suffix]})
     return drawn.getvalue()
 
 
