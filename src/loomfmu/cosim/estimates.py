@@ -121,8 +121,10 @@ class Dependence:
         found = dict[int, str]()
         shown = {name: longest_step(scene, name) for name in scene.instances}
         for number, names in enumerate(self._upstream):
-            longest, why = min((shown[name] for name in names if shown[name][0]), default=(math.inf, ""))
-            if scene.step_size > TOO_LONG * longest:
+            longest, why = min((shown[name] for name in names), default=(math.inf, ""))
+            if not longest:
+                found[number] = f"{why}, so that no steps are known to show its outputs"
+            elif scene.step_size > TOO_LONG * longest:
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
             elif wire := next((wire for wire in self._delayed if wire.sink[0] in names), None):
                 found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
