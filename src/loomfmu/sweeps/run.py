@@ -175,7 +175,7 @@ def _indices(store: "Store", table: Any) -> Influences | None:
         from ..report import pictures
         from .bars import draw
 
-        pictures.save(draw(found), store.bars_path, plan.title)
+        pictures.save(draw(found), store.bars_path, plan.title, overwrite=True)
     return found
 
 
