@@ -58,6 +58,14 @@ def test_a_run_without_a_whole_revolution_is_not_judged():
     assert claim.note == "the run has no whole revolution to judge"
 
 
+def test_a_skip_that_leaves_no_revolution_is_named():
+    text = SCENE.replace("skip = 1", "skip = 5").replace("start_at_speed = false", "start_at_speed = true")
+    claim = loomfmu.evaluate(scenes.parse(text, overrides={"revolutions": 3})).claims[1]
+    assert claim.word == "undecided"
+    assert claim.note.startswith("skip = 5 leaves none of the whole revolutions of the run: it has ")
+    assert claim.note.endswith(" and needs 6; raise revolutions")
+
+
 def test_a_scene_without_a_motor_has_no_power_to_judge():
     text = '[loom]\nmachine = "WL680-3600"\n[[claims]]\nkind = "motor_power"\nat_most = 1.0\n'
     with pytest.raises(loomfmu.LoomfmuError, match="shaft has no output 'motor_power'"):

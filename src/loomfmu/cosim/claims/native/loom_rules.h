@@ -11,6 +11,7 @@ static void judge_power(struct run *run, const struct call *call, struct answer 
 static void judge_fluctuation(struct run *run, const struct call *call, struct answer *answer)
 {
     const int velocity = signal_of(call, 0);
+    const double skip = ceil(call->number[1]);
     struct times times = times_at(run, sample(shaft_of(run), 1, 0));
     answer->worst = answer->time = NAN;
     answer->unseen = ""; /* each revolution is judged by itself, as far as there is one */
@@ -18,7 +19,7 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
     for (ptrdiff_t place = 0; place + 1 < times.count; place++) {
         struct stretch turn = {times.list[place], times.list[place + 1], true};
         struct stretches within = {1, 1, &turn};
-        if ((double)place < ceil(call->number[1]))
+        if ((double)place < skip)
             continue;
         struct extreme low = noted_extreme(run, answer, velocity, 1.0, &within);
         struct extreme high = noted_extreme(run, answer, velocity, -1.0, &within);
@@ -28,7 +29,12 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
             answer->time = low.time;
         }
     }
-    if (isnan(answer->worst))
+    if (isnan(answer->worst) && times.count > 1 && skip >= (double)(times.count - 1))
+        note(run, answer,
+             text(run, "skip = %.0f leaves none of the whole revolutions of the run: it has %td and needs %.0f; raise revolutions",
+                  skip, times.count - 1, skip + 1.0),
+             PLAIN);
+    else if (isnan(answer->worst))
         note(run, answer, "the run has no whole revolution to judge", PLAIN);
 }
 
