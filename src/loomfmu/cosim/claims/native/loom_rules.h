@@ -31,8 +31,8 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
     }
     if (isnan(answer->worst) && times.count > 1 && skip >= (double)(times.count - 1))
         note(run, answer,
-             text(run, "skip = %.0f leaves none of the whole revolutions of the run: it has %td and needs %.0f; raise revolutions",
-                  skip, times.count - 1, skip + 1.0),
+             text(run, "skip = %.0f leaves none of the whole revolutions of the run: it has %.0f and needs %.0f; raise revolutions",
+                  skip, (double)(times.count - 1), skip + 1.0),
              PLAIN);
     else if (isnan(answer->worst))
         note(run, answer, "the run has no whole revolution to judge", PLAIN);
