@@ -266,9 +266,9 @@ class BeltDynamics(BeltRest):
         length = self.length_at(share)
         velocity = self.velocity_at(share)
         self.try_modes()
-        (
-            _d, _k, guide, head, guide_rate, head_rate, _by_length, _head_by_length, _second, _head_second
-        ) = self.ends(length, velocity)  # fmt: skip
+        (_d, _k, guide, head, guide_rate, head_rate, _by_length, _head_by_length, _second, _head_second) = (
+            self.ends(length, velocity)
+        )
         a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode)
         place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, guide, head)
         a1, a2, a3, a4, a5, a6 = end_shape(guide_rate, head_rate, *self.mode_rate)
@@ -291,9 +291,13 @@ class BeltDynamics(BeltRest):
             self.push_before = self.pushed_at(share)
             return
         self.largest_deflection = highest_so_far(
-            self.largest_deflection, duration, self.last_deflection, self.last_rate, self.deflection,
+            self.largest_deflection,
+            duration,
+            self.last_deflection,
+            self.last_rate,
+            self.deflection,
             self.deflection_rate,
-        )  # fmt: skip
+        )
         pushed = self.pushed_at(share)
         value = self.deflection
         rate = self.deflection_rate
@@ -346,12 +350,38 @@ class BeltDynamics(BeltRest):
         """Shortening of the belt, and the moment by which its guide keeps it from turning."""
         length = self.free_length
         (
-            d, _k, _guide, _head, _guide_rate, _head_rate, _guide_by_length, _head_by_length, _guide_second,
+            d,
+            _k,
+            _guide,
+            _head,
+            _guide_rate,
+            _head_rate,
+            _guide_by_length,
+            _head_by_length,
+            _guide_second,
             _head_second,
-        ) = self.ends(length, 0.0)  # fmt: skip
+        ) = self.ends(length, 0.0)
         (
-            _f1, _f2, _f3, _f4, _f5, _f6, _g1, _g2, _g3, _g4, _g5, _g6, self.shortening, _rate, _second,
-            _by_length, _energy, _growth, force, pull,
-        ) = self.bend(length, 0.0)  # fmt: skip
+            _f1,
+            _f2,
+            _f3,
+            _f4,
+            _f5,
+            _f6,
+            _g1,
+            _g2,
+            _g3,
+            _g4,
+            _g5,
+            _g6,
+            self.shortening,
+            _rate,
+            _second,
+            _by_length,
+            _energy,
+            _growth,
+            force,
+            pull,
+        ) = self.bend(length, 0.0)
         bending = self.stiffness * (6.0 * d / (length * length * length) - force)
         self.guide_moment = length * (bending - self.compression * pull)

@@ -52,8 +52,13 @@ class BeltGuide(BeltDynamicsVariables):
         )
         flexural = self.stiffness
         return (
-            flexural * b1, flexural * b2, flexural * b3, flexural * b4, flexural * b5, flexural * b6,
-        )  # fmt: skip
+            flexural * b1,
+            flexural * b2,
+            flexural * b3,
+            flexural * b4,
+            flexural * b5,
+            flexural * b6,
+        )
 
     def end_bow(self, length: float) -> tuple[float, float, float, float, float, float]:
         """Amplitudes of the end shapes at guide and head where both turn freely, and two rates by L."""
@@ -66,33 +71,98 @@ class BeltGuide(BeltDynamicsVariables):
         e, h, e_by_length, h_by_length, e_second, h_second = self.end_bow(length)
         return end_motion(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, velocity, 0.0, self.clamped(), self.turn(length), self.turn_by_length(), e, h,
-            e_by_length, h_by_length, e_second, h_second,
-        )  # fmt: skip
+            *self.trial_rate,
+            velocity,
+            0.0,
+            self.clamped(),
+            self.turn(length),
+            self.turn_by_length(),
+            e,
+            h,
+            e_by_length,
+            h_by_length,
+            e_second,
+            h_second,
+        )
 
     def bend(
         self, length: float, velocity: float
     ) -> tuple[
-        float, float, float, float, float, float, float, float, float, float, float, float,
-        float, float, float, float, float, float, float, float,
-    ]:  # fmt: skip
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+        float,
+    ]:
         """Bending and shortening in the trial place, see `bent_belt`, of a belt at a constant velocity."""
         (
-            _d, _k, guide, head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second,
+            _d,
+            _k,
+            guide,
+            head,
+            guide_rate,
+            head_rate,
+            guide_by_length,
+            head_by_length,
+            guide_second,
             head_second,
-        ) = self.ends(length, velocity)  # fmt: skip
+        ) = self.ends(length, velocity)
         return bent_belt(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, length, velocity, 0.0, self.clamped(), guide, head, guide_rate, head_rate,
-            guide_by_length, head_by_length, guide_second, head_second,
-        )  # fmt: skip
+            *self.trial_rate,
+            length,
+            velocity,
+            0.0,
+            self.clamped(),
+            guide,
+            head,
+            guide_rate,
+            head_rate,
+            guide_by_length,
+            head_by_length,
+            guide_second,
+            head_second,
+        )
 
     def lag(self, length: float, velocity: float) -> tuple[float, float, float, float, float, float, float]:
         """Rates of the shortening in the trial place, by the modes that move and in time."""
         (
-            _f1, _f2, _f3, _f4, _f5, _f6, g1, g2, g3, g4, g5, g6, _short, rate, _second, _by_length, _energy,
-            _growth, _turned_force, _turned_pull,
-        ) = self.bend(length, velocity)  # fmt: skip
+            _f1,
+            _f2,
+            _f3,
+            _f4,
+            _f5,
+            _f6,
+            g1,
+            g2,
+            g3,
+            g4,
+            g5,
+            g6,
+            _short,
+            rate,
+            _second,
+            _by_length,
+            _energy,
+            _growth,
+            _turned_force,
+            _turned_pull,
+        ) = self.bend(length, velocity)
         g1, g2, g3, g4, g5, g6 = first_modes(self.modes, g1, g2, g3, g4, g5, g6)
         return g1, g2, g3, g4, g5, g6, rate
 

@@ -119,25 +119,62 @@ class BeltIntegration(BeltPath):
         far = (share - 0.5) / (LAST - 0.5)
         square = far * far
         return stage(
-            0.0, 0.5 * (square - far), 1.0 - square, 0.5 * (square + far),
-            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-            *self.gauss_a, *self.gauss_b, *self.gauss_c,
-        )  # fmt: skip
+            0.0,
+            0.5 * (square - far),
+            1.0 - square,
+            0.5 * (square + far),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            *self.gauss_a,
+            *self.gauss_b,
+            *self.gauss_c,
+        )
 
     def visit(
-        self, duration: float, share: float,
-        place_a: float, place_b: float, place_c: float, rate_a: float, rate_b: float, rate_c: float,
-    ) -> None:  # fmt: skip
+        self,
+        duration: float,
+        share: float,
+        place_a: float,
+        place_b: float,
+        place_c: float,
+        rate_a: float,
+        rate_b: float,
+        rate_c: float,
+    ) -> None:
         """Make the modes at a share of the integration step the trial place, by the weights of its stages."""
         square = duration * duration
         self.trial = stage(
-            duration * share, square * place_a, square * place_b, square * place_c,
-            *self.mode, *self.mode_rate, *self.gauss_a, *self.gauss_b, *self.gauss_c,
-        )  # fmt: skip
+            duration * share,
+            square * place_a,
+            square * place_b,
+            square * place_c,
+            *self.mode,
+            *self.mode_rate,
+            *self.gauss_a,
+            *self.gauss_b,
+            *self.gauss_c,
+        )
         self.trial_rate = stage(
-            0.0, duration * rate_a, duration * rate_b, duration * rate_c,
-            *self.mode_rate, *self.mode_rate, *self.gauss_a, *self.gauss_b, *self.gauss_c,
-        )  # fmt: skip
+            0.0,
+            duration * rate_a,
+            duration * rate_b,
+            duration * rate_c,
+            *self.mode_rate,
+            *self.mode_rate,
+            *self.gauss_a,
+            *self.gauss_b,
+            *self.gauss_c,
+        )
 
     def visit_first(self, duration: float) -> None:
         """Make the modes at the first stage the trial place."""
@@ -213,9 +250,20 @@ class BeltIntegration(BeltPath):
         else:
             sign = -1.0 if clamped == 1 else 1.0
             e1, e2, e3 = held(
-                stiff / OWN, o11 + e11, o12 + e12, o13 + e13, o21 + e21, o22 + e22, o23 + e23, o31 + e31,
-                o32 + e32, o33 + e33, e1 + sign * o1, e2 + sign * o2, e3 + sign * o3,
-            )  # fmt: skip
+                stiff / OWN,
+                o11 + e11,
+                o12 + e12,
+                o13 + e13,
+                o21 + e21,
+                o22 + e22,
+                o23 + e23,
+                o31 + e31,
+                o32 + e32,
+                o33 + e33,
+                e1 + sign * o1,
+                e2 + sign * o2,
+                e3 + sign * o3,
+            )
             o1, o2, o3 = sign * e1, sign * e2, sign * e3
         a1, a2, a3, a4, a5, a6 = at_ends(-o1, -e1)
         a1, a2, a3, a4, a5, a6 = summed(1.0, a1, a2, a3, a4, a5, a6, *self.found_a)
@@ -248,11 +296,19 @@ class BeltIntegration(BeltPath):
             c1, c2, c3 = self.corrected_mode(number - 1, length, pushed, square)
             s1, s2, s3 = s1 + wave * c1, s2 + wave * c2, s3 + wave * c3
         return (
-            y11, y12, y13, y21, y22, y23, y31, y32, y33,
+            y11,
+            y12,
+            y13,
+            y21,
+            y22,
+            y23,
+            y31,
+            y32,
+            y33,
             SQUARE_11 * s1 + SQUARE_12 * s2 + SQUARE_13 * s3,
             SQUARE_21 * s1 + SQUARE_22 * s2 + SQUARE_23 * s3,
             SQUARE_31 * s1 + SQUARE_32 * s2 + SQUARE_33 * s3,
-        )  # fmt: skip
+        )
 
     def stiff(self, number: int, length: float, pushed: float) -> float:
         """Square of the frequency of a mode, 0 for one that grows."""
@@ -276,19 +332,46 @@ class BeltIntegration(BeltPath):
         self.visit_end(duration)
 
     def work(
-        self, share: float, time: float, load: float,
-        a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
-    ) -> None:  # fmt: skip
+        self,
+        share: float,
+        time: float,
+        load: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        a4: float,
+        a5: float,
+        a6: float,
+    ) -> None:
         """Add the work of all powers at a stage over a time."""
         length = self.length_at(share)
         _energy, push, guide, loss = energy_and_powers(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, a1, a2, a3, a4, a5, a6, length,
-            self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
-            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
-            self.turn_by_length(), load,
-        )  # fmt: skip
+            *self.trial_rate,
+            a1,
+            a2,
+            a3,
+            a4,
+            a5,
+            a6,
+            length,
+            self.velocity_at(share),
+            self.acceleration_at(share),
+            self.tension_at(share),
+            self.head_mass,
+            self.belt_mass,
+            2.0 * self.belt_mass * self.damping,
+            self.stiffness,
+            self.bow_of,
+            self.bow,
+            self.bow_length,
+            self.guide_offset,
+            self.may_clamp(),
+            self.clamped(),
+            self.turn(length),
+            self.turn_by_length(),
+            load,
+        )
         self.step_push = self.step_push + time * push
         self.step_guide = self.step_guide + time * guide
         self.step_loss = self.step_loss + time * loss
@@ -299,10 +382,29 @@ class BeltIntegration(BeltPath):
         length = self.length_at(share)
         energy, _push, _guide, _loss = energy_and_powers(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length,
-            self.velocity_at(share), self.acceleration_at(share), self.tension_at(share), self.head_mass,
-            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.bow_of, self.bow,
-            self.bow_length, self.guide_offset, self.may_clamp(), self.clamped(), self.turn(length),
-            self.turn_by_length(), 0.0,
-        )  # fmt: skip
+            *self.trial_rate,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            length,
+            self.velocity_at(share),
+            self.acceleration_at(share),
+            self.tension_at(share),
+            self.head_mass,
+            self.belt_mass,
+            2.0 * self.belt_mass * self.damping,
+            self.stiffness,
+            self.bow_of,
+            self.bow,
+            self.bow_length,
+            self.guide_offset,
+            self.may_clamp(),
+            self.clamped(),
+            self.turn(length),
+            self.turn_by_length(),
+            0.0,
+        )
         return energy

@@ -106,9 +106,16 @@ class BeltMonitor(BeltVariables):
         self.sampled_turning = self.joined_turning
 
     def shape_at(
-        self, which: int, start_rate: float, a0: float, a1: float, a2: float, a3: float, step: float,
+        self,
+        which: int,
+        start_rate: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        step: float,
         share: float,
-    ) -> float:  # fmt: skip
+    ) -> float:
         """Margin, speed limit or reversed deflection at a share of the way from the last sample."""
         travel, second = joined_value(self.sampled_travel, start_rate, a0, a1, a2, a3, share)
         second = second / (step * step)
@@ -197,9 +204,18 @@ class BeltMonitor(BeltVariables):
         return inside
 
     def lowest_of(
-        self, which: int, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, low: float,
-        high: float, bar: float,
-    ) -> tuple[float, float]:  # fmt: skip
+        self,
+        which: int,
+        rate: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        step: float,
+        low: float,
+        high: float,
+        bar: float,
+    ) -> tuple[float, float]:
         """Lowest value between two shares of the way, and its share.
 
         Five values find the neighbourhood, golden sections the place: the value at a minimum is then exact to
@@ -227,9 +243,17 @@ class BeltMonitor(BeltVariables):
         return nearest, place
 
     def golden(
-        self, which: int, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, low: float,
+        self,
+        which: int,
+        rate: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        step: float,
+        low: float,
         high: float,
-    ) -> tuple[float, float]:  # fmt: skip
+    ) -> tuple[float, float]:
         """Lowest value between two shares of the way about one minimum, and its share."""
         golden = 0.6180339887498949
         left = high - golden * (high - low)
@@ -266,9 +290,13 @@ class BeltMonitor(BeltVariables):
             self.largest_deflection = deflection
         if self.joined_turning:
             limit = speed_limit(
-                self.travel - guide, self.joined_bend, self.length_factor, self.bending_stiffness,
-                self.head_mass, weft,
-            )  # fmt: skip
+                self.travel - guide,
+                self.joined_bend,
+                self.length_factor,
+                self.bending_stiffness,
+                self.head_mass,
+                weft,
+            )
             if limit < self.lowest_speed_limit:
                 self.lowest_speed_limit = limit
         turn = fabs(self.joined_angle - self.sampled_angle)
@@ -305,9 +333,13 @@ class BeltMonitor(BeltVariables):
         self.speed_limit = NO_LIMIT
         if self.joined_turning:
             self.speed_limit = speed_limit(
-                self.free_length, bend, self.length_factor, self.bending_stiffness, self.head_mass,
+                self.free_length,
+                bend,
+                self.length_factor,
+                self.bending_stiffness,
+                self.head_mass,
                 weft,
-            )  # fmt: skip
+            )
         self.deflection = elastica_deflection(1.0 - self.margin, self.free_length)
         self.at_risk = self.free_length > 0.0 and self.axial_force > 0.0
         return 1 if self.guide_clearance > 1e-3 and not self.prescribe_length_factor else 0

@@ -24,9 +24,13 @@ class BeltPath(BeltGuide):
         self.stiffness = self.bending_stiffness / (factor * factor)
         if duration > 0.0:
             a0, a1, a2, a3 = joined(
-                self.sampled_travel, duration * self.sampled_velocity, square * self.sampled_acceleration,
-                self.travel, duration * self.velocity, square * self.acceleration,
-            )  # fmt: skip
+                self.sampled_travel,
+                duration * self.sampled_velocity,
+                square * self.sampled_acceleration,
+                self.travel,
+                duration * self.velocity,
+                square * self.acceleration,
+            )
             start = self.sampled_travel - guide
             self.path = (start, duration * self.sampled_velocity, a0, a1, a2, a3)
             self.start_tension = self.sampled_tension
@@ -76,32 +80,84 @@ class BeltPath(BeltGuide):
         b1, b2, b3, b4, b5, b6 = self.bow_moments(length)
         e, h, e_by_length, h_by_length, e_second, h_second = self.end_bow(length)
         return self.bowed_rates(
-            length, velocity, acceleration, tension, b1, b2, b3, b4, b5, b6,
-            e, h, e_by_length, h_by_length, e_second, h_second,
-        )  # fmt: skip
+            length,
+            velocity,
+            acceleration,
+            tension,
+            b1,
+            b2,
+            b3,
+            b4,
+            b5,
+            b6,
+            e,
+            h,
+            e_by_length,
+            h_by_length,
+            e_second,
+            h_second,
+        )
 
     def bowed_rates(
-        self, length: float, velocity: float, acceleration: float, tension: float,
-        b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-        e: float, h: float, e_by_length: float, h_by_length: float, e_second: float, h_second: float,
-    ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+        self,
+        length: float,
+        velocity: float,
+        acceleration: float,
+        tension: float,
+        b1: float,
+        b2: float,
+        b3: float,
+        b4: float,
+        b5: float,
+        b6: float,
+        e: float,
+        h: float,
+        e_by_length: float,
+        h_by_length: float,
+        e_second: float,
+        h_second: float,
+    ) -> tuple[float, float, float, float, float, float]:
         """As `second_rates`, with `bow_moments` and `end_bow`."""
         a1, a2, a3, a4, a5, a6, load = accelerations(  # type: ignore[call-arg]
             *self.trial,  # type: ignore[arg-type]
-            *self.trial_rate, length, velocity, acceleration, tension, self.head_mass,
-            self.belt_mass, 2.0 * self.belt_mass * self.damping, self.stiffness, self.guide_offset,
-            self.clamped(), self.turn(length), self.turn_by_length(), self.modes, b1, b2, b3, b4, b5, b6,
-            e, h, e_by_length, h_by_length, e_second, h_second,
-        )  # fmt: skip
+            *self.trial_rate,
+            length,
+            velocity,
+            acceleration,
+            tension,
+            self.head_mass,
+            self.belt_mass,
+            2.0 * self.belt_mass * self.damping,
+            self.stiffness,
+            self.guide_offset,
+            self.clamped(),
+            self.turn(length),
+            self.turn_by_length(),
+            self.modes,
+            b1,
+            b2,
+            b3,
+            b4,
+            b5,
+            b6,
+            e,
+            h,
+            e_by_length,
+            h_by_length,
+            e_second,
+            h_second,
+        )
         self.compression = load
         return a1, a2, a3, a4, a5, a6
 
     def rates_at(self, share: float) -> tuple[float, float, float, float, float, float]:
         """Accelerations of the modes in their trial place at a share of the step."""
         return self.second_rates(
-            self.length_at(share), self.velocity_at(share), self.acceleration_at(share),
+            self.length_at(share),
+            self.velocity_at(share),
+            self.acceleration_at(share),
             self.tension_at(share),
-        )  # fmt: skip
+        )
 
     def scaled_end_bow(self, length: float) -> tuple[float, float, float, float, float, float]:
         """As `end_bow`, by the relative length: all amplitudes."""
@@ -110,17 +166,42 @@ class BeltPath(BeltGuide):
         return e, h, length * e_by_length, length * h_by_length, square * e_second, square * h_second
 
     def stage_rates(
-        self, share: float, b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-        e: float, h: float, e_growth: float, h_growth: float, e_second: float, h_second: float,
-    ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+        self,
+        share: float,
+        b1: float,
+        b2: float,
+        b3: float,
+        b4: float,
+        b5: float,
+        b6: float,
+        e: float,
+        h: float,
+        e_growth: float,
+        h_growth: float,
+        e_second: float,
+        h_second: float,
+    ) -> tuple[float, float, float, float, float, float]:
         """As `rates_at`, with `bow_moments` and `scaled_end_bow`, which only the length changes."""
         length = self.length_at(share)
         square = length * length
         return self.bowed_rates(
-            length, self.velocity_at(share), self.acceleration_at(share), self.tension_at(share),
-            b1, b2, b3, b4, b5, b6, e, h, e_growth / length, h_growth / length, e_second / square,
+            length,
+            self.velocity_at(share),
+            self.acceleration_at(share),
+            self.tension_at(share),
+            b1,
+            b2,
+            b3,
+            b4,
+            b5,
+            b6,
+            e,
+            h,
+            e_growth / length,
+            h_growth / length,
+            e_second / square,
             h_second / square,
-        )  # fmt: skip
+        )
 
     def note_gap(self, share: float) -> None:
         """Let the belt lean on its guide, or let it go, where it is about to; keep its slope there."""

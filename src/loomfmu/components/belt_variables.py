@@ -35,9 +35,14 @@ class BeltVariables(ShaftDriven):
         "N.m2", 0.25, "Bending stiffness EI of the belt", minimum=1e-9, maximum=1e6
     )
     head_mass: float = parameter(
-        "kg", 0.1105, "Mass of rapier head and rigid section of the belt", display="g",
-        minimum=1e-6, maximum=100.0, nominal=0.1,
-    )  # fmt: skip
+        "kg",
+        0.1105,
+        "Mass of rapier head and rigid section of the belt",
+        display="g",
+        minimum=1e-6,
+        maximum=100.0,
+        nominal=0.1,
+    )
     head_length: float = parameter(
         "m", 0.550, "Length of head and rigid section", display="mm", minimum=0.0, maximum=10.0
     )
@@ -63,35 +68,54 @@ class BeltVariables(ShaftDriven):
     acceleration: float = head_acceleration(398.0)
     yarn_tension: float = yarn_tension()
     guide_clearance: float = input_(
-        "m", 0.3e-3, "Clearance of the belt in its guide; grows with wear", display="mm",
-        minimum=0.0, maximum=0.05, nominal=1e-3, unless="prescribe_length_factor",
-    )  # fmt: skip
+        "m",
+        0.3e-3,
+        "Clearance of the belt in its guide; grows with wear",
+        display="mm",
+        minimum=0.0,
+        maximum=0.05,
+        nominal=1e-3,
+        unless="prescribe_length_factor",
+    )
     free_length: float = output(
-        "m", "Length of the belt between guide and head; negative while inside the guide", display="mm",
-        nominal=1.0, depends=("travel", "velocity", "acceleration"),
-    )  # fmt: skip
+        "m",
+        "Length of the belt between guide and head; negative while inside the guide",
+        display="mm",
+        nominal=1.0,
+        depends=("travel", "velocity", "acceleration"),
+    )
     inertia_force: float = output(
         "N", "Inertia force of the head on the belt", nominal=100.0, depends=("acceleration",)
     )
     axial_force: float = output(
-        "N", "Compression of the belt: inertia force and weft tension", nominal=100.0,
+        "N",
+        "Compression of the belt: inertia force and weft tension",
+        nominal=100.0,
         depends=("velocity", "acceleration", "yarn_tension"),
-    )  # fmt: skip
+    )
     critical_force: float = output(
-        "N", "Critical load of the free section; inside the guide, that of a section of 1 mm",
-        nominal=100.0, depends=("travel", "velocity", "acceleration", "guide_clearance"),
-    )  # fmt: skip
+        "N",
+        "Critical load of the free section; inside the guide, that of a section of 1 mm",
+        nominal=100.0,
+        depends=("travel", "velocity", "acceleration", "guide_clearance"),
+    )
     length_factor: float = output("1", "Column length factor in use", follows="guide_clearance")
     margin: float = output("1", "Margin against buckling, 1 - compression / critical load")
     lowest_margin: float = output("1", "Lowest margin so far, on the continuous curve", lowest_of="margin")
     speed_limit: float = output(
-        "rad/s", "Shaft speed at which the belt would just buckle here; 95493 rev/min if it cannot",
-        display="rev/min", nominal=100.0, pole=True,
-    )  # fmt: skip
+        "rad/s",
+        "Shaft speed at which the belt would just buckle here; 95493 rev/min if it cannot",
+        display="rev/min",
+        nominal=100.0,
+        pole=True,
+    )
     lowest_speed_limit: float = output(
-        "rad/s", "Lowest speed limit so far, on the continuous curve", display="rev/min", nominal=100.0,
+        "rad/s",
+        "Lowest speed limit so far, on the continuous curve",
+        display="rev/min",
+        nominal=100.0,
         lowest_of="speed_limit",
-    )  # fmt: skip
+    )
     deflection: float = output(
         "m", "Largest deflection of the buckled belt, exact elastica", display="mm", nominal=5e-3
     )
@@ -99,13 +123,19 @@ class BeltVariables(ShaftDriven):
         "1", "The belt is outside its guide and in compression", start=False, variability="discrete"
     )
     largest_deflection: float = output(
-        "m", "Largest deflection so far, on the continuous curve", display="mm", nominal=5e-3,
+        "m",
+        "Largest deflection so far, on the continuous curve",
+        display="mm",
+        nominal=5e-3,
         highest_of="deflection",
-    )  # fmt: skip
+    )
     buckled: bool = output(
-        "1", "The belt has buckled at least once", start=False, variability="discrete",
+        "1",
+        "The belt has buckled at least once",
+        start=False,
+        variability="discrete",
         lowest_of="margin",
-    )  # fmt: skip
+    )
 
     acceleration_rate: float = auxiliary("m/s3", "Rate of the acceleration between the last two samples")
     bend_rate: float = auxiliary("m/s", "Rate of the second derivative by shaft angle between the samples")

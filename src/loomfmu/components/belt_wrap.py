@@ -24,13 +24,22 @@ class BeltWrap(Component):
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
     )
     wrap_angle: float = parameter(
-        "rad", 3.141592653589793, "Angle of the belt on the wheel, for information only: no effect",
-        display="deg", minimum=0.0, maximum=6.283185307179586,
-    )  # fmt: skip
+        "rad",
+        3.141592653589793,
+        "Angle of the belt on the wheel, for information only: no effect",
+        display="deg",
+        minimum=0.0,
+        maximum=6.283185307179586,
+    )
     block_clearance: float = input_(
-        "m", 0.3e-3, "Clearance between block and belt; grows with wear", display="mm",
-        minimum=1e-6, maximum=0.01, nominal=1e-3,
-    )  # fmt: skip
+        "m",
+        0.3e-3,
+        "Clearance between block and belt; grows with wear",
+        display="mm",
+        minimum=1e-6,
+        maximum=0.01,
+        nominal=1e-3,
+    )
     lever_arm: float = output(
         "m", "Lever arm of the restraint load", display="mm", nominal=0.01, follows="block_clearance"
     )

@@ -35,9 +35,17 @@ class DamperMotion(DamperVariables):
         return 0.0
 
     def move(
-        self, duration: float, lift: float, velocity: float, a0: float, a1: float, a2: float, a3: float,
-        load: float, load_rate: float,
-    ) -> int:  # fmt: skip
+        self,
+        duration: float,
+        lift: float,
+        velocity: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        load: float,
+        load_rate: float,
+    ) -> int:
         """Move the carrier piece by piece: short against its own motion, one contact each."""
         mass = self.carrier_mass
         elapsed = 0.0
@@ -80,16 +88,30 @@ class DamperMotion(DamperVariables):
         if self.thread_count == 0:
             return sqrt(stiffness) + damping
         threads = warp_stiffness(
-            lift + self.eye_offset() + self.displacement, self.thread_force,
-            self.thread_count * self.pretension, self.thread_count * self.thread_stiffness,
-            self.front_length, self.back_length,
-        )  # fmt: skip
+            lift + self.eye_offset() + self.displacement,
+            self.thread_force,
+            self.thread_count * self.pretension,
+            self.thread_count * self.thread_stiffness,
+            self.front_length,
+            self.back_length,
+        )
         return sqrt(stiffness + threads / self.carrier_mass) + damping + self.relaxation_rate
 
     def move_with_threads(
-        self, stiffness: float, damping: float, preload: float, lift: float, velocity: float,
-        a0: float, a1: float, a2: float, a3: float, load: float, load_rate: float, piece: float,
-    ) -> tuple[float, int]:  # fmt: skip
+        self,
+        stiffness: float,
+        damping: float,
+        preload: float,
+        lift: float,
+        velocity: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        load: float,
+        load_rate: float,
+        piece: float,
+    ) -> tuple[float, int]:
         """Move carrier and threads over one piece, or up to the change of contact in it.
 
         Returns:
@@ -125,43 +147,113 @@ class DamperMotion(DamperVariables):
             return taken, MOST_HALVINGS + 1
         acceleration = u0 + a0 + d0 / mass - stiffness * position - damping * rate
         taken = self.move_piece(
-            stiffness, damping, preload, u0 + d0 / mass, u1 + d1 / mass, d2 / mass - a2, d3 / mass - a3,
-            load + d0, load_rate + d1, d2, d3, taken,
-        )  # fmt: skip
+            stiffness,
+            damping,
+            preload,
+            u0 + d0 / mass,
+            u1 + d1 / mass,
+            d2 / mass - a2,
+            d3 / mass - a3,
+            load + d0,
+            load_rate + d1,
+            d2,
+            d3,
+            taken,
+        )
         self.take_work(
-            stiffness, damping, preload, position, rate, u0 + d0 / mass, u1 + d1 / mass, d2 / mass - a2,
-            d3 / mass - a3, velocity, a0, a1, a2, a3, taken,
-        )  # fmt: skip
+            stiffness,
+            damping,
+            preload,
+            position,
+            rate,
+            u0 + d0 / mass,
+            u1 + d1 / mass,
+            d2 / mass - a2,
+            d3 / mass - a3,
+            velocity,
+            a0,
+            a1,
+            a2,
+            a3,
+            taken,
+        )
         end_lift, end_velocity, end_acceleration = moved_on(eyes, velocity, a0, a1, a2, a3, taken)
         drive = (
             u0 + d0 / mass + taken * (u1 + d1 / mass + taken * (d2 / mass - a2 + taken * (d3 / mass - a3)))
         )
         self.thread_force = force_after(
-            eyes + position, velocity + rate, acceleration, end_lift + self.displacement,
+            eyes + position,
+            velocity + rate,
+            acceleration,
+            end_lift + self.displacement,
             end_velocity + self.rate,
             end_acceleration + drive - stiffness * self.displacement - damping * self.rate,
-            self.thread_force, threads, self.creep_rate, self.relaxation_rate,
-            self.front_length, self.back_length, taken,
-        )  # fmt: skip
+            self.thread_force,
+            threads,
+            self.creep_rate,
+            self.relaxation_rate,
+            self.front_length,
+            self.back_length,
+            taken,
+        )
         return taken, halvings
 
     def load_of_threads(
-        self, stiffness: float, damping: float, u0: float, u1: float, eyes: float, velocity: float,
-        a0: float, a1: float, a2: float, a3: float, piece: float,
-    ) -> tuple[float, float, float, float, bool]:  # fmt: skip
+        self,
+        stiffness: float,
+        damping: float,
+        u0: float,
+        u1: float,
+        eyes: float,
+        velocity: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        piece: float,
+    ) -> tuple[float, float, float, float, bool]:
         """What threads add to the load over one piece, by powers of time, and whether it has settled."""
         return settled_load(
-            self.displacement, self.rate, self.thread_force, self.carrier_mass, stiffness, damping,
-            u0, u1, -a2, -a3, eyes, velocity, a0, a1, a2, a3, self.thread_count * self.pretension,
-            self.thread_count * self.thread_stiffness, self.creep_rate, self.relaxation_rate,
-            self.front_length, self.back_length, piece,
-        )  # fmt: skip
+            self.displacement,
+            self.rate,
+            self.thread_force,
+            self.carrier_mass,
+            stiffness,
+            damping,
+            u0,
+            u1,
+            -a2,
+            -a3,
+            eyes,
+            velocity,
+            a0,
+            a1,
+            a2,
+            a3,
+            self.thread_count * self.pretension,
+            self.thread_count * self.thread_stiffness,
+            self.creep_rate,
+            self.relaxation_rate,
+            self.front_length,
+            self.back_length,
+            piece,
+        )
 
     def move_piece(
-        self, stiffness: float, damping: float, preload: float,
-        u0: float, u1: float, u2: float, u3: float, load: float, load_1: float, load_2: float, load_3: float,
+        self,
+        stiffness: float,
+        damping: float,
+        preload: float,
+        u0: float,
+        u1: float,
+        u2: float,
+        u3: float,
+        load: float,
+        load_1: float,
+        load_2: float,
+        load_3: float,
         piece: float,
-    ) -> float:  # fmt: skip
+    ) -> float:
         """Move over one piece, or up to the change of contact within it; the time that took."""
         position = self.displacement
         rate = self.rate
@@ -175,9 +267,22 @@ class DamperMotion(DamperVariables):
         before = self.contact
         if before != 0 or farthest >= self.free_travel:
             taken, self.contact = contact_change(
-                before, position, rate, stiffness, damping, u0, u1, u2, u3,
-                self.free_travel, self.stop_stiffness, self.stop_damping, most_acceleration, most_jerk, piece,
-            )  # fmt: skip
+                before,
+                position,
+                rate,
+                stiffness,
+                damping,
+                u0,
+                u1,
+                u2,
+                u3,
+                self.free_travel,
+                self.stop_stiffness,
+                self.stop_damping,
+                most_acceleration,
+                most_jerk,
+                piece,
+            )
             if before == 0 and self.contact != 0 and self.stop_contacts < MOST_CONTACTS:
                 self.stop_contacts = self.stop_contacts + 1
         self.displacement, self.rate = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, taken)
@@ -188,25 +293,66 @@ class DamperMotion(DamperVariables):
         bend = stiffness * most_jerk + damping * most_snap
         if self.carrier_mass * (larger(first, last) + bulge) > self.peak_load:
             self.note_turns(
-                False, bend, position, rate, stiffness, damping, preload, u0, u1, u2, u3,
-                load, load_1, load_2, load_3, taken,
-            )  # fmt: skip
+                False,
+                bend,
+                position,
+                rate,
+                stiffness,
+                damping,
+                preload,
+                u0,
+                u1,
+                u2,
+                u3,
+                load,
+                load_1,
+                load_2,
+                load_3,
+                taken,
+            )
         mass = self.carrier_mass
         end_load = load + taken * (load_1 + taken * (load_2 + taken * load_3))
         load_bend = 2.0 * fabs(load_2) + 6.0 * fabs(load_3) * taken
         bulge = bulge + 0.125 * taken * taken * load_bend / mass
         if larger(load / mass - first, end_load / mass - last) + bulge > self.peak_carrier:
             self.note_turns(
-                True, bend + 6.0 * fabs(load_3) / mass, position, rate, stiffness, damping, preload,
-                u0, u1, u2, u3, load, load_1, load_2, load_3, taken,
-            )  # fmt: skip
+                True,
+                bend + 6.0 * fabs(load_3) / mass,
+                position,
+                rate,
+                stiffness,
+                damping,
+                preload,
+                u0,
+                u1,
+                u2,
+                u3,
+                load,
+                load_1,
+                load_2,
+                load_3,
+                taken,
+            )
         return taken
 
     def take_work(
-        self, stiffness: float, damping: float, preload: float, position: float, rate: float,
-        u0: float, u1: float, u2: float, u3: float, velocity: float,
-        a0: float, a1: float, a2: float, a3: float, taken: float,
-    ) -> None:  # fmt: skip
+        self,
+        stiffness: float,
+        damping: float,
+        preload: float,
+        position: float,
+        rate: float,
+        u0: float,
+        u1: float,
+        u2: float,
+        u3: float,
+        velocity: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        taken: float,
+    ) -> None:
         """Add the work of the frame on the carrier over a piece: its power runs on a quintic there."""
         mass = self.carrier_mass
         power, growth, bend = power_of_frame(
@@ -214,20 +360,41 @@ class DamperMotion(DamperVariables):
         )
         t = taken
         end_power, end_growth, end_bend = power_of_frame(
-            mass, stiffness, damping, preload, self.displacement, self.rate,
-            u0 + t * (u1 + t * (u2 + t * u3)), u1 + t * (2.0 * u2 + t * 3.0 * u3),
+            mass,
+            stiffness,
+            damping,
+            preload,
+            self.displacement,
+            self.rate,
+            u0 + t * (u1 + t * (u2 + t * u3)),
+            u1 + t * (2.0 * u2 + t * 3.0 * u3),
             velocity + t * (a0 + t * (a1 / 2.0 + t * (a2 / 3.0 + t * a3 / 4.0))),
-            a0 + t * (a1 + t * (a2 + t * a3)), a1 + t * (2.0 * a2 + t * 3.0 * a3),
-        )  # fmt: skip
+            a0 + t * (a1 + t * (a2 + t * a3)),
+            a1 + t * (2.0 * a2 + t * 3.0 * a3),
+        )
         self.frame_work = self.frame_work + joined_area(
             t, power, growth, bend, end_power, end_growth, end_bend
         )
 
     def note_turns(
-        self, of_carrier: bool, bend: float, position: float, rate: float, stiffness: float, damping: float,
-        preload: float, u0: float, u1: float, u2: float, u3: float,
-        load: float, load_1: float, load_2: float, load_3: float, taken: float,
-    ) -> None:  # fmt: skip
+        self,
+        of_carrier: bool,
+        bend: float,
+        position: float,
+        rate: float,
+        stiffness: float,
+        damping: float,
+        preload: float,
+        u0: float,
+        u1: float,
+        u2: float,
+        u3: float,
+        load: float,
+        load_1: float,
+        load_2: float,
+        load_3: float,
+        taken: float,
+    ) -> None:
         """Keep the loads at the ends of a piece and where the transmitted one, or the carrier's sum, turns.
 
         Its slope is a sum of six functions at most, which has few zeros on so short a piece.
@@ -240,9 +407,23 @@ class DamperMotion(DamperVariables):
         turn = 0.0
         for _ in range(MOST_TURNS):
             turn = next_turn(
-                share * load_1, share * 2.0 * load_2, share * 3.0 * load_3, stiffness, damping, bend,
-                position, rate, stiffness, damping, u0, u1, u2, u3, turn, taken,
-            )  # fmt: skip
+                share * load_1,
+                share * 2.0 * load_2,
+                share * 3.0 * load_3,
+                stiffness,
+                damping,
+                bend,
+                position,
+                rate,
+                stiffness,
+                damping,
+                u0,
+                u1,
+                u2,
+                u3,
+                turn,
+                taken,
+            )
             if turn < 0.0:
                 break
             z, v = propagate(position, rate, stiffness, damping, u0, u1, u2, u3, turn)

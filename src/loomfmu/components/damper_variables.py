@@ -32,34 +32,63 @@ class DamperVariables(Threads):
     accuracy: ClassVar[str] = "sixth order in the step; second where threads turn slack, or with warp_force"
 
     thread_count: int = parameter(
-        "1", 0, "Number of threads that the carrier lifts; 0 for no warp", minimum=0, maximum=1000000,
+        "1",
+        0,
+        "Number of threads that the carrier lifts; 0 for no warp",
+        minimum=0,
+        maximum=1000000,
         source="warp_#.thread_count",
-    )  # fmt: skip
+    )
 
     carrier_mass: float = parameter(
-        "kg", 7.5, "Mass of the heald carrier with its healds (assumed: half of the published 15 kg)",
-        minimum=1e-3, maximum=1e3, nominal=10.0,
-    )  # fmt: skip
+        "kg",
+        7.5,
+        "Mass of the heald carrier with its healds (assumed: half of the published 15 kg)",
+        minimum=1e-3,
+        maximum=1e3,
+        nominal=10.0,
+    )
     spring_stiffness: float = parameter(
-        "N/m", 5960.0, "Stiffness of one of the four springs", display="N/mm", minimum=0.0, maximum=1e12,
+        "N/m",
+        5960.0,
+        "Stiffness of one of the four springs",
+        display="N/mm",
+        minimum=0.0,
+        maximum=1e12,
         nominal=1e4,
-    )  # fmt: skip
+    )
     damping_ratio: float = parameter(
-        "1", 0.05, "Damping ratio of the suspension, relative to critical (assumed: none published)",
-        minimum=0.0, maximum=100.0,
-    )  # fmt: skip
+        "1",
+        0.05,
+        "Damping ratio of the suspension, relative to critical (assumed: none published)",
+        minimum=0.0,
+        maximum=100.0,
+    )
     free_travel: float = parameter(
-        "m", 0.015, "Free travel of the carrier to either side", display="mm", minimum=0.0, maximum=1.0,
+        "m",
+        0.015,
+        "Free travel of the carrier to either side",
+        display="mm",
+        minimum=0.0,
+        maximum=1.0,
         nominal=0.01,
-    )  # fmt: skip
+    )
     stop_stiffness: float = parameter(
-        "N/m", 2e6, "Stiffness of a stop (assumed: none published)", display="N/mm", minimum=1.0,
-        maximum=1e12, nominal=1e6,
-    )  # fmt: skip
+        "N/m",
+        2e6,
+        "Stiffness of a stop (assumed: none published)",
+        display="N/mm",
+        minimum=1.0,
+        maximum=1e12,
+        nominal=1e6,
+    )
     stop_restitution: float = parameter(
-        "1", 0.5, "Coefficient of restitution of a stop (assumed)",
-        minimum=0.15, maximum=1.0,
-    )  # fmt: skip
+        "1",
+        0.5,
+        "Coefficient of restitution of a stop (assumed)",
+        minimum=0.15,
+        maximum=1.0,
+    )
     start_displacement: float = parameter(
         "m", 0.0, "Displacement of the carrier at the start", display="mm", minimum=-1.0, maximum=1.0
     )
@@ -77,9 +106,13 @@ class DamperVariables(Threads):
         "m/s2", 10.0, "Acceleration of the frame", nominal=10.0, minimum=-1e15, maximum=1e15
     )
     warp_force: float = input_(
-        "N", 0.0, "Further load on the carrier, upwards, such as a warp model of your own", nominal=100.0,
-        minimum=-1e12, maximum=1e12,
-    )  # fmt: skip
+        "N",
+        0.0,
+        "Further load on the carrier, upwards, such as a warp model of your own",
+        nominal=100.0,
+        minimum=-1e12,
+        maximum=1e12,
+    )
     displacement: float = output(
         "m", "Displacement of the carrier in its frame", display="mm", nominal=0.01, rate="rate"
     )
@@ -90,9 +123,12 @@ class DamperVariables(Threads):
         "N", "Force of the carrier on the frame: springs, damping, stops", nominal=1000.0
     )
     carrier_lift: float = output(
-        "m", "Lift of the carrier, that of its frame and its displacement", display="mm", nominal=0.1,
+        "m",
+        "Lift of the carrier, that of its frame and its displacement",
+        display="mm",
+        nominal=0.1,
         rate="carrier_velocity",
-    )  # fmt: skip
+    )
     carrier_velocity: float = output("m/s", "Velocity of the carrier in space", rate="carrier_acceleration")
     carrier_acceleration: float = output("m/s2", "Acceleration of the carrier in space", nominal=100.0)
     warp_load: float = output("N", "Load of the threads on the carrier, positive upwards", nominal=100.0)
@@ -118,9 +154,12 @@ class DamperVariables(Threads):
     damping: float = state("N.s/m", "Damping of the suspension", minimum=0.0)
     stop_damping: float = state("N.s/m", "Damping of a stop", minimum=0.0)
     contact: int = state(
-        "1", "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released", start=0,
-        minimum=-2, maximum=2,
-    )  # fmt: skip
+        "1",
+        "0 free, 1 and -1 on the upper and lower stop, 2 and -2 released",
+        start=0,
+        minimum=-2,
+        maximum=2,
+    )
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")

@@ -53,9 +53,13 @@ class DetachingRoller(ShaftDriven):
         "m", 0.01225, "Radius of a top roller", display="mm", minimum=1e-4, maximum=1.0, nominal=0.01
     )
     roller_inertia: float = parameter(
-        "kg.m2", 135.64e-6, "Inertia of a detaching roller, for one unit", minimum=0.0, maximum=1.0,
+        "kg.m2",
+        135.64e-6,
+        "Inertia of a detaching roller, for one unit",
+        minimum=0.0,
+        maximum=1.0,
         nominal=1e-4,
-    )  # fmt: skip
+    )
     top_inertia: float = parameter(
         "kg.m2", 33.98e-6, "Inertia of a top roller", minimum=0.0, maximum=1.0, nominal=1e-5
     )
@@ -67,37 +71,55 @@ class DetachingRoller(ShaftDriven):
     )
     units: int = parameter("1", 8, "Number of units side by side in the machine", minimum=1, maximum=1000)
     acceleration: float = input_(
-        "rad/s2", 8699.498672957831, "Acceleration of the rollers, used if use_table is false",
-        minimum=-1e12, maximum=1e12, nominal=10000.0,
-    )  # fmt: skip
+        "rad/s2",
+        8699.498672957831,
+        "Acceleration of the rollers, used if use_table is false",
+        minimum=-1e12,
+        maximum=1e12,
+        nominal=10000.0,
+    )
     fibre_share: float = input_(
-        "1", 1.0, "Fibres in the nip as a share of the maximum, used if use_table is false",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
+        "1",
+        1.0,
+        "Fibres in the nip as a share of the maximum, used if use_table is false",
+        minimum=0.0,
+        maximum=1.0,
+    )
     roller_ratio: float = input_(
-        "1", 0.5, "Velocity of the rollers relative to the shaft's, used if use_table is false",
-        minimum=-1e6, maximum=1e6,
-    )  # fmt: skip
+        "1",
+        0.5,
+        "Velocity of the rollers relative to the shaft's, used if use_table is false",
+        minimum=-1e6,
+        maximum=1e6,
+    )
     prescribe_drafting_force: bool = parameter(
         "1", False, "Use largest_drafting_force; otherwise half of what the nip holds, by (16)"
     )
     largest_drafting_force: float = parameter(
-        "N", 45.0, "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
-        minimum=0.0, maximum=1e5, nominal=10.0,
-    )  # fmt: skip
+        "N",
+        45.0,
+        "Drafting force with the most fibres, used if prescribe_drafting_force is true (assumed)",
+        minimum=0.0,
+        maximum=1e5,
+        nominal=10.0,
+    )
     division: float = output(
-        "1", "Division of the nip, 0 to 40", nominal=10.0,
+        "1",
+        "Division of the nip, 0 to 40",
+        nominal=10.0,
         depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
-    )  # fmt: skip
+    )
     roller_acceleration: float = output(
         "rad/s2", "Acceleration of the rollers in use", nominal=10000.0, depends=_OF_MOTION
     )
     drafted_share: float = output("1", "Share of fibres in use; 0 outside divisions 18 to 30")
     drafting_force: float = output("N", "Force that drafts the fibres of a unit", nominal=10.0)
     holding_force: float = output(
-        "N", "Force that the nip can hold: friction less what moves the top roller", nominal=100.0,
+        "N",
+        "Force that the nip can hold: friction less what moves the top roller",
+        nominal=100.0,
         depends=_OF_MOTION,
-    )  # fmt: skip
+    )
     drafting_torque: float = output("N.m", "Torque of the drafting force on the back roller, M11")
     top_roller_torque: float = output("N.m", "Torque of a top roller on its roller, M12", depends=_OF_MOTION)
     inertia_torque: float = output("N.m", "Torque of a roller's own inertia, M13", depends=_OF_MOTION)
@@ -111,9 +133,10 @@ class DetachingRoller(ShaftDriven):
         "rad/s", "Velocity of the rollers in use", display="rev/min", nominal=50.0, depends=_OF_VELOCITY
     )
     shaft_torque: float = output(
-        "N.m", "Torque of all units on the shaft, braking: machine_torque by the rollers' relative velocity",
+        "N.m",
+        "Torque of all units on the shaft, braking: machine_torque by the rollers' relative velocity",
         nominal=10.0,
-    )  # fmt: skip
+    )
     kinetic_energy: float = output("J", "Kinetic energy of the rollers of all units", depends=_OF_VELOCITY)
     dissipated_power: float = output("W", "Power of the drafting forces of all units", nominal=100.0)
     nip_event: float = indicator("1", "Passes zero where the next nip begins")

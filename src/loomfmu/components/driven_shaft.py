@@ -25,21 +25,37 @@ class DrivenShaft(Component):
     accuracy: ClassVar[str] = "fourth order in the step; second for a load that does not state its work"
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "No-load speed of the motor, referred to the shaft", display="rev/min",
-        minimum=-1000.0, maximum=1000.0, nominal=50.0,
-    )  # fmt: skip
+        "rad/s",
+        41.88790204786391,
+        "No-load speed of the motor, referred to the shaft",
+        display="rev/min",
+        minimum=-1000.0,
+        maximum=1000.0,
+        nominal=50.0,
+    )
     torque_slope: float = parameter(
-        "N.m.s/rad", 40.0, "Slope of the motor's torque line: torque per rad/s below speed (assumed)",
-        minimum=0.0, maximum=1e9, nominal=10.0,
-    )  # fmt: skip
+        "N.m.s/rad",
+        40.0,
+        "Slope of the motor's torque line: torque per rad/s below speed (assumed)",
+        minimum=0.0,
+        maximum=1e9,
+        nominal=10.0,
+    )
     inertia: float = parameter(
-        "kg.m2", 2.0, "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
-        minimum=1e-6, maximum=1e6,
-    )  # fmt: skip
+        "kg.m2",
+        2.0,
+        "Inertia of shaft, motor and flywheel, referred to the shaft (assumed)",
+        minimum=1e-6,
+        maximum=1e6,
+    )
     start_angle: float = parameter(
-        "rad", 0.0, "Shaft angle at the start; 0 is the rapiers' outer dead centre", display="deg",
-        minimum=-1e6, maximum=1e6,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Shaft angle at the start; 0 is the rapiers' outer dead centre",
+        display="deg",
+        minimum=-1e6,
+        maximum=1e6,
+    )
     start_at_speed: bool = parameter("1", True, "Start at speed; if false, from rest")
     inputs_at_step_end: bool = at_step_end()
     use_work: tuple[bool, ...] = array(
@@ -48,25 +64,41 @@ class DrivenShaft(Component):
     )
     torque: tuple[float, ...] = array(
         input_(
-            "N.m", 0.0, f"Load torque of mechanism {number}; positive acts backwards", nominal=10.0,
-            minimum=-1e12, maximum=1e12, source="*.shaft_torque",
+            "N.m",
+            0.0,
+            f"Load torque of mechanism {number}; positive acts backwards",
+            nominal=10.0,
+            minimum=-1e12,
+            maximum=1e12,
+            source="*.shaft_torque",
         )
         for number in range(1, LOADS + 1)
-    )  # fmt: skip
+    )
     work: tuple[float, ...] = array(
         input_(
-            "J", 0.0, f"Work that mechanism {number} has taken from the shaft, at the end of the step",
-            nominal=10.0, minimum=-1e15, maximum=1e15, source="*.shaft_work", when=f"use_work_{number}",
+            "J",
+            0.0,
+            f"Work that mechanism {number} has taken from the shaft, at the end of the step",
+            nominal=10.0,
+            minimum=-1e15,
+            maximum=1e15,
+            source="*.shaft_work",
+            when=f"use_work_{number}",
         )
         for number in range(1, LOADS + 1)
-    )  # fmt: skip
+    )
     passed_torque: tuple[float, ...] = array(
         input_(
-            "N.m", 0.0, f"Part of torque_{number} whose work is not in work_{number}", nominal=10.0,
-            minimum=-1e12, maximum=1e12, source="*.passed_torque",
+            "N.m",
+            0.0,
+            f"Part of torque_{number} whose work is not in work_{number}",
+            nominal=10.0,
+            minimum=-1e12,
+            maximum=1e12,
+            source="*.passed_torque",
         )
         for number in range(1, LOADS + 1)
-    )  # fmt: skip
+    )
     angle: float = output(
         "rad", "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0, rate="velocity"
     )
@@ -113,9 +145,16 @@ class DrivenShaft(Component):
         bulge = 0.0
         if self.inputs_at_step_end:
             bulge = bulge_for(
-                work - self.coupled_work, held_coupled, coupled - held_coupled, self.velocity, net, rise,
-                step_size, self.inertia, self.torque_slope,
-            )  # fmt: skip
+                work - self.coupled_work,
+                held_coupled,
+                coupled - held_coupled,
+                self.velocity,
+                net,
+                rise,
+                step_size,
+                self.inertia,
+                self.torque_slope,
+            )
         gained, more, second, third = driven_motion(
             self.velocity, net, rise, bulge, step_size, self.inertia, self.torque_slope
         )

@@ -114,9 +114,15 @@ class HealdDamper(DamperMotion):
         return a0 / square, a1 / (square * h), a2 / (square * square), a3 / (square * square * h)
 
     def note_frame(
-        self, second: float, end_second: float, by_rate: float, by_value: float, rates: float, place: float,
+        self,
+        second: float,
+        end_second: float,
+        by_rate: float,
+        by_value: float,
+        rates: float,
+        place: float,
         h: float,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Keep the largest acceleration of the frame, read off the curve without its noise."""
         rate_noise, value_noise = bump_noise(
             sample_noise(2.0 * self.largest_lift, rates, place),
@@ -157,10 +163,16 @@ class HealdDamper(DamperMotion):
         if self.thread_count == 0:
             return 0.0
         load, _rate = warp_load(
-            self.carrier_lift + self.eye_offset(), self.carrier_velocity, self.thread_force,
-            self.thread_count * self.pretension, self.thread_count * self.thread_stiffness, self.creep_rate,
-            self.relaxation_rate, self.front_length, self.back_length,
-        )  # fmt: skip
+            self.carrier_lift + self.eye_offset(),
+            self.carrier_velocity,
+            self.thread_force,
+            self.thread_count * self.pretension,
+            self.thread_count * self.thread_stiffness,
+            self.creep_rate,
+            self.relaxation_rate,
+            self.front_length,
+            self.back_length,
+        )
         return load
 
     def show_energies(self) -> None:

@@ -13,8 +13,13 @@ from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
 
 _OF_ROTOR = (
-    "rotor_angle", "rotor_velocity", "rotor_acceleration", "lift_fraction", "lift_rate", "lift_acceleration",
-)  # fmt: skip
+    "rotor_angle",
+    "rotor_velocity",
+    "rotor_acceleration",
+    "lift_fraction",
+    "lift_rate",
+    "lift_acceleration",
+)
 _OF_TORQUES = (*_OF_ROTOR, "rotor_ratio", "lift_slope", "load")
 _SLOWEST = 1e-9  # rotor_ratio below which the rotor stands: a cam then has no torque about it
 
@@ -36,11 +41,15 @@ class HealdFrame(Component):
     longest_turn: ClassVar[float] = inf
     terminals: ClassVar[tuple[Terminal, ...]] = (
         ROTOR.of(
-            "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration",
+            "rotor_angle",
+            "rotor_velocity",
+            "rotor_acceleration",
+            "lift_fraction",
+            "lift_rate",
+            "lift_acceleration",
         ),
         FRAME.of("lift", "velocity", "acceleration"),
-    )  # fmt: skip
+    )
 
     stroke: float = parameter(
         "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1
@@ -49,26 +58,41 @@ class HealdFrame(Component):
         "kg", 15.0, "Mass of the frame with all that it holds", minimum=0.0, maximum=1e3, nominal=10.0
     )
     sprung_mass: float = parameter(
-        "kg", 0.0, "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
-        minimum=0.0, maximum=1e3, nominal=10.0, source="damper_#.carrier_mass", source_for="load",
-    )  # fmt: skip
-    gravity: float = parameter(
-        "m/s2", 9.80665, "Gravity on the frame; 0 if springs carry its weight", minimum=0.0, maximum=100.0,
+        "kg",
+        0.0,
+        "Part of frame_mass that hangs on springs in the frame, such as the carrier of a damper",
+        minimum=0.0,
+        maximum=1e3,
         nominal=10.0,
-    )  # fmt: skip
+        source="damper_#.carrier_mass",
+        source_for="load",
+    )
+    gravity: float = parameter(
+        "m/s2",
+        9.80665,
+        "Gravity on the frame; 0 if springs carry its weight",
+        minimum=0.0,
+        maximum=100.0,
+        nominal=10.0,
+    )
     warp_ratio: float = parameter(
-        "1", 0.16666666666666666,
+        "1",
+        0.16666666666666666,
         "Warp height at the rapier as a share of the lift (assumed: that of an air-jet loom)",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
+        minimum=0.0,
+        maximum=1.0,
+    )
     pattern_length: int = parameter("1", 2, "Picks after which the pattern repeats", minimum=1, maximum=128)
     pattern: tuple[int, ...] = array(
         parameter(
-            "1", int(first == 0), f"Picks {first} to {first + 15}{', least bit first' if first == 0 else ''}",
-            minimum=0, maximum=65535,
+            "1",
+            int(first == 0),
+            f"Picks {first} to {first + 15}{', least bit first' if first == 0 else ''}",
+            minimum=0,
+            maximum=65535,
         )
         for first in range(0, 128, 16)
-    )  # fmt: skip
+    )
     inputs_at_step_end: bool = at_step_end()
     follow_lift: bool = parameter(
         "1", False, "Follow the dobby's lift_fraction, as for a spline cam, instead of the crank on the rotor"
@@ -77,66 +101,128 @@ class HealdFrame(Component):
         "1", False, "Count load_work in shaft_work; otherwise passed_torque goes to load"
     )
     rotor_angle: float = input_(
-        "rad", 3.141592653589793, "Rotor angle from the slow point of pick 0, not wrapped", display="deg",
-        unbounded=True, nominal=6.0, rate="rotor_velocity", minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
+        "rad",
+        3.141592653589793,
+        "Rotor angle from the slow point of pick 0, not wrapped",
+        display="deg",
+        unbounded=True,
+        nominal=6.0,
+        rate="rotor_velocity",
+        minimum=-1e9,
+        maximum=1e9,
+    )
     rotor_velocity: float = input_(
-        "rad/s", 41.88790204786391, "Rotor velocity", display="rev/min", nominal=50.0,
-        rate="rotor_acceleration", minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
+        "rad/s",
+        41.88790204786391,
+        "Rotor velocity",
+        display="rev/min",
+        nominal=50.0,
+        rate="rotor_acceleration",
+        minimum=-1e9,
+        maximum=1e9,
+    )
     rotor_acceleration: float = input_(
         "rad/s2", 0.0, "Rotor acceleration", nominal=1000.0, minimum=-1e15, maximum=1e15
     )
     lift_fraction: float = input_(
-        "1", 0.5, "Lift of a frame that changes at every pick, used if follow_lift is true",
-        rate="lift_rate", when="follow_lift", minimum=-1e3, maximum=1e3,
-    )  # fmt: skip
+        "1",
+        0.5,
+        "Lift of a frame that changes at every pick, used if follow_lift is true",
+        rate="lift_rate",
+        when="follow_lift",
+        minimum=-1e3,
+        maximum=1e3,
+    )
     lift_rate: float = input_(
-        "1/s", 10.471975511965976, "Rate of lift_fraction", nominal=10.0, rate="lift_acceleration",
-        when="follow_lift", minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
+        "1/s",
+        10.471975511965976,
+        "Rate of lift_fraction",
+        nominal=10.0,
+        rate="lift_acceleration",
+        when="follow_lift",
+        minimum=-1e9,
+        maximum=1e9,
+    )
     lift_acceleration: float = input_(
-        "1/s2", 0.0, "Second rate of lift_fraction", nominal=1000.0, when="follow_lift",
-        minimum=-1e15, maximum=1e15,
-    )  # fmt: skip
+        "1/s2",
+        0.0,
+        "Second rate of lift_fraction",
+        nominal=1000.0,
+        when="follow_lift",
+        minimum=-1e15,
+        maximum=1e15,
+    )
     rotor_ratio: float = input_(
-        "1", 1.0, "Rotor velocity relative to the shaft's, for shaft_torque", minimum=-1e3, maximum=1e3,
+        "1",
+        1.0,
+        "Rotor velocity relative to the shaft's, for shaft_torque",
+        minimum=-1e3,
+        maximum=1e3,
         source="dobby.rotor_ratio",
-    )  # fmt: skip
+    )
     # not `when` follow_lift: a wire to it alone must not switch that on
     lift_slope: float = input_(
-        "1", 0.25, "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
-        minimum=-1e6, maximum=1e6, source="dobby.lift_slope",
-    )  # fmt: skip
+        "1",
+        0.25,
+        "Slope of lift_fraction by the shaft angle, for the torques if follow_lift is true",
+        minimum=-1e6,
+        maximum=1e6,
+        source="dobby.lift_slope",
+    )
     load: float = input_(
-        "N", 0.0, "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
-        nominal=100.0, minimum=-1e12, maximum=1e12,
-        source="damper_#.transmitted_force|warp_#.frame_load", source_for="shaft_torque",
-    )  # fmt: skip
+        "N",
+        0.0,
+        "Force on the frame of what hangs in it, such as carrier or warp; positive upwards",
+        nominal=100.0,
+        minimum=-1e12,
+        maximum=1e12,
+        source="damper_#.transmitted_force|warp_#.frame_load",
+        source_for="shaft_torque",
+    )
     load_work: float = input_(
-        "J", 0.0, "Work of the frame so far on what exerts load, at the end of the step", nominal=10.0,
-        minimum=-1e15, maximum=1e15, when="use_load_work",
-        source="damper_#.frame_work|warp_#.frame_work", source_for="load",
-    )  # fmt: skip
+        "J",
+        0.0,
+        "Work of the frame so far on what exerts load, at the end of the step",
+        nominal=10.0,
+        minimum=-1e15,
+        maximum=1e15,
+        when="use_load_work",
+        source="damper_#.frame_work|warp_#.frame_work",
+        source_for="load",
+    )
     lift: float = output(
-        "m", "Lift of the frame above its lowered position", display="mm", nominal=0.1, rate="velocity",
+        "m",
+        "Lift of the frame above its lowered position",
+        display="mm",
+        nominal=0.1,
+        rate="velocity",
         depends=_OF_ROTOR,
-    )  # fmt: skip
+    )
     velocity: float = output("m/s", "Velocity of the frame", rate="acceleration", depends=_OF_ROTOR)
     acceleration: float = output("m/s2", "Acceleration of the frame", nominal=10.0, depends=_OF_ROTOR)
     warp_height: float = output(
-        "m", "Height of the warp above the closed shed, at the rapier", display="mm", nominal=0.01,
+        "m",
+        "Height of the warp above the closed shed, at the rapier",
+        display="mm",
+        nominal=0.01,
         depends=_OF_ROTOR,
-    )  # fmt: skip
+    )
     inertia_force: float = output(
         "N", "Inertia force of the frame without its sprung mass", nominal=100.0, depends=_OF_ROTOR
     )
-    moving: bool = output("1", "The frame changes position between the current slow points", start=False,
-                          variability="discrete", depends=_OF_ROTOR)  # fmt: skip
+    moving: bool = output(
+        "1",
+        "The frame changes position between the current slow points",
+        start=False,
+        variability="discrete",
+        depends=_OF_ROTOR,
+    )
     drive_force: float = output(
-        "N", "Force of the drive on the frame, upwards: inertia and weight, less load if that is wired",
-        nominal=100.0, depends=(*_OF_ROTOR, "load"),
-    )  # fmt: skip
+        "N",
+        "Force of the drive on the frame, upwards: inertia and weight, less load if that is wired",
+        nominal=100.0,
+        depends=(*_OF_ROTOR, "load"),
+    )
     rotor_torque: float = output(
         "N.m",
         "Torque of the frame on the rotor, braking; of a rigid frame if load is not wired",
@@ -144,9 +230,11 @@ class HealdFrame(Component):
         depends=_OF_TORQUES,
     )
     shaft_torque: float = output(
-        "N.m", "Torque of the frame on the main shaft, braking; of a rigid frame if load is not wired",
-        nominal=10.0, depends=_OF_TORQUES,
-    )  # fmt: skip
+        "N.m",
+        "Torque of the frame on the main shaft, braking; of a rigid frame if load is not wired",
+        nominal=10.0,
+        depends=_OF_TORQUES,
+    )
     kinetic_energy: float = output(
         "J", "Kinetic energy of the frame without its sprung mass", nominal=10.0, depends=_OF_ROTOR
     )
@@ -154,13 +242,17 @@ class HealdFrame(Component):
         "J", "Energy of the frame's weight, from its lowered position", nominal=10.0, depends=_OF_ROTOR
     )
     passed_torque: float = output(
-        "N.m", "Part of shaft_torque whose work is not in shaft_work: what goes to load without load_work",
-        nominal=10.0, depends=_OF_TORQUES,
-    )  # fmt: skip
+        "N.m",
+        "Part of shaft_torque whose work is not in shaft_work: what goes to load without load_work",
+        nominal=10.0,
+        depends=_OF_TORQUES,
+    )
     shaft_work: float = output(
-        "J", "Work taken from the shaft: kinetic and potential energy, and load_work if it is used",
-        nominal=10.0, depends=(*_OF_ROTOR, "load_work"),
-    )  # fmt: skip
+        "J",
+        "Work taken from the shaft: kinetic and potential energy, and load_work if it is used",
+        nominal=10.0,
+        depends=(*_OF_ROTOR, "load_work"),
+    )
     slow_point_event: float = indicator("1", "Passes zero where the frame may begin or end a change")
 
     def requested(self, pick: int) -> int:

@@ -32,9 +32,14 @@ class HealdPlay(Component):
     accuracy: ClassVar[str] = "second order in the step, by the pull of the thread between samples"
 
     play: float = parameter(
-        "m", 0.002, "Play of the heald's loops on the bars, from end to end (assumed: none published)",
-        display="mm", minimum=1e-9, maximum=1.0, nominal=0.001,
-    )  # fmt: skip
+        "m",
+        0.002,
+        "Play of the heald's loops on the bars, from end to end (assumed: none published)",
+        display="mm",
+        minimum=1e-9,
+        maximum=1.0,
+        nominal=0.001,
+    )
     heald_mass: float = parameter(
         "kg", 0.003, "Mass of a heald (assumed: none published)", minimum=1e-6, maximum=10.0, nominal=0.01
     )
@@ -42,19 +47,33 @@ class HealdPlay(Component):
         "1", 0.5, "Coefficient of restitution of a blow (assumed)", minimum=0.0, maximum=0.99
     )
     least_speed: float = parameter(
-        "m/s", 0.001, "Speed below which a heald stays on the bar and no blow is counted (assumed)",
-        minimum=1e-9, maximum=100.0, nominal=0.001,
-    )  # fmt: skip
+        "m/s",
+        0.001,
+        "Speed below which a heald stays on the bar and no blow is counted (assumed)",
+        minimum=1e-9,
+        maximum=100.0,
+        nominal=0.001,
+    )
     gravity: float = parameter("m/s2", 9.80665, "Gravity", minimum=0.0, maximum=100.0, nominal=10.0)
     thread_count: int = parameter(
-        "1", 1260, "Number of threads that share warp_load, one to a heald", minimum=1, maximum=1000000,
+        "1",
+        1260,
+        "Number of threads that share warp_load, one to a heald",
+        minimum=1,
+        maximum=1000000,
         source="warp_#.thread_count",
-    )  # fmt: skip
+    )
     inputs_at_step_end: bool = at_step_end()
     lift: float = input_(
-        "m", 0.0, "Lift of the bars that carry the heald", display="mm", nominal=0.1, rate="velocity",
-        minimum=-1e3, maximum=1e3,
-    )  # fmt: skip
+        "m",
+        0.0,
+        "Lift of the bars that carry the heald",
+        display="mm",
+        nominal=0.1,
+        rate="velocity",
+        minimum=-1e3,
+        maximum=1e3,
+    )
     velocity: float = input_(
         "m/s", 0.0, "Velocity of the bars", rate="acceleration", minimum=-1e9, maximum=1e9
     )
@@ -62,9 +81,14 @@ class HealdPlay(Component):
         "m/s2", -20.0, "Acceleration of the bars", nominal=10.0, minimum=-1e15, maximum=1e15
     )
     warp_load: float = input_(
-        "N", 0.0, "Load of all threads on their healds, positive upwards", nominal=100.0,
-        minimum=-1e12, maximum=1e12, source="warp_#.frame_load",
-    )  # fmt: skip
+        "N",
+        0.0,
+        "Load of all threads on their healds, positive upwards",
+        nominal=100.0,
+        minimum=-1e12,
+        maximum=1e12,
+        source="warp_#.frame_load",
+    )
     displacement: float = output(
         "m", "Displacement of the heald in its play", display="mm", nominal=0.001, rate="rate"
     )
@@ -75,21 +99,30 @@ class HealdPlay(Component):
     )
     blow_velocity: float = output("m/s", "Velocity of the last blow", variability="discrete", nominal=0.1)
     hardest_blow: float = output(
-        "m/s", "Largest velocity of a blow so far", variability="discrete", nominal=0.1, so_far=True,
+        "m/s",
+        "Largest velocity of a blow so far",
+        variability="discrete",
+        nominal=0.1,
+        so_far=True,
         error="unseen_blow",
-    )  # fmt: skip
+    )
     unseen_blow: float = output(
-        "m/s", "Largest velocity that a blow may have had so far without being counted: least_speed until"
-        " a blow is counted", variability="discrete", nominal=0.001, so_far=True,
-    )  # fmt: skip
+        "m/s",
+        "Largest velocity that a blow may have had so far without being counted: least_speed until"
+        " a blow is counted",
+        variability="discrete",
+        nominal=0.001,
+        so_far=True,
+    )
     largest_impulse: float = output(
         "N.s", "Largest impulse of a blow so far", variability="discrete", nominal=0.001, so_far=True
     )
     total_impulse: float = output(
         "N.s", "Impulse of all blows so far", variability="discrete", nominal=0.01, so_far=True
     )
-    side: int = state("1", "1 or -1 while it rests on the upper or lower bar, else 0", start=0,
-                      minimum=-1, maximum=1)  # fmt: skip
+    side: int = state(
+        "1", "1 or -1 while it rests on the upper or lower bar, else 0", start=0, minimum=-1, maximum=1
+    )
     sampled_lift: float = state("m", "Lift at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
@@ -132,9 +165,13 @@ class HealdPlay(Component):
         q3 = 0.0
         if self.inputs_at_step_end:
             a0, a1, a2, a3 = joined(
-                self.sampled_lift, h * self.sampled_velocity, h * h * self.sampled_acceleration,
-                self.lift, h * self.velocity, h * h * self.acceleration,
-            )  # fmt: skip
+                self.sampled_lift,
+                h * self.sampled_velocity,
+                h * h * self.sampled_acceleration,
+                self.lift,
+                h * self.velocity,
+                h * h * self.acceleration,
+            )
             start = self.pulled(self.sampled_load)
             square = h * h
             q0 = start - a0 / square

@@ -23,13 +23,22 @@ class MainShaft(Component):
     unsteady: ClassVar[tuple[str, ...]] = ("ramp_duration", "ripple_amplitude")
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "Mean shaft speed after the start-up; one revolution is one pick",
-        display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0,
-    )  # fmt: skip
+        "rad/s",
+        41.88790204786391,
+        "Mean shaft speed after the start-up; one revolution is one pick",
+        display="rev/min",
+        minimum=-1000.0,
+        maximum=1000.0,
+        nominal=50.0,
+    )
     start_angle: float = parameter(
-        "rad", 0.0, "Shaft angle at time 0; 0 is the rapiers' outer dead centre", display="deg",
-        minimum=-1e6, maximum=1e6,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Shaft angle at time 0; 0 is the rapiers' outer dead centre",
+        display="deg",
+        minimum=-1e6,
+        maximum=1e6,
+    )
     ramp_duration: float = parameter(
         "s", 0.0, "Duration of the start-up from rest at time 0; 0 for no start-up", minimum=0.0, maximum=1e4
     )

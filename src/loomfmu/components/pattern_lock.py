@@ -47,17 +47,29 @@ class PatternLock(ShaftDriven):
         "1", 0.15, "Share of the pawl's width that stays outside the slot", minimum=0.0, maximum=1.0
     )
     engagement_start: float = parameter(
-        "rad", 2.4870941840919194, "Shaft angle at which the engagement begins (assumed)", display="deg",
-        minimum=-6.283185307179586, maximum=6.283185307179586,
-    )  # fmt: skip
+        "rad",
+        2.4870941840919194,
+        "Shaft angle at which the engagement begins (assumed)",
+        display="deg",
+        minimum=-6.283185307179586,
+        maximum=6.283185307179586,
+    )
     engagement_angle: float = parameter(
-        "rad", 1.3089969389957472, "Shaft angle that the engagement takes", display="deg",
-        minimum=1e-3, maximum=6.283185307179586,
-    )  # fmt: skip
+        "rad",
+        1.3089969389957472,
+        "Shaft angle that the engagement takes",
+        display="deg",
+        minimum=1e-3,
+        maximum=6.283185307179586,
+    )
     spring_force: float = parameter(
-        "N", 20.0, "Preload of the spring at the end of the turn; force of the pawl on its disc",
-        minimum=1e-6, maximum=1e6, nominal=10.0,
-    )  # fmt: skip
+        "N",
+        20.0,
+        "Preload of the spring at the end of the turn; force of the pawl on its disc",
+        minimum=1e-6,
+        maximum=1e6,
+        nominal=10.0,
+    )
     spring_stiffness: float = parameter(
         "N/m", 2500.0, "Stiffness of the spring", display="N/mm", minimum=1e-3, maximum=1e9, nominal=1e3
     )
@@ -65,9 +77,13 @@ class PatternLock(ShaftDriven):
         "m", 0.050, "Lever arm of the spring", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
     available_angle: float = parameter(
-        "rad", 1.5707963267948966, "Shaft angle of the rotor's dwell, in which the pawl must change over",
-        display="deg", minimum=0.0, maximum=6.283185307179586,
-    )  # fmt: skip
+        "rad",
+        1.5707963267948966,
+        "Shaft angle of the rotor's dwell, in which the pawl must change over",
+        display="deg",
+        minimum=0.0,
+        maximum=6.283185307179586,
+    )
     frame_count: int = parameter("1", 20, "Frames of the dobby, one pawl each", minimum=0, maximum=1000)
     friction_coefficient: float = parameter(
         "1", 0.1, "Friction of a pawl on its disc", minimum=0.0, maximum=10.0
@@ -90,33 +106,57 @@ class PatternLock(ShaftDriven):
         "Share of the spring's torque left over by the pawl's inertia; above 1 where it slows the pawl down",
     )
     release_time: float = output(
-        "s", "Time the spring takes to throw the pawl over", display="ms", variability="discrete",
-        nominal=0.01, depends=(),
-    )  # fmt: skip
+        "s",
+        "Time the spring takes to throw the pawl over",
+        display="ms",
+        variability="discrete",
+        nominal=0.01,
+        depends=(),
+    )
     available_time: float = output(
-        "s", "Time available in the dwell at the current speed; 1e6 s for a shaft at rest", display="ms",
-        nominal=0.01, depends=("shaft_velocity", "shaft_acceleration"),
-    )  # fmt: skip
-    in_time: bool = output(
-        "1", "At this speed the pawl changes over in time and its spring is strong enough", start=False,
-        variability="discrete", depends=("shaft_velocity", "shaft_acceleration"),
-    )  # fmt: skip
-    torque_speed_limit: float = output(
-        "rad/s", "Shaft speed up to which the spring is strong enough", display="rev/min",
-        variability="discrete", nominal=100.0, depends=(),
-    )  # fmt: skip
-    release_speed_limit: float = output(
-        "rad/s", "Shaft speed up to which the pawl changes over in time", display="rev/min",
-        variability="discrete", nominal=100.0, depends=(),
-    )  # fmt: skip
-    speed_limit: float = output(
-        "rad/s", "The lower of the two speed limits", display="rev/min", variability="discrete",
-        nominal=100.0, depends=(),
-    )  # fmt: skip
-    friction_power: float = output(
-        "W", "Power lost by all pawls on the discs, at the rotor's highest speed", nominal=100.0,
+        "s",
+        "Time available in the dwell at the current speed; 1e6 s for a shaft at rest",
+        display="ms",
+        nominal=0.01,
         depends=("shaft_velocity", "shaft_acceleration"),
-    )  # fmt: skip
+    )
+    in_time: bool = output(
+        "1",
+        "At this speed the pawl changes over in time and its spring is strong enough",
+        start=False,
+        variability="discrete",
+        depends=("shaft_velocity", "shaft_acceleration"),
+    )
+    torque_speed_limit: float = output(
+        "rad/s",
+        "Shaft speed up to which the spring is strong enough",
+        display="rev/min",
+        variability="discrete",
+        nominal=100.0,
+        depends=(),
+    )
+    release_speed_limit: float = output(
+        "rad/s",
+        "Shaft speed up to which the pawl changes over in time",
+        display="rev/min",
+        variability="discrete",
+        nominal=100.0,
+        depends=(),
+    )
+    speed_limit: float = output(
+        "rad/s",
+        "The lower of the two speed limits",
+        display="rev/min",
+        variability="discrete",
+        nominal=100.0,
+        depends=(),
+    )
+    friction_power: float = output(
+        "W",
+        "Power lost by all pawls on the discs, at the rotor's highest speed",
+        nominal=100.0,
+        depends=("shaft_velocity", "shaft_acceleration"),
+    )
     inertia: float = auxiliary("kg.m2", "Moment of inertia of the pawl", minimum=0.0)
     whole_turn: float = auxiliary("rad", "Angle that the pawl turns from one disc to the other")
     in_time_event: float = indicator(
@@ -136,9 +176,13 @@ class PatternLock(ShaftDriven):
             self.inertia, self.whole_turn, self.spring_force, self.spring_stiffness, self.lever_arm
         )
         self.torque_speed_limit = torque_speed_limit(
-            self.inertia, self.engagement_angle, self.whole_turn, self.spring_force, self.spring_stiffness,
+            self.inertia,
+            self.engagement_angle,
+            self.whole_turn,
+            self.spring_force,
+            self.spring_stiffness,
             self.lever_arm,
-        )  # fmt: skip
+        )
         self.release_speed_limit = self.available_angle / self.release_time
         self.speed_limit = self.torque_speed_limit
         if self.release_speed_limit < self.speed_limit:
@@ -169,7 +213,10 @@ class PatternLock(ShaftDriven):
         # at the limit itself the pawl is in time: the instant that is found lies just beyond
         self.in_time_event = self.speed_limit * (1.0 + 1e-12) - fabs(speed)
         self.friction_power = friction_power(
-            self.friction_coefficient, self.spring_force, self.friction_radius,
-            self.rotor_ratio / self.gear_ratio * fabs(speed), float(self.frame_count),
-        )  # fmt: skip
+            self.friction_coefficient,
+            self.spring_force,
+            self.friction_radius,
+            self.rotor_ratio / self.gear_ratio * fabs(speed),
+            float(self.frame_count),
+        )
         return 0

@@ -52,66 +52,115 @@ class ReedBeatUp(ShaftDriven):
         "m", 0.065168, "Length of the crank", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
     )
     coupler_length: float = parameter(
-        "m", 0.146334, "Length of the coupler between crank and rocker", display="mm",
-        minimum=1e-4, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.146334,
+        "Length of the coupler between crank and rocker",
+        display="mm",
+        minimum=1e-4,
+        maximum=10.0,
+        nominal=0.1,
+    )
     rocker_length: float = parameter(
-        "m", 0.550, "Length of the rocker from its pivot to the coupler", display="mm",
-        minimum=1e-4, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.550,
+        "Length of the rocker from its pivot to the coupler",
+        display="mm",
+        minimum=1e-4,
+        maximum=10.0,
+        nominal=0.1,
+    )
     crank_x: float = parameter(
-        "m", -0.207977, "Position of the crank's centre from the rocker's pivot, towards the fell"
-        " (identified)", display="mm", minimum=-10.0, maximum=10.0,
-    )  # fmt: skip
+        "m",
+        -0.207977,
+        "Position of the crank's centre from the rocker's pivot, towards the fell (identified)",
+        display="mm",
+        minimum=-10.0,
+        maximum=10.0,
+    )
     crank_y: float = parameter(
-        "m", 0.525749, "Position of the crank's centre from the rocker's pivot, upwards (identified)",
-        display="mm", minimum=-10.0, maximum=10.0,
-    )  # fmt: skip
+        "m",
+        0.525749,
+        "Position of the crank's centre from the rocker's pivot, upwards (identified)",
+        display="mm",
+        minimum=-10.0,
+        maximum=10.0,
+    )
     assembly: int = parameter("1", -1, "Assembly mode of the four-bar: 1 or -1", minimum=-1, maximum=1)
     crank_direction: int = parameter(
         "1", 1, "Direction in which the crank turns: 1 from x to y, or -1 (assumed)", minimum=-1, maximum=1
     )
     arm_length: float = parameter(
-        "m", 0.67984, "Length of the rocker's arm from its pivot to the reed's rod (identified)",
-        display="mm", minimum=1e-4, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.67984,
+        "Length of the rocker's arm from its pivot to the reed's rod (identified)",
+        display="mm",
+        minimum=1e-4,
+        maximum=10.0,
+        nominal=0.1,
+    )
     arm_angle: float = parameter(
         "rad", 0.0, "Angle from the rocker to its arm", display="deg", minimum=-7.0, maximum=7.0
     )
     rod_length: float = parameter(
-        "m", 0.48748, "Length of the rod that drives the reed (identified)", display="mm",
-        minimum=1e-4, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.48748,
+        "Length of the rod that drives the reed (identified)",
+        display="mm",
+        minimum=1e-4,
+        maximum=10.0,
+        nominal=0.1,
+    )
     reed_height: float = parameter(
-        "m", 0.66933, "Height of the reed's line above the rocker's pivot (identified)", display="mm",
-        minimum=-10.0, maximum=10.0,
-    )  # fmt: skip
+        "m",
+        0.66933,
+        "Height of the reed's line above the rocker's pivot (identified)",
+        display="mm",
+        minimum=-10.0,
+        maximum=10.0,
+    )
     beat_up_angle: float = parameter(
-        "rad", 0.0, "Shaft angle of the beat-up, the reed's front dead centre", display="deg",
-        minimum=-7.0, maximum=7.0,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Shaft angle of the beat-up, the reed's front dead centre",
+        display="deg",
+        minimum=-7.0,
+        maximum=7.0,
+    )
     servo: bool = parameter(
         "1", False, "A servo turns the crank in part of the revolution; otherwise the shaft turns it evenly"
     )
     run_angle: float = parameter(
-        "rad", 3.141592653589793, "Shaft angle of the servo's run, with the beat-up in its middle (assumed)",
-        display="deg", minimum=0.01, maximum=6.283185307179586,
-    )  # fmt: skip
+        "rad",
+        3.141592653589793,
+        "Shaft angle of the servo's run, with the beat-up in its middle (assumed)",
+        display="deg",
+        minimum=0.01,
+        maximum=6.283185307179586,
+    )
     ramp_share: float = parameter(
-        "1", 0.25, "Share of the run in which the servo speeds up, and in which it slows down (assumed)",
-        minimum=0.001, maximum=0.5,
-    )  # fmt: skip
+        "1",
+        0.25,
+        "Share of the run in which the servo speeds up, and in which it slows down (assumed)",
+        minimum=0.001,
+        maximum=0.5,
+    )
     reed_mass: float = parameter(
-        "kg", 1.0, "Mass that moves with the reed (none published: the torque is per kilogram)",
-        minimum=0.0, maximum=1e4,
-    )  # fmt: skip
+        "kg",
+        1.0,
+        "Mass that moves with the reed (none published: the torque is per kilogram)",
+        minimum=0.0,
+        maximum=1e4,
+    )
     rocker_inertia: float = parameter(
         "kg.m2", 0.0, "Inertia of the rocker about its pivot (none published)", minimum=0.0, maximum=1e4
     )
     position: float = output(
-        "m", "Reed coordinate from the rocker's pivot, towards the fell", display="mm", nominal=0.1,
+        "m",
+        "Reed coordinate from the rocker's pivot, towards the fell",
+        display="mm",
+        nominal=0.1,
         rate="velocity",
-    )  # fmt: skip
+    )
     velocity: float = output("m/s", "Velocity of the reed", rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the reed", nominal=100.0)
     transmission_angle: float = output(
@@ -121,9 +170,13 @@ class ReedBeatUp(ShaftDriven):
         nominal=1.5,
     )
     smallest_transmission_angle: float = output(
-        "rad", "Smallest transmission angle in a revolution", display="deg", variability="discrete",
-        nominal=1.5, depends=(),
-    )  # fmt: skip
+        "rad",
+        "Smallest transmission angle in a revolution",
+        display="deg",
+        variability="discrete",
+        nominal=1.5,
+        depends=(),
+    )
     pressure_angle: float = output(
         "rad", "Pressure angle of the reed's rod: its slope against the reed's line", display="deg"
     )
@@ -167,16 +220,28 @@ class ReedBeatUp(ShaftDriven):
     def rocker(self, crank: float, crank_first: float) -> tuple[float, float, float]:
         """Angle of the rocker at a crank angle, with its derivatives by the crank's turn."""
         return four_bar(
-            crank, crank_first, 0.0, self.crank_length, self.coupler_length, self.rocker_length,
-            -self.crank_x, -self.crank_y, self.assembly,
-        )  # fmt: skip
+            crank,
+            crank_first,
+            0.0,
+            self.crank_length,
+            self.coupler_length,
+            self.rocker_length,
+            -self.crank_x,
+            -self.crank_y,
+            self.assembly,
+        )
 
     def swing_end(self, extended: bool) -> tuple[float, float]:
         """Crank angle and angle of the rocker's arm at an end of the swing."""
         crank = dead_centre(
-            self.crank_length, self.coupler_length, self.rocker_length, -self.crank_x, -self.crank_y,
-            self.assembly, extended,
-        )  # fmt: skip
+            self.crank_length,
+            self.coupler_length,
+            self.rocker_length,
+            -self.crank_x,
+            -self.crank_y,
+            self.assembly,
+            extended,
+        )
         angle, _first, _second = self.rocker(crank, 0.0)
         return crank, angle + self.arm_angle
 
@@ -192,9 +257,14 @@ class ReedBeatUp(ShaftDriven):
             return 4
         frame = sqrt(self.crank_x * self.crank_x + self.crank_y * self.crank_y)
         self.closure = four_bar_margin(
-            0.0, 2.0 * pi, self.crank_length, self.coupler_length, self.rocker_length,
-            -self.crank_x, -self.crank_y,
-        )  # fmt: skip
+            0.0,
+            2.0 * pi,
+            self.crank_length,
+            self.coupler_length,
+            self.rocker_length,
+            -self.crank_x,
+            -self.crank_y,
+        )
         if frame - self.crank_length < self.closure:
             self.closure = frame - self.crank_length
         if self.closure < 1e-9:

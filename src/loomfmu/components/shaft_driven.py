@@ -29,25 +29,51 @@ class ShaftDriven(Component):
     )
 
     speed: float = parameter(
-        "rad/s", 41.88790204786391, "Constant shaft speed, used if follow_shaft is false",
-        display="rev/min", minimum=-1000.0, maximum=1000.0, nominal=50.0, unless="follow_shaft",
-    )  # fmt: skip
+        "rad/s",
+        41.88790204786391,
+        "Constant shaft speed, used if follow_shaft is false",
+        display="rev/min",
+        minimum=-1000.0,
+        maximum=1000.0,
+        nominal=50.0,
+        unless="follow_shaft",
+    )
     start_angle: float = parameter(
-        "rad", 0.0, "Shaft angle at time 0, used if follow_shaft is false", display="deg",
-        minimum=-1e6, maximum=1e6, unless="follow_shaft",
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Shaft angle at time 0, used if follow_shaft is false",
+        display="deg",
+        minimum=-1e6,
+        maximum=1e6,
+        unless="follow_shaft",
+    )
     follow_shaft: bool = parameter(
         "1", False, "Follow shaft_angle, shaft_velocity and shaft_acceleration instead of turning at speed"
     )
     inputs_at_step_end: bool = at_step_end()
     shaft_angle: float = input_(
-        "rad", 0.0, "Shaft angle, not wrapped", display="deg", unbounded=True, nominal=6.0,
-        rate="shaft_velocity", when="follow_shaft", minimum=-1e9, maximum=1e9,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Shaft angle, not wrapped",
+        display="deg",
+        unbounded=True,
+        nominal=6.0,
+        rate="shaft_velocity",
+        when="follow_shaft",
+        minimum=-1e9,
+        maximum=1e9,
+    )
     shaft_velocity: float = input_(
-        "rad/s", 41.88790204786391, "Shaft velocity", display="rev/min", nominal=50.0,
-        rate="shaft_acceleration", when="follow_shaft", minimum=-1e6, maximum=1e6,
-    )  # fmt: skip
+        "rad/s",
+        41.88790204786391,
+        "Shaft velocity",
+        display="rev/min",
+        nominal=50.0,
+        rate="shaft_acceleration",
+        when="follow_shaft",
+        minimum=-1e6,
+        maximum=1e6,
+    )
     shaft_acceleration: float = input_(
         "rad/s2", 0.0, "Shaft acceleration", nominal=100.0, when="follow_shaft", minimum=-1e15, maximum=1e15
     )

@@ -11,40 +11,84 @@ class Threads(Component):
     """Number, lengths and constants of the threads that one frame lifts."""
 
     thread_count: int = parameter(
-        "1", 1260, "Number of threads in the frame", minimum=1, maximum=1000000,
+        "1",
+        1260,
+        "Number of threads in the frame",
+        minimum=1,
+        maximum=1000000,
         source="warp_#.thread_count",
-    )  # fmt: skip
+    )
     stroke: float = parameter(
-        "m", 0.098, "Stroke of the frame", display="mm", minimum=0.0, maximum=1.0, nominal=0.1,
+        "m",
+        0.098,
+        "Stroke of the frame",
+        display="mm",
+        minimum=0.0,
+        maximum=1.0,
+        nominal=0.1,
         source="heald_#.stroke",
-    )  # fmt: skip
+    )
     shed_offset: float = parameter(
-        "m", 0.0018, "Height of the heald eyes above the warp line with the frame half-way (assumed)",
-        display="mm", minimum=-1.0, maximum=1.0, nominal=0.001,
+        "m",
+        0.0018,
+        "Height of the heald eyes above the warp line with the frame half-way (assumed)",
+        display="mm",
+        minimum=-1.0,
+        maximum=1.0,
+        nominal=0.001,
         source="warp_#.shed_offset",
-    )  # fmt: skip
+    )
     front_length: float = parameter(
-        "m", 0.25, "Length of warp from the cloth's fell to the healds (assumed)", display="mm",
-        minimum=1e-3, maximum=100.0,
+        "m",
+        0.25,
+        "Length of warp from the cloth's fell to the healds (assumed)",
+        display="mm",
+        minimum=1e-3,
+        maximum=100.0,
         source="warp_#.front_length",
-    )  # fmt: skip
+    )
     back_length: float = parameter(
-        "m", 0.5, "Length of warp, healds to back rest (assumed)", display="mm", minimum=1e-3, maximum=100.0,
+        "m",
+        0.5,
+        "Length of warp, healds to back rest (assumed)",
+        display="mm",
+        minimum=1e-3,
+        maximum=100.0,
         source="warp_#.back_length",
-    )  # fmt: skip
+    )
     pretension: float = parameter(
-        "N", 0.15, "Tension of a thread at rest in the closed shed", display="cN", minimum=0.0, maximum=1e3,
+        "N",
+        0.15,
+        "Tension of a thread at rest in the closed shed",
+        display="cN",
+        minimum=0.0,
+        maximum=1e3,
         source="warp_#.pretension",
-    )  # fmt: skip
+    )
     thread_stiffness: float = parameter(
-        "N/m", 67.0, "Stiffness b of a thread (assumed)", minimum=0.0, maximum=1e9, nominal=100.0,
+        "N/m",
+        67.0,
+        "Stiffness b of a thread (assumed)",
+        minimum=0.0,
+        maximum=1e9,
+        nominal=100.0,
         source="warp_#.thread_stiffness",
-    )  # fmt: skip
+    )
     creep_rate: float = parameter(
-        "1/s", 5.0, "Creep rate n of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0,
+        "1/s",
+        5.0,
+        "Creep rate n of a thread (assumed)",
+        minimum=0.0,
+        maximum=1e6,
+        nominal=10.0,
         source="warp_#.creep_rate",
-    )  # fmt: skip
+    )
     relaxation_rate: float = parameter(
-        "1/s", 10.0, "Relaxation rate r of a thread (assumed)", minimum=0.0, maximum=1e6, nominal=10.0,
+        "1/s",
+        10.0,
+        "Relaxation rate r of a thread (assumed)",
+        minimum=0.0,
+        maximum=1e6,
+        nominal=10.0,
         source="warp_#.relaxation_rate",
-    )  # fmt: skip
+    )

@@ -63,9 +63,10 @@ class WarpTension(Threads):
         "J", "Energy stored in all threads, from the closed shed at pretension", nominal=10.0
     )
     dissipated_power: float = output(
-        "W", "Power that creep, relaxation and slack take from all threads; negative where creep returns it",
+        "W",
+        "Power that creep, relaxation and slack take from all threads; negative where creep returns it",
         nominal=10.0,
-    )  # fmt: skip
+    )
     frame_work: float = output(
         "J", "Work that has stretched all threads so far: that of frame_load, reversed", nominal=10.0
     )
@@ -108,9 +109,12 @@ class WarpTension(Threads):
         """Extension of a thread and its rates, the inputs carried over `lead`."""
         lift = carried(self.lift, self.velocity, self.acceleration, lead)
         return thread_extension(
-            lift - 0.5 * self.stroke + self.shed_offset, self.velocity + self.acceleration * lead,
-            self.acceleration, self.front_length, self.back_length,
-        )  # fmt: skip
+            lift - 0.5 * self.stroke + self.shed_offset,
+            self.velocity + self.acceleration * lead,
+            self.acceleration,
+            self.front_length,
+            self.back_length,
+        )
 
     def remember(self, extension: float, rate: float, second: float) -> None:
         """Make the present sample the last one."""
@@ -123,23 +127,47 @@ class WarpTension(Threads):
     ) -> tuple[float, float, float, float]:
         """Second rate of the extension by the share of the way from the last sample to this one."""
         return joined(
-            self.sampled_extension, duration * self.sampled_rate, duration * duration * self.sampled_second,
-            extension, duration * rate, duration * duration * second,
-        )  # fmt: skip
+            self.sampled_extension,
+            duration * self.sampled_rate,
+            duration * duration * self.sampled_second,
+            extension,
+            duration * rate,
+            duration * duration * second,
+        )
 
     def drive(
         self, duration: float, extension: float, a0: float, a1: float, a2: float, a3: float
     ) -> tuple[float, float, float, float, float, float]:
         """Return the drive of a thread from the last sample to this one, see `thread_drive`."""
         return thread_drive(
-            self.thread_stiffness, self.creep_rate * duration, self.sampled_extension, extension,
-            a0, a1, a2, a3,
-        )  # fmt: skip
+            self.thread_stiffness,
+            self.creep_rate * duration,
+            self.sampled_extension,
+            extension,
+            a0,
+            a1,
+            a2,
+            a3,
+        )
 
     def work(
-        self, duration: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
-        a0: float, a1: float, a2: float, a3: float, low: float, force: float, high: float, end: float,
-    ) -> float:  # fmt: skip
+        self,
+        duration: float,
+        p0: float,
+        p1: float,
+        p2: float,
+        p3: float,
+        p4: float,
+        p5: float,
+        a0: float,
+        a1: float,
+        a2: float,
+        a3: float,
+        low: float,
+        force: float,
+        high: float,
+        end: float,
+    ) -> float:
         """Work that stretches all threads over a part of the way: while taut, their power is a quintic."""
         decay = self.relaxation_rate * duration
         rate = duration * self.sampled_rate
@@ -153,13 +181,39 @@ class WarpTension(Threads):
             start = passed if force < slack_at else low
             stop = high if force < slack_at else passed
         power, growth, bend = thread_power(
-            self.pretension, force if start == low else slack_at, decay, p0, p1, p2, p3, p4, p5,
-            rate, a0, a1, a2, a3, start,
-        )  # fmt: skip
+            self.pretension,
+            force if start == low else slack_at,
+            decay,
+            p0,
+            p1,
+            p2,
+            p3,
+            p4,
+            p5,
+            rate,
+            a0,
+            a1,
+            a2,
+            a3,
+            start,
+        )
         end_power, end_growth, end_bend = thread_power(
-            self.pretension, end if stop == high else slack_at, decay, p0, p1, p2, p3, p4, p5,
-            rate, a0, a1, a2, a3, stop,
-        )  # fmt: skip
+            self.pretension,
+            end if stop == high else slack_at,
+            decay,
+            p0,
+            p1,
+            p2,
+            p3,
+            p4,
+            p5,
+            rate,
+            a0,
+            a1,
+            a2,
+            a3,
+            stop,
+        )
         return self.thread_count * joined_area(
             stop - start, power, growth, bend, end_power, end_growth, end_bend
         )
@@ -195,9 +249,21 @@ class WarpTension(Threads):
             self.mean_tension = self.mean_tension + (total - self.mean_tension) * duration / self.elapsed
 
     def panel_area(
-        self, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
-        low: float, force: float, area: float, high: float, end: float, end_area: float,
-    ) -> float:  # fmt: skip
+        self,
+        decay: float,
+        p0: float,
+        p1: float,
+        p2: float,
+        p3: float,
+        p4: float,
+        p5: float,
+        low: float,
+        force: float,
+        area: float,
+        high: float,
+        end: float,
+        end_area: float,
+    ) -> float:
         """Integral of the tension over a piece of the way on which the force turns at most once."""
         growth = thread_growth(force, decay, p0, p1, p2, p3, p4, p5, low)
         if growth * thread_growth(end, decay, p0, p1, p2, p3, p4, p5, high) < 0.0:
@@ -216,9 +282,21 @@ class WarpTension(Threads):
         return self.piece_area(decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area)
 
     def piece_area(
-        self, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
-        low: float, force: float, area: float, high: float, end: float, end_area: float,
-    ) -> float:  # fmt: skip
+        self,
+        decay: float,
+        p0: float,
+        p1: float,
+        p2: float,
+        p3: float,
+        p4: float,
+        p5: float,
+        low: float,
+        force: float,
+        area: float,
+        high: float,
+        end: float,
+        end_area: float,
+    ) -> float:
         """Integral of the tension over a piece on which it passes zero at most once; notes its end."""
         tension = self.pretension + force
         end_tension = self.pretension + end

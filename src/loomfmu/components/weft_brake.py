@@ -35,9 +35,10 @@ class WeftBrake(WeftVariables):
     def braking(self, point: int, angle: float, speed: float) -> tuple[float, float]:
         """Force of the brake and its rate, between a point of the program and the next one."""
         share, slope = eased(
-            self.brake_program[point % PROGRAM_POINTS], self.brake_program[(point + 1) % PROGRAM_POINTS],
+            self.brake_program[point % PROGRAM_POINTS],
+            self.brake_program[(point + 1) % PROGRAM_POINTS],
             angle * PROGRAM_POINTS / (2.0 * pi) - point,
-        )  # fmt: skip
+        )
         return self.brake_force * share, self.brake_force * slope * speed * PROGRAM_POINTS / (2.0 * pi)
 
     def limit_for(
@@ -46,17 +47,27 @@ class WeftBrake(WeftVariables):
         """Limit of the tension behind the eyes and its rate, for a motion of shaft and head."""
         force, rate = self.braking(point, angle, speed)
         return drawing_limit(
-            self.gain, self.supply_tension, self.unwinding_factor * self.linear_density, force, rate,
-            velocity, acceleration,
-        )  # fmt: skip
+            self.gain,
+            self.supply_tension,
+            self.unwinding_factor * self.linear_density,
+            force,
+            rate,
+            velocity,
+            acceleration,
+        )
 
     def prepare_brake(self, duration: float) -> None:
         """Join the last sample of the shaft and the new one."""
         square = duration * duration
         self.turn = quintic(
-            self.sampled_angle, duration * self.sampled_speed, square * self.sampled_change,
-            self.new_angle, duration * self.new_speed, square * self.new_change, self.sampled_time / duration,
-        )  # fmt: skip
+            self.sampled_angle,
+            duration * self.sampled_speed,
+            square * self.sampled_change,
+            self.new_angle,
+            duration * self.new_speed,
+            square * self.new_change,
+            self.sampled_time / duration,
+        )
 
     def place_at(self, share: float) -> float:
         """Place of the shaft in the program at a share of the way, in points from 0 deg."""

@@ -45,26 +45,45 @@ class WeftInsertion(ShaftDriven):
     )
 
     rocker_angle: float = parameter(
-        "rad", 1.0471975511965976, "Arc between the axes BC and AC", display="deg",
-        minimum=0.0, maximum=3.141592653589793,
-    )  # fmt: skip
+        "rad",
+        1.0471975511965976,
+        "Arc between the axes BC and AC",
+        display="deg",
+        minimum=0.0,
+        maximum=3.141592653589793,
+    )
     crank_cone: float = parameter(
-        "rad", 0.4886921905584123, "Half-angle of the crank's cone, AC to OC", display="deg",
-        minimum=0.0, maximum=1.5707963267948966,
-    )  # fmt: skip
+        "rad",
+        0.4886921905584123,
+        "Half-angle of the crank's cone, AC to OC",
+        display="deg",
+        minimum=0.0,
+        maximum=1.5707963267948966,
+    )
     crank_phase: float = parameter(
-        "rad", 0.0, "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre"
-        " (identified)",
-        display="deg", minimum=-7.0, maximum=7.0,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Crank angle at shaft angle 0; the nearest multiple of 180 deg is the outer dead centre (identified)",
+        display="deg",
+        minimum=-7.0,
+        maximum=7.0,
+    )
     lead: float = parameter(
-        "rad", 0.0, "Angle by which the rapier leads the shaft, on top of crank_phase; negative if late",
-        display="deg", minimum=-7.0, maximum=7.0,
-    )  # fmt: skip
+        "rad",
+        0.0,
+        "Angle by which the rapier leads the shaft, on top of crank_phase; negative if late",
+        display="deg",
+        minimum=-7.0,
+        maximum=7.0,
+    )
     rocker_offset: float = parameter(
-        "rad", 0.17121679962064373, "Angle between the rocker's arms BC and DC", display="deg",
-        minimum=-7.0, maximum=7.0,
-    )  # fmt: skip
+        "rad",
+        0.17121679962064373,
+        "Angle between the rocker's arms BC and DC",
+        display="deg",
+        minimum=-7.0,
+        maximum=7.0,
+    )
     planar_linkage: bool = parameter("1", True, "A planar four-bar C-D-K-G follows the rocker")
     crank_length: float = parameter(
         "m", 0.150, "Length DC", display="mm", minimum=1e-4, maximum=10.0, nominal=0.1
@@ -91,25 +110,42 @@ class WeftInsertion(ShaftDriven):
         "m", 0.397, "Bottom diameter of the rapier wheel", display="mm", minimum=1e-3, maximum=10.0
     )
     moving_mass: float = parameter(
-        "kg", 0.1105, "Mass of head and rigid belt section, counted in shaft_torque", display="g",
-        minimum=0.0, maximum=100.0, nominal=0.1,
-    )  # fmt: skip
+        "kg",
+        0.1105,
+        "Mass of head and rigid belt section, counted in shaft_torque",
+        display="g",
+        minimum=0.0,
+        maximum=100.0,
+        nominal=0.1,
+    )
     wheel_inertia: float = parameter(
-        "kg.m2", 0.0, "Inertia that turns with the rapier wheel (none published; 0 leaves it out)",
-        minimum=0.0, maximum=10.0,
-    )  # fmt: skip
+        "kg.m2",
+        0.0,
+        "Inertia that turns with the rapier wheel (none published; 0 leaves it out)",
+        minimum=0.0,
+        maximum=10.0,
+    )
     belt_mass: float = parameter(
-        "kg/m", 0.0, "Mass of the belt per length (0 leaves it out; BeltDynamics assumes 0.05 kg/m)",
-        minimum=0.0, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "kg/m",
+        0.0,
+        "Mass of the belt per length (0 leaves it out; BeltDynamics assumes 0.05 kg/m)",
+        minimum=0.0,
+        maximum=10.0,
+        nominal=0.1,
+    )
     belt_length: float = parameter(
-        "m", 3.0, "Length of the belt behind the head, all of which moves (assumed)",
-        minimum=0.0, maximum=20.0,
-    )  # fmt: skip
+        "m",
+        3.0,
+        "Length of the belt behind the head, all of which moves (assumed)",
+        minimum=0.0,
+        maximum=20.0,
+    )
     travel: float = output(
-        "m", "Travel of the rapier head from its outer dead centre", rate="velocity",
+        "m",
+        "Travel of the rapier head from its outer dead centre",
+        rate="velocity",
         depends=("shaft_angle", "shaft_velocity", "shaft_acceleration"),
-    )  # fmt: skip
+    )
     velocity: float = output("m/s", "Velocity of the rapier head", nominal=10.0, rate="acceleration")
     acceleration: float = output("m/s2", "Acceleration of the rapier head", nominal=1000.0)
     stroke: float = output(
@@ -133,10 +169,18 @@ class WeftInsertion(ShaftDriven):
     def sector(self, crank: float) -> tuple[float, float, float]:
         """Angle of the sector gear at an angle of the crank, with its derivatives."""
         return weft_motion(
-            crank, self.rocker_angle, self.crank_cone, self.rocker_offset,
-            self.planar_linkage, self.crank_length, self.coupler_length, self.output_length,
-            self.pivot_x, self.pivot_y, self.assembly,
-        )  # fmt: skip
+            crank,
+            self.rocker_angle,
+            self.crank_cone,
+            self.rocker_offset,
+            self.planar_linkage,
+            self.crank_length,
+            self.coupler_length,
+            self.output_length,
+            self.pivot_x,
+            self.pivot_y,
+            self.assembly,
+        )
 
     def check(self) -> int:
         """Check that both linkages close over a whole turn, clear of dead points by more than rounding."""
@@ -152,9 +196,14 @@ class WeftInsertion(ShaftDriven):
             low = (one_end if one_end < other_end else other_end) + self.rocker_offset
             high = (other_end if one_end < other_end else one_end) + self.rocker_offset
             self.closure = four_bar_margin(
-                low, high, self.crank_length, self.coupler_length, self.output_length,
-                self.pivot_x, self.pivot_y,
-            )  # fmt: skip
+                low,
+                high,
+                self.crank_length,
+                self.coupler_length,
+                self.output_length,
+                self.pivot_x,
+                self.pivot_y,
+            )
             if self.closure < 1e-9:
                 return 2
         return 0

@@ -25,13 +25,21 @@ class WeftTransfer(Component):
     )
 
     separation: float = parameter(
-        "m", 4.086, "Distance between the tips of the heads at their outer dead centres (identified)",
-        minimum=0.0, maximum=100.0,
-    )  # fmt: skip
+        "m",
+        4.086,
+        "Distance between the tips of the heads at their outer dead centres (identified)",
+        minimum=0.0,
+        maximum=100.0,
+    )
     needed_overlap: float = parameter(
-        "m", 0.04, "Overlap that the hooks need to hand the weft over (assumed: none is published)",
-        display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.04,
+        "Overlap that the hooks need to hand the weft over (assumed: none is published)",
+        display="mm",
+        minimum=0.0,
+        maximum=10.0,
+        nominal=0.1,
+    )
     inputs_at_step_end: bool = at_step_end()
     giver_travel: float = head_travel(2.0953, BRINGS, "giver_", "weft")
     giver_velocity: float = head_velocity(BRINGS, "giver_", "weft")
@@ -40,20 +48,26 @@ class WeftTransfer(Component):
     taker_velocity: float = head_velocity(TAKES, "taker_", "weft_2")
     taker_acceleration: float = head_acceleration(0.0, TAKES, "weft_2")
     overlap: float = output(
-        "m", "How far the heads have passed each other; negative while they are apart", display="mm",
+        "m",
+        "How far the heads have passed each other; negative while they are apart",
+        display="mm",
         rate="closing_velocity",
-    )  # fmt: skip
+    )
     closing_velocity: float = output(
-        "m/s", "Velocity of the heads relative to each other, positive while they approach", nominal=10.0,
+        "m/s",
+        "Velocity of the heads relative to each other, positive while they approach",
+        nominal=10.0,
         rate="closing_acceleration",
-    )  # fmt: skip
+    )
     closing_acceleration: float = output(
         "m/s2", "Acceleration of the heads relative to each other", nominal=1000.0
     )
     offset: float = output(
-        "m", "Middle between the tips of the heads, from mid-shed towards the taker's side", display="mm",
+        "m",
+        "Middle between the tips of the heads, from mid-shed towards the taker's side",
+        display="mm",
         rate="offset_velocity",
-    )  # fmt: skip
+    )
     offset_velocity: float = output("m/s", "Rate of offset")
     engaged: bool = output("1", "The overlap is at least needed_overlap", start=False, variability="discrete")
     engaged_event: float = indicator("m", "Passes zero where the hand-over begins or ends")

@@ -12,9 +12,13 @@ from .terminals import HEAD
 
 PROGRAM_POINTS = 24  # of the brake, evenly spaced over a revolution
 QUINTIC = (
-    "value at its start", "rate at its start", "second rate, constant part",
-    "second rate, linear part", "second rate, quadratic part", "second rate, cubic part",
-)  # fmt: skip
+    "value at its start",
+    "rate at its start",
+    "second rate, constant part",
+    "second rate, linear part",
+    "second rate, quadratic part",
+    "second rate, cubic part",
+)
 FOLLOWED = "followed"  # what says when other outputs are known
 
 
@@ -41,55 +45,102 @@ class WeftVariables(ShaftDriven):
         nominal=1e-5,
     )
     yarn_stiffness: float = parameter(
-        "N", 75.0, "Tensile stiffness EA of the yarn, force per strain (assumed)",
-        minimum=1e-6, maximum=1e6, nominal=100.0,
-    )  # fmt: skip
+        "N",
+        75.0,
+        "Tensile stiffness EA of the yarn, force per strain (assumed)",
+        minimum=1e-6,
+        maximum=1e6,
+        nominal=100.0,
+    )
     retardation_time: float = parameter(
-        "s", 1e-4, "Retardation time of the yarn, viscosity over stiffness (assumed)", display="ms",
-        minimum=1e-9, maximum=1.0, nominal=1e-4,
-    )  # fmt: skip
+        "s",
+        1e-4,
+        "Retardation time of the yarn, viscosity over stiffness (assumed)",
+        display="ms",
+        minimum=1e-9,
+        maximum=1.0,
+        nominal=1e-4,
+    )
     yarn_diameter: float = parameter(
-        "m", 0.2e-3, "Diameter of the yarn, for its air drag (assumed)", display="mm",
-        minimum=0.0, maximum=0.01, nominal=1e-4,
-    )  # fmt: skip
+        "m",
+        0.2e-3,
+        "Diameter of the yarn, for its air drag (assumed)",
+        display="mm",
+        minimum=0.0,
+        maximum=0.01,
+        nominal=1e-4,
+    )
     air_friction: float = parameter(
-        "1", 0.04, "Coefficient of friction in air along the yarn, for its circumference (assumed)",
-        minimum=0.0, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "1",
+        0.04,
+        "Coefficient of friction in air along the yarn, for its circumference (assumed)",
+        minimum=0.0,
+        maximum=10.0,
+        nominal=0.1,
+    )
     supply_tension: float = parameter(
-        "N", 0.05, "Tension at the package without speed (assumed)", display="cN",
-        minimum=0.0, maximum=1e3, nominal=0.1,
-    )  # fmt: skip
+        "N",
+        0.05,
+        "Tension at the package without speed (assumed)",
+        display="cN",
+        minimum=0.0,
+        maximum=1e3,
+        nominal=0.1,
+    )
     unwinding_factor: float = parameter(
-        "1", 1.0, "Unwinding tension over that of the yarn's momentum; above 1 with a balloon (assumed)",
-        minimum=0.0, maximum=100.0,
-    )  # fmt: skip
+        "1",
+        1.0,
+        "Unwinding tension over that of the yarn's momentum; above 1 with a balloon (assumed)",
+        minimum=0.0,
+        maximum=100.0,
+    )
     brake_force: float = parameter(
-        "N", 0.2, "Force of the yarn brake, where brake_program is 1 (assumed)", display="cN",
-        minimum=0.0, maximum=1e3, nominal=0.1,
-    )  # fmt: skip
+        "N",
+        0.2,
+        "Force of the yarn brake, where brake_program is 1 (assumed)",
+        display="cN",
+        minimum=0.0,
+        maximum=1e3,
+        nominal=0.1,
+    )
     brake_program: tuple[float, ...] = array(
         parameter(
-            "1", 1.0, f"Share of brake_force at a shaft angle of {point * 360 // PROGRAM_POINTS} deg",
-            minimum=0.0, maximum=1e3,
+            "1",
+            1.0,
+            f"Share of brake_force at a shaft angle of {point * 360 // PROGRAM_POINTS} deg",
+            minimum=0.0,
+            maximum=1e3,
         )
         for point in range(PROGRAM_POINTS)
-    )  # fmt: skip
+    )
     friction: float = parameter(
         "1", 0.2, "Coefficient of friction between yarn and guide eyes (assumed)", minimum=0.0, maximum=2.0
     )
     wrap_angle: float = parameter(
-        "rad", 1.5707963267948966, "Sum of the wrap angles of all guide eyes (assumed)", display="deg",
-        minimum=0.0, maximum=20.0,
-    )  # fmt: skip
+        "rad",
+        1.5707963267948966,
+        "Sum of the wrap angles of all guide eyes (assumed)",
+        display="deg",
+        minimum=0.0,
+        maximum=20.0,
+    )
     supply_length: float = parameter(
-        "m", 0.6, "Length of yarn from the brake to where the head takes it (assumed)", display="mm",
-        minimum=1e-2, maximum=100.0,
-    )  # fmt: skip
+        "m",
+        0.6,
+        "Length of yarn from the brake to where the head takes it (assumed)",
+        display="mm",
+        minimum=1e-2,
+        maximum=100.0,
+    )
     pick_up_travel: float = parameter(
-        "m", 0.1, "Travel at which the giver takes the weft, and the taker releases it (assumed)",
-        display="mm", minimum=0.0, maximum=10.0, nominal=0.1,
-    )  # fmt: skip
+        "m",
+        0.1,
+        "Travel at which the giver takes the weft, and the taker releases it (assumed)",
+        display="mm",
+        minimum=0.0,
+        maximum=10.0,
+        nominal=0.1,
+    )
     travel: float = head_travel()
     velocity: float = head_velocity()
     acceleration: float = head_acceleration()
@@ -97,17 +148,29 @@ class WeftVariables(ShaftDriven):
         "N", "Tension of the weft at the head that carries it", display="cN", nominal=0.5, valid_if=FOLLOWED
     )
     highest_tension: float = output(
-        "N", "Highest tension so far, on the continuous curve, without the snatch", display="cN", nominal=0.5,
-        highest_of="tension", valid_if=FOLLOWED,
-    )  # fmt: skip
+        "N",
+        "Highest tension so far, on the continuous curve, without the snatch",
+        display="cN",
+        nominal=0.5,
+        highest_of="tension",
+        valid_if=FOLLOWED,
+    )
     highest_snatch: float = output(
-        "N", "Tension of the hardest snatch so far, as the giver takes the yarn up", display="cN",
-        nominal=0.5, valid_if=FOLLOWED, so_far=True,
-    )  # fmt: skip
+        "N",
+        "Tension of the hardest snatch so far, as the giver takes the yarn up",
+        display="cN",
+        nominal=0.5,
+        valid_if=FOLLOWED,
+        so_far=True,
+    )
     longest_slack: float = output(
-        "s", "Longest time so far that the weft was carried without tension", display="ms", nominal=1e-3,
-        valid_if=FOLLOWED, so_far=True,
-    )  # fmt: skip
+        "s",
+        "Longest time so far that the weft was carried without tension",
+        display="ms",
+        nominal=1e-3,
+        valid_if=FOLLOWED,
+        so_far=True,
+    )
     slack: bool = output(
         "1", "The weft is carried without tension", start=False, variability="discrete", valid_if=FOLLOWED
     )
@@ -127,9 +190,12 @@ class WeftVariables(ShaftDriven):
         "N", "Tension of the weft behind the last guide eye", display="cN", nominal=0.5, valid_if=FOLLOWED
     )
     inertia_force: float = output(
-        "N", "Part of tension that accelerates the yarn between brake and head", display="cN", nominal=0.1,
+        "N",
+        "Part of tension that accelerates the yarn between brake and head",
+        display="cN",
+        nominal=0.1,
         valid_if=FOLLOWED,
-    )  # fmt: skip
+    )
     drag_force: float = output(
         "N", "Part of tension that the air drag takes", display="cN", nominal=0.1, valid_if=FOLLOWED
     )

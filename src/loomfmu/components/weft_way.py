@@ -52,9 +52,12 @@ class WeftWay(WeftBrake):
         """Elastic force at a share of the way, from that at `low`."""
         if passing:
             return relaxed_force(
-                force, self.way_time / self.retardation_time, low - self.part_start,
-                share - self.part_start, *self.part_limit,
-            )  # fmt: skip
+                force,
+                self.way_time / self.retardation_time,
+                low - self.part_start,
+                share - self.part_start,
+                *self.part_limit,
+            )
         return stretch_force(self.yarn_stiffness, self.length_at(self.travel_at(share)), self.unstretched)
 
     def surplus_at(self, passing: bool, low: float, force: float, share: float) -> float:
@@ -100,9 +103,14 @@ class WeftWay(WeftBrake):
         end_first, end_second = duration * self.new_velocity, square * self.new_acceleration
         self.way_time = duration
         self.way = quintic(
-            self.sampled_travel, first, second, self.new_travel, end_first, end_second,
+            self.sampled_travel,
+            first,
+            second,
+            self.new_travel,
+            end_first,
+            end_second,
             self.sampled_time / duration,
-        )  # fmt: skip
+        )
         self.prepare_brake(duration)
 
     def gauge_at(self, kind: int, passing: bool, start: float, force: float, share: float) -> float:

@@ -157,8 +157,13 @@ def weft_load(tension: float, velocity: float, taker: bool) -> float:
 
 
 def speed_limit(
-    free_length: float, slope: float, factor: float, stiffness: float, mass: float, tension: float,
-) -> float:  # fmt: skip
+    free_length: float,
+    slope: float,
+    factor: float,
+    stiffness: float,
+    mass: float,
+    tension: float,
+) -> float:
     """Shaft speed at which the belt would just buckle at this angle, equations (9) and (12).
 
     `sqrt((F_cr - F_z) / (m s''))`; without tension `(pi / (mu l)) sqrt(EI / (m s''))`. It is

@@ -16,15 +16,52 @@ LEAST_SQUARE = 0.05  # of the cosine of the slope: beyond 77 degrees the belt co
 
 
 def bent_belt(
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    length: float, velocity: float, acceleration: float, clamped: int,
-    guide: float, head: float, guide_rate: float, head_rate: float,
-    guide_by_length: float, head_by_length: float, guide_second: float, head_second: float,
+    q1: float,
+    q2: float,
+    q3: float,
+    q4: float,
+    q5: float,
+    q6: float,
+    v1: float,
+    v2: float,
+    v3: float,
+    v4: float,
+    v5: float,
+    v6: float,
+    length: float,
+    velocity: float,
+    acceleration: float,
+    clamped: int,
+    guide: float,
+    head: float,
+    guide_rate: float,
+    head_rate: float,
+    guide_by_length: float,
+    head_by_length: float,
+    guide_second: float,
+    head_second: float,
 ) -> tuple[
-    float, float, float, float, float, float, float, float, float, float, float, float,
-    float, float, float, float, float, float, float, float,
-]:  # fmt: skip
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+]:
     """Bending and shortening of an inextensible belt with the sine of its slope `u_X`.
 
     With s = u_X and c = sqrt(1 - s^2): curvature u_XX / c, shortening 1 - c. What is of second order in s is
@@ -144,30 +181,73 @@ def bent_belt(
         wave, q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, guide, head, guide_rate, head_rate
     )
     return (
-        r1 + f1, r2 + f2, r3 + f3, r4 + f4, r5 + f5, r6 + f6,
-        p1 + g1, p2 + g2, p3 + g3, p4 + g4, p5 + g5, p6 + g6,
+        r1 + f1,
+        r2 + f2,
+        r3 + f3,
+        r4 + f4,
+        r5 + f5,
+        r6 + f6,
+        p1 + g1,
+        p2 + g2,
+        p3 + g3,
+        p4 + g4,
+        p5 + g5,
+        p6 + g6,
         stretch + length * share * shortening,
         working - drift * stretch + share * (length * rate + velocity * shortening),
-        spinning - 2.0 * drift * working + (2.0 * drift * drift - growth) * stretch
+        spinning
+        - 2.0 * drift * working
+        + (2.0 * drift * drift - growth) * stretch
         + share * (length * second + 2.0 * velocity * rate + acceleration * shortening)
-        + guide_pull * guide_second + head_pull * head_second,
+        + guide_pull * guide_second
+        + head_pull * head_second,
         share * by_length - over * stretch + guide_pull * guide_by_length + head_pull * head_by_length,
         bent + length * share * energy,
-        share * energy_by_length - 3.0 * over * bent - guide_force * guide_by_length
+        share * energy_by_length
+        - 3.0 * over * bent
+        - guide_force * guide_by_length
         - head_force * head_by_length,
-        turned_force, turned_pull,
-    )  # fmt: skip
+        turned_force,
+        turned_pull,
+    )
 
 
 def slightly_bent(
     wave: float,
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    guide: float, head: float, guide_rate: float, head_rate: float,
+    q1: float,
+    q2: float,
+    q3: float,
+    q4: float,
+    q5: float,
+    q6: float,
+    v1: float,
+    v2: float,
+    v3: float,
+    v4: float,
+    v5: float,
+    v6: float,
+    guide: float,
+    head: float,
+    guide_rate: float,
+    head_rate: float,
 ) -> tuple[
-    float, float, float, float, float, float, float, float, float, float, float, float,
-    float, float, float, float,
-]:  # fmt: skip
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+]:
     """Bending by the modes and shortening to the second order of the slope, and rates while L stays.
 
     Args:
@@ -186,12 +266,23 @@ def slightly_bent(
     w1, w2, w3, w4, w5, w6 = numbered(pi, v1, v2, v3, v4, v5, v6)
     stretch, working, spinning = end_shortening(wave / pi, guide, head, guide_rate, head_rate)
     return (
-        r1, r2, r3, r4, r5, r6, p1, p2, p3, p4, p5, p6,
+        r1,
+        r2,
+        r3,
+        r4,
+        r5,
+        r6,
+        p1,
+        p2,
+        p3,
+        p4,
+        p5,
+        p6,
         stretch + 0.5 * dot(p1, p2, p3, p4, p5, p6, q1, q2, q3, q4, q5, q6),
         working + dot(p1, p2, p3, p4, p5, p6, v1, v2, v3, v4, v5, v6),
         spinning + 0.5 * wave / pi * dot(w1, w2, w3, w4, w5, w6, w1, w2, w3, w4, w5, w6),
         -0.5 * dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6),
-    )  # fmt: skip
+    )
 
 
 def bent_place(
@@ -220,9 +311,12 @@ def bent_place(
     tilt = weight * share * inverse
     moment = weight * bend * steep
     return (
-        tilt * slope, moment * slope * slope, moment * bend * slope * steep, 0.5 * weight * share * share,
+        tilt * slope,
+        moment * slope * slope,
+        moment * bend * slope * steep,
+        0.5 * weight * share * share,
         tilt * turning * turning * (1.0 + cosine + square) * steep,
-    )  # fmt: skip
+    )
 
 
 def numbered(
@@ -244,9 +338,17 @@ def numbered(
 
 
 def by_modes(
-    clamped: int, share: float, guide: float, head: float,
-    f1: float, f2: float, f3: float, f4: float, f5: float, f6: float,
-) -> tuple[float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    clamped: int,
+    share: float,
+    guide: float,
+    head: float,
+    f1: float,
+    f2: float,
+    f3: float,
+    f4: float,
+    f5: float,
+    f6: float,
+) -> tuple[float, float, float, float, float, float, float, float, float]:
     """Rates by the modes and by the end shapes of what has known rates by the parts of the slope.
 
     Args:
@@ -269,9 +371,16 @@ def by_modes(
     m1, m2, m3, m4, m5, m6 = moment_forces(-by_guide, -by_head)
     scale = share * pi
     return (
-        m1 + scale * f1, m2 + 2.0 * scale * f2, m3 + 3.0 * scale * f3, m4 + 4.0 * scale * f4,
-        m5 + 5.0 * scale * f5, m6 + 6.0 * scale * f6, guide, head, by_guide,
-    )  # fmt: skip
+        m1 + scale * f1,
+        m2 + 2.0 * scale * f2,
+        m3 + 3.0 * scale * f3,
+        m4 + 4.0 * scale * f4,
+        m5 + 5.0 * scale * f5,
+        m6 + 6.0 * scale * f6,
+        guide,
+        head,
+        by_guide,
+    )
 
 
 def end_shortening(

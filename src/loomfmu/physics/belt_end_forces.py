@@ -74,11 +74,30 @@ def tilt_forces(
 
 
 def end_coupling(
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    velocity: float, acceleration: float, belt_mass: float, damping: float, thrown: float, offset: float,
-    clamped: int, guide: float, head: float, guide_rate: float, head_rate: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    q1: float,
+    q2: float,
+    q3: float,
+    q4: float,
+    q5: float,
+    q6: float,
+    v1: float,
+    v2: float,
+    v3: float,
+    v4: float,
+    v5: float,
+    v6: float,
+    velocity: float,
+    acceleration: float,
+    belt_mass: float,
+    damping: float,
+    thrown: float,
+    offset: float,
+    clamped: int,
+    guide: float,
+    head: float,
+    guide_rate: float,
+    head_rate: float,
+) -> tuple[float, float, float, float, float, float]:
     """Forces on the modes by the inertia of the end shapes on a belt that moves through its guide.
 
     Both ways: the end shapes drive the modes, and clamped ends hold them against what the modes do to them.

@@ -49,9 +49,13 @@ def end_amplitudes(
     if not may_clamp:
         bend = -bow * wave * wave / 6.0
         return (
-            bend * length * length * sine, 0.0, bend * length * (2.0 * sine + turn * cosine), 0.0,
-            bend * ((2.0 - turn * turn) * sine + 4.0 * turn * cosine), 0.0,
-        )  # fmt: skip
+            bend * length * length * sine,
+            0.0,
+            bend * length * (2.0 * sine + turn * cosine),
+            0.0,
+            bend * ((2.0 - turn * turn) * sine + 4.0 * turn * cosine),
+            0.0,
+        )
     odd, odd_rate, odd_second = by_cubes(1, bow, bow_length, length, cosine, sine)
     even, even_rate, even_second = by_cubes(2, bow, bow_length, length, cosine, sine)
     cube = length * length * length
@@ -105,9 +109,13 @@ def end_shape(
     share = 12.0 * guide / (pi * pi * pi)
     more = 12.0 * head / (pi * pi * pi)
     return (
-        a1 + share + more, a2 - share / 8.0 + more / 8.0, a3 + share / 27.0 + more / 27.0,
-        a4 - share / 64.0 + more / 64.0, a5 + share / 125.0 + more / 125.0, a6 - share / 216.0 + more / 216.0,
-    )  # fmt: skip
+        a1 + share + more,
+        a2 - share / 8.0 + more / 8.0,
+        a3 + share / 27.0 + more / 27.0,
+        a4 - share / 64.0 + more / 64.0,
+        a5 + share / 125.0 + more / 125.0,
+        a6 - share / 216.0 + more / 216.0,
+    )
 
 
 def buckling(clamped: int) -> tuple[float, float]:
@@ -198,11 +206,30 @@ def turned_by(clamped: int, guide: float, head: float) -> tuple[float, float]:
 
 
 def end_motion(
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    velocity: float, acceleration: float, clamped: int, turn: float, turn_by_length: float,
-    e: float, h: float, e_by_length: float, h_by_length: float, e_second: float, h_second: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    q1: float,
+    q2: float,
+    q3: float,
+    q4: float,
+    q5: float,
+    q6: float,
+    v1: float,
+    v2: float,
+    v3: float,
+    v4: float,
+    v5: float,
+    v6: float,
+    velocity: float,
+    acceleration: float,
+    clamped: int,
+    turn: float,
+    turn_by_length: float,
+    e: float,
+    h: float,
+    e_by_length: float,
+    h_by_length: float,
+    e_second: float,
+    h_second: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
     """Amplitudes of the end shapes at guide and head, and how they follow the modes and the length.
 
     The slope at a clamped guide is `turn / L`, at a clamped head 0. With e and h of the bow, and what the
@@ -227,9 +254,17 @@ def end_motion(
     square = velocity * velocity
     if clamped == 0:
         return (
-            0.0, 0.0, e, h, e_by_length * velocity, h_by_length * velocity, e_by_length, h_by_length,
-            e_second * square + e_by_length * acceleration, h_second * square + h_by_length * acceleration,
-        )  # fmt: skip
+            0.0,
+            0.0,
+            e,
+            h,
+            e_by_length * velocity,
+            h_by_length * velocity,
+            e_by_length,
+            h_by_length,
+            e_second * square + e_by_length * acceleration,
+            h_second * square + h_by_length * acceleration,
+        )
     guide, head = end_slopes(q1, q2, q3, q4, q5, q6)
     guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
     d, k = turned_by(clamped, turn - guide - OWN * e - OTHER * h, -head - OTHER * e - OWN * h)
@@ -244,10 +279,17 @@ def end_motion(
     d_by_length = d_by_length + e_by_length
     k_by_length = k_by_length + h_by_length
     return (
-        d, k, e + d, h + k, e_by_length * velocity + d_rate, h_by_length * velocity + k_rate,
-        d_by_length, k_by_length, (e_second + d_second) * square + d_by_length * acceleration,
+        d,
+        k,
+        e + d,
+        h + k,
+        e_by_length * velocity + d_rate,
+        h_by_length * velocity + k_rate,
+        d_by_length,
+        k_by_length,
+        (e_second + d_second) * square + d_by_length * acceleration,
         (h_second + k_second) * square + k_by_length * acceleration,
-    )  # fmt: skip
+    )
 
 
 def turning(turn_by_length: float, e_by_length: float, h_by_length: float) -> tuple[float, float]:

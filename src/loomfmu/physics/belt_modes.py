@@ -49,25 +49,53 @@ def weighed(
     (-20.0, 2.25)
     """
     return (
-        a1 * (first + square) - a2 * 20.0 / 9.0 + even * (a3 * 15.0 / 16.0 + a5 * 65.0 / 144.0)
-        - a4 * 136.0 / 225.0 - a6 * 444.0 / 1225.0,
-        a2 * (first + 4.0 * square) - a1 * 20.0 / 9.0 - a3 * 156.0 / 25.0 - a5 * 580.0 / 441.0
+        a1 * (first + square)
+        - a2 * 20.0 / 9.0
+        + even * (a3 * 15.0 / 16.0 + a5 * 65.0 / 144.0)
+        - a4 * 136.0 / 225.0
+        - a6 * 444.0 / 1225.0,
+        a2 * (first + 4.0 * square)
+        - a1 * 20.0 / 9.0
+        - a3 * 156.0 / 25.0
+        - a5 * 580.0 / 441.0
         + even * (a4 * 20.0 / 9.0 + a6 * 15.0 / 16.0),
-        a3 * (first + 9.0 * square) - a2 * 156.0 / 25.0 - a4 * 600.0 / 49.0 - a6 * 20.0 / 9.0
+        a3 * (first + 9.0 * square)
+        - a2 * 156.0 / 25.0
+        - a4 * 600.0 / 49.0
+        - a6 * 20.0 / 9.0
         + even * (a1 * 15.0 / 16.0 + a5 * 255.0 / 64.0),
-        a4 * (first + 16.0 * square) - a1 * 136.0 / 225.0 - a3 * 600.0 / 49.0 - a5 * 1640.0 / 81.0
+        a4 * (first + 16.0 * square)
+        - a1 * 136.0 / 225.0
+        - a3 * 600.0 / 49.0
+        - a5 * 1640.0 / 81.0
         + even * (a2 * 20.0 / 9.0 + a6 * 156.0 / 25.0),
-        a5 * (first + 25.0 * square) - a2 * 580.0 / 441.0 - a4 * 1640.0 / 81.0 - a6 * 3660.0 / 121.0
+        a5 * (first + 25.0 * square)
+        - a2 * 580.0 / 441.0
+        - a4 * 1640.0 / 81.0
+        - a6 * 3660.0 / 121.0
         + even * (a1 * 65.0 / 144.0 + a3 * 255.0 / 64.0),
-        a6 * (first + 36.0 * square) - a1 * 444.0 / 1225.0 - a3 * 20.0 / 9.0 - a5 * 3660.0 / 121.0
+        a6 * (first + 36.0 * square)
+        - a1 * 444.0 / 1225.0
+        - a3 * 20.0 / 9.0
+        - a5 * 3660.0 / 121.0
         + even * (a2 * 15.0 / 16.0 + a4 * 156.0 / 25.0),
-    )  # fmt: skip
+    )
 
 
 def dot(
-    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
-    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-) -> float:  # fmt: skip
+    a1: float,
+    a2: float,
+    a3: float,
+    a4: float,
+    a5: float,
+    a6: float,
+    b1: float,
+    b2: float,
+    b3: float,
+    b4: float,
+    b5: float,
+    b6: float,
+) -> float:
     """Sum of the products of two sets of modes.
 
     >>> dot(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
@@ -77,9 +105,20 @@ def dot(
 
 
 def summed(
-    by_a: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
-    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    by_a: float,
+    a1: float,
+    a2: float,
+    a3: float,
+    a4: float,
+    a5: float,
+    a6: float,
+    b1: float,
+    b2: float,
+    b3: float,
+    b4: float,
+    b5: float,
+    b6: float,
+) -> tuple[float, float, float, float, float, float]:
     """`by_a` times modes a, and modes b.
 
     >>> summed(-1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
@@ -117,9 +156,13 @@ def first_modes(
     (1.0, 2.0, 0.0, 0.0, 0.0, 0.0)
     """
     return (
-        a1, a2 if number > 1 else 0.0, a3 if number > 2 else 0.0, a4 if number > 3 else 0.0,
-        a5 if number > 4 else 0.0, a6 if number > 5 else 0.0,
-    )  # fmt: skip
+        a1,
+        a2 if number > 1 else 0.0,
+        a3 if number > 2 else 0.0,
+        a4 if number > 3 else 0.0,
+        a5 if number > 4 else 0.0,
+        a6 if number > 5 else 0.0,
+    )
 
 
 def harmonics(
@@ -137,9 +180,17 @@ def harmonics(
     c4 = c2 * c2 - s2 * s2
     s4 = 2.0 * c2 * s2
     return (
-        c2, c3, c4, c3 * c2 - s3 * s2, c3 * c3 - s3 * s3,
-        s2, s3, s4, s3 * c2 + c3 * s2, 2.0 * c3 * s3,
-    )  # fmt: skip
+        c2,
+        c3,
+        c4,
+        c3 * c2 - s3 * s2,
+        c3 * c3 - s3 * s3,
+        s2,
+        s3,
+        s4,
+        s3 * c2 + c3 * s2,
+        2.0 * c3 * s3,
+    )
 
 
 def bow_mode(
@@ -183,9 +234,10 @@ def bow_mode(
     twice = share * curve - 2.0 * by_turn / (turned + angle)
     scale = bow * wave * wave * angle * angle / length
     return (
-        scale * part, scale * (wave * by_turn - part / length),
+        scale * part,
+        scale * (wave * by_turn - part / length),
         scale * (wave * wave * twice + 2.0 / length * (part / length - wave * by_turn)),
-    )  # fmt: skip
+    )
 
 
 def bow_at(

@@ -21,11 +21,12 @@ def shape_at(
     second = a1 * s1 + 4.0 * a2 * s2 + 9.0 * a3 * s3 + 16.0 * a4 * s4 + 25.0 * a5 * s5 + 36.0 * a6 * s6
     y = 1.0 - x
     return (
-        dot(a1, a2, a3, a4, a5, a6, s1, s2, s3, s4, s5, s6) + end * x * (x * x - 1.0)
+        dot(a1, a2, a3, a4, a5, a6, s1, s2, s3, s4, s5, s6)
+        + end * x * (x * x - 1.0)
         + head * y * (y * y - 1.0),
         pi * first + end * (3.0 * x * x - 1.0) - head * (3.0 * y * y - 1.0),
         6.0 * end * x - pi * pi * second + 6.0 * head * y,
-    )  # fmt: skip
+    )
 
 
 def shape_extremes(

@@ -57,9 +57,16 @@ def stop_damping_ratio(restitution: float) -> float:
 
 
 def propagate(
-    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
-    drive_2: float, drive_3: float, duration: float,
-) -> tuple[float, float]:  # fmt: skip
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    duration: float,
+) -> tuple[float, float]:
     """State of `z'' + c z' + k z = u0 + u1 t + u2 t^2 + u3 t^3` after a duration.
 
     The power series of the exact solution, summed until its terms are below rounding. Valid for `sqrt(k) t`
@@ -109,9 +116,18 @@ def propagate(
 
 
 def power_of_frame(
-    mass: float, stiffness: float, damping: float, preload: float, position: float, rate: float,
-    drive: float, drive_1: float, velocity: float, acceleration: float, jerk: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    mass: float,
+    stiffness: float,
+    damping: float,
+    preload: float,
+    position: float,
+    rate: float,
+    drive: float,
+    drive_1: float,
+    velocity: float,
+    acceleration: float,
+    jerk: float,
+) -> tuple[float, float, float]:
     """Power of the frame on its carrier, `-m (k z + c z' - p) v`, and its first and second rate.
 
     Args:

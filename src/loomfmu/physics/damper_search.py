@@ -48,10 +48,22 @@ def rate_bounds(
 
 
 def gauge_at(
-    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
-    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
-    drive_2: float, drive_3: float, time: float,
-) -> tuple[float, float]:  # fmt: skip
+    order: int,
+    level: float,
+    level_1: float,
+    level_2: float,
+    by_position: float,
+    by_rate: float,
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    time: float,
+) -> tuple[float, float]:
     """Value and derivative at a time of the gauge `q (z - p) + r z'`, or of its slope `q z' + r z'' - p`.
 
     Args:
@@ -107,10 +119,25 @@ def safe_stride(value: float, slope: float, bend: float) -> float:
 
 
 def first_change(
-    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
-    sign: float, bend: float, position: float, rate: float, stiffness: float, damping: float, drive: float,
-    drive_1: float, drive_2: float, drive_3: float, start: float, duration: float,
-) -> float:  # fmt: skip
+    order: int,
+    level: float,
+    level_1: float,
+    level_2: float,
+    by_position: float,
+    by_rate: float,
+    sign: float,
+    bend: float,
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    start: float,
+    duration: float,
+) -> float:
     """Time at which a gauge, or its slope, first leaves a sign; on the far side of the zero, to rounding.
 
     Goes from stride to stride, each so short that no zero can lie within it, whatever the motion: so two
@@ -134,9 +161,22 @@ def first_change(
     """
     low = start
     at_low, slope = gauge_at(
-        order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
-        drive, drive_1, drive_2, drive_3, low,
-    )  # fmt: skip
+        order,
+        level,
+        level_1,
+        level_2,
+        by_position,
+        by_rate,
+        position,
+        rate,
+        stiffness,
+        damping,
+        drive,
+        drive_1,
+        drive_2,
+        drive_3,
+        low,
+    )
     if sign * at_low < 0.0:
         return low
     for n in range(MOST_STRIDES):
@@ -151,24 +191,68 @@ def first_change(
         if -sign * slope >= bend * rest or high > duration or n == MOST_STRIDES - 1:
             high = duration
         at_high, slope = gauge_at(
-            order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
-            drive, drive_1, drive_2, drive_3, high,
-        )  # fmt: skip
+            order,
+            level,
+            level_1,
+            level_2,
+            by_position,
+            by_rate,
+            position,
+            rate,
+            stiffness,
+            damping,
+            drive,
+            drive_1,
+            drive_2,
+            drive_3,
+            high,
+        )
         if sign * at_high < 0.0:
             return locate(
-                order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
-                drive, drive_1, drive_2, drive_3, low, high, at_low, at_high,
-            )  # fmt: skip
+                order,
+                level,
+                level_1,
+                level_2,
+                by_position,
+                by_rate,
+                position,
+                rate,
+                stiffness,
+                damping,
+                drive,
+                drive_1,
+                drive_2,
+                drive_3,
+                low,
+                high,
+                at_low,
+                at_high,
+            )
         low = high
         at_low = at_high
     return -1.0
 
 
 def locate(
-    order: int, level: float, level_1: float, level_2: float, by_position: float, by_rate: float,
-    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
-    drive_2: float, drive_3: float, low: float, high: float, at_low: float, at_high: float,
-) -> float:  # fmt: skip
+    order: int,
+    level: float,
+    level_1: float,
+    level_2: float,
+    by_position: float,
+    by_rate: float,
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    low: float,
+    high: float,
+    at_low: float,
+    at_high: float,
+) -> float:
     """Time at which a gauge, or its slope, changes its sign in a bracket.
 
     Illinois regula falsi on the exact solution; returns the end of the bracket on the far side of the
@@ -190,9 +274,22 @@ def locate(
         if t <= low or t >= high:
             t = 0.5 * (low + high)
         value, _slope = gauge_at(
-            order, level, level_1, level_2, by_position, by_rate, position, rate, stiffness, damping,
-            drive, drive_1, drive_2, drive_3, t,
-        )  # fmt: skip
+            order,
+            level,
+            level_1,
+            level_2,
+            by_position,
+            by_rate,
+            position,
+            rate,
+            stiffness,
+            damping,
+            drive,
+            drive_1,
+            drive_2,
+            drive_3,
+            t,
+        )
         if (value > 0.0) == (at_high > 0.0):
             high = t
             at_high = value
@@ -209,10 +306,22 @@ def locate(
 
 
 def contact_change(
-    contact: int, position: float, rate: float, stiffness: float, damping: float, drive: float,
-    drive_1: float, drive_2: float, drive_3: float, travel: float, stop_stiffness: float, stop_damping: float,
-    most_acceleration: float, most_jerk: float, duration: float,
-) -> tuple[float, int]:  # fmt: skip
+    contact: int,
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    travel: float,
+    stop_stiffness: float,
+    stop_damping: float,
+    most_acceleration: float,
+    most_jerk: float,
+    duration: float,
+) -> tuple[float, int]:
     """When the carrier's contact with a stop first changes, and the contact that follows.
 
     Args:
@@ -247,29 +356,73 @@ def contact_change(
         by_rate = -by_rate
         then = 2 * contact
     time = first_change(
-        LEVEL, level, 0.0, 0.0, by_position, by_rate, -1.0,
+        LEVEL,
+        level,
+        0.0,
+        0.0,
+        by_position,
+        by_rate,
+        -1.0,
         fabs(by_position) * most_acceleration + fabs(by_rate) * most_jerk,
-        position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, 0.0, duration,
-    )  # fmt: skip
+        position,
+        rate,
+        stiffness,
+        damping,
+        drive,
+        drive_1,
+        drive_2,
+        drive_3,
+        0.0,
+        duration,
+    )
     if time < 0.0:
         time = duration
         then = contact
     if contact == 1 or contact == -1:
         return time, then
     other = first_change(
-        LEVEL, other_level, 0.0, 0.0, -side, 0.0, -1.0, most_acceleration,
-        position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, 0.0, time,
-    )  # fmt: skip
+        LEVEL,
+        other_level,
+        0.0,
+        0.0,
+        -side,
+        0.0,
+        -1.0,
+        most_acceleration,
+        position,
+        rate,
+        stiffness,
+        damping,
+        drive,
+        drive_1,
+        drive_2,
+        drive_3,
+        0.0,
+        time,
+    )
     if other < 0.0:
         return time, then
     return other, other_then
 
 
 def next_turn(
-    offset: float, offset_1: float, offset_2: float, by_position: float, by_rate: float, bend: float,
-    position: float, rate: float, stiffness: float, damping: float, drive: float, drive_1: float,
-    drive_2: float, drive_3: float, start: float, duration: float,
-) -> float:  # fmt: skip
+    offset: float,
+    offset_1: float,
+    offset_2: float,
+    by_position: float,
+    by_rate: float,
+    bend: float,
+    position: float,
+    rate: float,
+    stiffness: float,
+    damping: float,
+    drive: float,
+    drive_1: float,
+    drive_2: float,
+    drive_3: float,
+    start: float,
+    duration: float,
+) -> float:
     """Time at which the gauge `q z + r z' - p t - p1 t^2 / 2 - p2 t^3 / 3` next turns; -1 if it does not.
 
     Args:
@@ -282,11 +435,40 @@ def next_turn(
     0.3
     """
     value, slope = gauge_at(
-        SLOPE, offset, offset_1, offset_2, by_position, by_rate, position, rate, stiffness, damping,
-        drive, drive_1, drive_2, drive_3, start,
-    )  # fmt: skip
+        SLOPE,
+        offset,
+        offset_1,
+        offset_2,
+        by_position,
+        by_rate,
+        position,
+        rate,
+        stiffness,
+        damping,
+        drive,
+        drive_1,
+        drive_2,
+        drive_3,
+        start,
+    )
     sign = 1.0 if value > 0.0 or (value == 0.0 and slope > 0.0) else -1.0
     return first_change(
-        SLOPE, offset, offset_1, offset_2, by_position, by_rate, sign, bend, position, rate, stiffness,
-        damping, drive, drive_1, drive_2, drive_3, start, duration,
-    )  # fmt: skip
+        SLOPE,
+        offset,
+        offset_1,
+        offset_2,
+        by_position,
+        by_rate,
+        sign,
+        bend,
+        position,
+        rate,
+        stiffness,
+        damping,
+        drive,
+        drive_1,
+        drive_2,
+        drive_3,
+        start,
+        duration,
+    )

@@ -77,9 +77,16 @@ def work_of(
 
 
 def bulge_for(
-    work: float, start: float, rise: float, velocity: float, net: float, net_rise: float, duration: float,
-    inertia: float, slope: float,
-) -> float:  # fmt: skip
+    work: float,
+    start: float,
+    rise: float,
+    velocity: float,
+    net: float,
+    net_rise: float,
+    duration: float,
+    inertia: float,
+    slope: float,
+) -> float:
     """The bulge with which torques do a known work over a step.
 
     The torques lie on a parabola then, whose ends and whose work are right. That makes the motion right to

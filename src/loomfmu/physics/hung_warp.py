@@ -18,10 +18,20 @@ SETTLED = 4e-16  # of the load: what rounding leaves
 
 
 def force_after(
-    height: float, velocity: float, acceleration: float, end_height: float, end_velocity: float,
-    end_acceleration: float, force: float, stiffness: float, creep: float, relaxation: float, front: float,
-    back: float, duration: float,
-) -> float:  # fmt: skip
+    height: float,
+    velocity: float,
+    acceleration: float,
+    end_height: float,
+    end_velocity: float,
+    end_acceleration: float,
+    force: float,
+    stiffness: float,
+    creep: float,
+    relaxation: float,
+    front: float,
+    back: float,
+    duration: float,
+) -> float:
     """Force of the threads above their pretension after a piece of the eyes' motion, of the law (3.28).
 
     Args:
@@ -47,9 +57,16 @@ def force_after(
 
 
 def warp_load(
-    height: float, velocity: float, force: float, pretension: float, stiffness: float, creep: float,
-    relaxation: float, front: float, back: float,
-) -> tuple[float, float]:  # fmt: skip
+    height: float,
+    velocity: float,
+    force: float,
+    pretension: float,
+    stiffness: float,
+    creep: float,
+    relaxation: float,
+    front: float,
+    back: float,
+) -> tuple[float, float]:
     """Load of the threads on their eyes, positive upwards, and its rate; none while they are slack.
 
     `L = -(T0 + F) s`, `L' = -F' s - (T0 + F) s' h'`, with `F' = b (s h' + n x) - r F`.
@@ -105,11 +122,30 @@ def cubic_between(
 
 
 def settled_load(
-    position: float, rate: float, force: float, mass: float, stiffness: float, damping: float,
-    u0: float, u1: float, u2: float, u3: float, lift: float, velocity: float, a0: float, a1: float,
-    a2: float, a3: float, pretension: float, thread_stiffness: float, creep: float, relaxation: float,
-    front: float, back: float, duration: float,
-) -> tuple[float, float, float, float, bool]:  # fmt: skip
+    position: float,
+    rate: float,
+    force: float,
+    mass: float,
+    stiffness: float,
+    damping: float,
+    u0: float,
+    u1: float,
+    u2: float,
+    u3: float,
+    lift: float,
+    velocity: float,
+    a0: float,
+    a1: float,
+    a2: float,
+    a3: float,
+    pretension: float,
+    thread_stiffness: float,
+    creep: float,
+    relaxation: float,
+    front: float,
+    back: float,
+    duration: float,
+) -> tuple[float, float, float, float, bool]:
     """Load of the threads on the carrier over a piece of their common motion, a cubic in time.
 
     Repeated until the load with which the carrier moves is the one that its motion gives.
@@ -141,16 +177,33 @@ def settled_load(
     for _ in range(MOST_REPEATS):
         d0, d1, d2, d3 = cubic_between(load, load_rate, end_load, end_rate, duration)
         z, v = propagate(
-            position, rate, stiffness, damping, u0 + d0 / mass, u1 + d1 / mass, u2 + d2 / mass,
-            u3 + d3 / mass, duration,
-        )  # fmt: skip
+            position,
+            rate,
+            stiffness,
+            damping,
+            u0 + d0 / mass,
+            u1 + d1 / mass,
+            u2 + d2 / mass,
+            u3 + d3 / mass,
+            duration,
+        )
         end_height = end_lift + z
         end_speed = end_velocity + v
         end_force = force_after(
-            height, speed, acceleration, end_height, end_speed,
+            height,
+            speed,
+            acceleration,
+            end_height,
+            end_speed,
             end_acceleration + drive + end_load / mass - stiffness * z - damping * v,
-            force, thread_stiffness, creep, relaxation, front, back, duration,
-        )  # fmt: skip
+            force,
+            thread_stiffness,
+            creep,
+            relaxation,
+            front,
+            back,
+            duration,
+        )
         last = end_load
         last_rate = end_rate
         end_load, end_rate = warp_load(

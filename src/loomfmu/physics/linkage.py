@@ -70,9 +70,16 @@ def spherical_margin(rocker: float, cone: float) -> float:
 
 
 def four_bar(
-    psi: float, psi_first: float, psi_second: float, crank: float, coupler: float, output: float,
-    pivot_x: float, pivot_y: float, assembly: int,
-) -> tuple[float, float, float]:  # fmt: skip
+    psi: float,
+    psi_first: float,
+    psi_second: float,
+    crank: float,
+    coupler: float,
+    output: float,
+    pivot_x: float,
+    pivot_y: float,
+    assembly: int,
+) -> tuple[float, float, float]:
     """Output angle of a planar four-bar C-D-K-G and its derivatives, equation (3).
 
     D turns about the origin, K about the pivot G; the coupler DK joins them. The angle follows from the
@@ -117,9 +124,14 @@ def four_bar(
 
 
 def four_bar_margin(
-    psi_low: float, psi_high: float, crank: float, coupler: float, output: float, pivot_x: float,
+    psi_low: float,
+    psi_high: float,
+    crank: float,
+    coupler: float,
+    output: float,
+    pivot_x: float,
     pivot_y: float,
-) -> float:  # fmt: skip
+) -> float:
     """Margin by which a four-bar closes while its crank swings from `psi_low` to `psi_high` [m].
 
     The distance D-G must stay between `|coupler - output|` and `coupler + output`; it is extreme at the ends
@@ -157,9 +169,18 @@ def _within(angle: float, low: float, high: float) -> bool:
 
 
 def weft_motion(
-    theta: float, rocker: float, cone: float, offset: float, planar: bool, crank: float, coupler: float,
-    output: float, pivot_x: float, pivot_y: float, assembly: int,
-) -> tuple[float, float, float]:  # fmt: skip
+    theta: float,
+    rocker: float,
+    cone: float,
+    offset: float,
+    planar: bool,
+    crank: float,
+    coupler: float,
+    output: float,
+    pivot_x: float,
+    pivot_y: float,
+    assembly: int,
+) -> tuple[float, float, float]:
     """Angle of the sector gear and its derivatives by the crank angle, equations (1) to (4).
 
     Args:

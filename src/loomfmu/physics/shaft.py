@@ -45,9 +45,13 @@ def ramp(time: float, duration: float) -> tuple[float, float, float]:
 
 
 def shaft_motion(
-    time: float, speed: float, start_angle: float, ramp_duration: float, ripple_amplitude: float,
+    time: float,
+    speed: float,
+    start_angle: float,
+    ramp_duration: float,
+    ripple_amplitude: float,
     ripple_order: int,
-) -> tuple[float, float, float]:  # fmt: skip
+) -> tuple[float, float, float]:
     """Angle, velocity and acceleration of a shaft that ramps up and ripples.
 
     With the mean angle `p(t)` of the ramp the shaft turns at `p' (1 + A sin(n p))`: integrable in closed

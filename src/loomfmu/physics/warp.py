@@ -133,8 +133,15 @@ def fading(decay: float) -> tuple[float, float, float, float, float, float, floa
 
 
 def thread_drive(
-    stiffness: float, creep: float, start: float, end: float, a0: float, a1: float, a2: float, a3: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    stiffness: float,
+    creep: float,
+    start: float,
+    end: float,
+    a0: float,
+    a1: float,
+    a2: float,
+    a3: float,
+) -> tuple[float, float, float, float, float, float]:
     """Right side of the law over a step, `b (x' + n x)`, as a polynomial in the share u of the step.
 
     The extension at both ends is exact, so rounding does not add up over many steps.
@@ -163,9 +170,16 @@ def thread_drive(
 
 
 def thread_force(
-    force: float, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
     share: float,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Force of the thread at a share u of the step, and its integral over u from 0.
 
     Exact solution of `dF/du + z F = p0 + p1 u + .. + p5 u^5`:
@@ -194,9 +208,16 @@ def thread_force(
 
 
 def thread_growth(
-    force: float, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float, p5: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
     share: float,
-) -> float:  # fmt: skip
+) -> float:
     """Derivative of the force by u, at a given force; see `thread_force`.
 
     >>> thread_growth(3.0, 2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
@@ -219,9 +240,18 @@ def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
 
 
 def thread_gauge(
-    turn: bool, level: float, force: float, decay: float, p0: float, p1: float, p2: float, p3: float,
-    p4: float, p5: float, share: float,
-) -> float:  # fmt: skip
+    turn: bool,
+    level: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    share: float,
+) -> float:
     """Zero where `thread_locate` looks: the derivative of the force by u, or the force minus a level.
 
     >>> thread_gauge(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
@@ -232,9 +262,19 @@ def thread_gauge(
 
 
 def thread_locate(
-    turn: bool, level: float, force: float, decay: float, p0: float, p1: float, p2: float, p3: float,
-    p4: float, p5: float, low: float, high: float,
-) -> float:  # fmt: skip
+    turn: bool,
+    level: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    low: float,
+    high: float,
+) -> float:
     """Share of the step at which the force has an extreme, or at which it passes a level.
 
     Regula falsi (Illinois), with a bisection every third step, on the exact solution.

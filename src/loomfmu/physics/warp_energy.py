@@ -31,9 +31,22 @@ def thread_energy(
 
 
 def thread_power(
-    pretension: float, force: float, decay: float, p0: float, p1: float, p2: float, p3: float, p4: float,
-    p5: float, rate: float, a0: float, a1: float, a2: float, a3: float, share: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    pretension: float,
+    force: float,
+    decay: float,
+    p0: float,
+    p1: float,
+    p2: float,
+    p3: float,
+    p4: float,
+    p5: float,
+    rate: float,
+    a0: float,
+    a1: float,
+    a2: float,
+    a3: float,
+    share: float,
+) -> tuple[float, float, float]:
     """Power that stretches a thread, tension times rate of the extension, and its first and second rate by u.
 
     A slack thread takes none.

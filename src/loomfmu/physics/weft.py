@@ -59,9 +59,14 @@ def eased(start: float, end: float, share: float) -> tuple[float, float]:
 
 
 def drawing_limit(
-    gain: float, supply: float, density: float, brake: float, brake_rate: float, speed: float,
+    gain: float,
+    supply: float,
+    density: float,
+    brake: float,
+    brake_rate: float,
+    speed: float,
     acceleration: float,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Tension behind the last eye at which the brake lets yarn through, `g (T0 + q v^2 + B)`, and its rate.
 
     Args:
@@ -120,10 +125,16 @@ def relaxed_force(
     """
     z = decay if decay < MOST_DECAY else MOST_DECAY
     end, _area = thread_force(
-        force, z,
-        z * (h0 + low * (h1 + low * (h2 + low * h3))), z * (h1 + low * (2.0 * h2 + 3.0 * low * h3)),
-        z * (h2 + 3.0 * low * h3), z * h3, 0.0, 0.0, share - low,
-    )  # fmt: skip
+        force,
+        z,
+        z * (h0 + low * (h1 + low * (h2 + low * h3))),
+        z * (h1 + low * (2.0 * h2 + 3.0 * low * h3)),
+        z * (h2 + 3.0 * low * h3),
+        z * h3,
+        0.0,
+        0.0,
+        share - low,
+    )
     return end
 
 

@@ -38,19 +38,30 @@ class DobbyDrive(RotorLaws):
     terminals: ClassVar[tuple[Terminal, ...]] = (
         *RotorLaws.terminals,
         ROTOR.of(
-            "rotor_angle", "rotor_velocity", "rotor_acceleration",
-            "lift_fraction", "lift_rate", "lift_acceleration",
+            "rotor_angle",
+            "rotor_velocity",
+            "rotor_acceleration",
+            "lift_fraction",
+            "lift_rate",
+            "lift_acceleration",
         ),
-    )  # fmt: skip
+    )
 
     rotor_inertia: float = parameter(
-        "kg.m2", 0.05, "Inertia of the rotor (assumed: none published); for spline_cam, of the cam shaft",
-        minimum=0.0, maximum=1e3,
-    )  # fmt: skip
+        "kg.m2",
+        0.05,
+        "Inertia of the rotor (assumed: none published); for spline_cam, of the cam shaft",
+        minimum=0.0,
+        maximum=1e3,
+    )
     rotor_angle: float = output(
-        "rad", "Rotor angle from the slow point of pick 0, not wrapped", display="deg", unbounded=True,
-        nominal=6.0, rate="rotor_velocity",
-    )  # fmt: skip
+        "rad",
+        "Rotor angle from the slow point of pick 0, not wrapped",
+        display="deg",
+        unbounded=True,
+        nominal=6.0,
+        rate="rotor_velocity",
+    )
     rotor_velocity: float = output(
         "rad/s", "Rotor velocity", display="rev/min", nominal=50.0, rate="rotor_acceleration"
     )
@@ -71,25 +82,39 @@ class DobbyDrive(RotorLaws):
     kinetic_energy: float = output("J", "Kinetic energy of the rotor", nominal=10.0)
     shaft_work: float = output("J", "Work taken from the shaft, now kinetic_energy", nominal=10.0)
     dwell_angle: float = output(
-        "rad", "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
-        display="deg", variability="discrete", nominal=1.5, depends=(),
-    )  # fmt: skip
+        "rad",
+        "Shaft angle for which a changing frame stays within dwell_tolerance of its end",
+        display="deg",
+        variability="discrete",
+        nominal=1.5,
+        depends=(),
+    )
     clear_shed_angle: float = output(
-        "rad", "Shaft angle for which a changing frame stays within clear_fraction of its end",
-        display="deg", variability="discrete", nominal=1.5, depends=(),
-    )  # fmt: skip
+        "rad",
+        "Shaft angle for which a changing frame stays within clear_fraction of its end",
+        display="deg",
+        variability="discrete",
+        nominal=1.5,
+        depends=(),
+    )
     highest_speed: float = output(
-        "1", "Largest rotor speed relative to the shaft's; for spline_cam, largest slope of lift_fraction",
-        variability="discrete", depends=(),
-    )  # fmt: skip
+        "1",
+        "Largest rotor speed relative to the shaft's; for spline_cam, largest slope of lift_fraction",
+        variability="discrete",
+        depends=(),
+    )
     highest_acceleration: float = output(
-        "1", "Largest rotor acceleration at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
-        variability="discrete", depends=(),
-    )  # fmt: skip
+        "1",
+        "Largest rotor acceleration at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
+        variability="discrete",
+        depends=(),
+    )
     highest_jerk: float = output(
-        "1", "Largest rotor jerk at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
-        variability="discrete", depends=(),
-    )  # fmt: skip
+        "1",
+        "Largest rotor jerk at a shaft speed of 1 rad/s; for spline_cam, that of lift_fraction",
+        variability="discrete",
+        depends=(),
+    )
     pick: int = output("1", "Current pick of the shaft", start=0, variability="discrete")
     pick_event: float = indicator("1", "Passes zero where pick changes")
 

@@ -115,9 +115,12 @@ class RotorLaws(LawParameters):
         for index in range(5):
             self.load(index)
             first, second = turning_points(
-                self.segment_length, self.segment_left, self.segment_right,
-                self.segment_left_bend, self.segment_right_bend,
-            )  # fmt: skip
+                self.segment_length,
+                self.segment_left,
+                self.segment_right,
+                self.segment_left_bend,
+                self.segment_right_bend,
+            )
             for place in range(3):
                 distance = self.segment_length
                 if place == 0:
@@ -171,9 +174,13 @@ class RotorLaws(LawParameters):
     def piece(self, distance: float) -> tuple[float, float, float, float]:
         """Value and derivatives of the spline at a distance from the start of the present segment."""
         return cubic_piece(
-            distance, self.segment_length, self.segment_left, self.segment_right,
-            self.segment_left_bend, self.segment_right_bend,
-        )  # fmt: skip
+            distance,
+            self.segment_length,
+            self.segment_left,
+            self.segment_right,
+            self.segment_left_bend,
+            self.segment_right_bend,
+        )
 
     def spline_peaks(self) -> tuple[float, float, float, float]:
         """Lowest and highest slope of the spline, its largest second and third derivative."""
@@ -185,9 +192,12 @@ class RotorLaws(LawParameters):
         for index in range(segments):
             self.load(index)
             low, high = slope_extremes(
-                self.segment_length, self.segment_left, self.segment_right,
-                self.segment_left_bend, self.segment_right_bend,
-            )  # fmt: skip
+                self.segment_length,
+                self.segment_left,
+                self.segment_right,
+                self.segment_left_bend,
+                self.segment_right_bend,
+            )
             lowest = low if low < lowest else lowest
             highest = high if high > highest else highest
             for end in range(2):
@@ -246,9 +256,13 @@ class RotorLaws(LawParameters):
         for index in range(5):
             self.load(index)
             total = total + stretch_above(
-                level, self.segment_length, self.segment_left, self.segment_right,
-                self.segment_left_bend, self.segment_right_bend,
-            )  # fmt: skip
+                level,
+                self.segment_length,
+                self.segment_left,
+                self.segment_right,
+                self.segment_left_bend,
+                self.segment_right_bend,
+            )
         return total
 
     def place_of(self, angle: float) -> float:

@@ -59,9 +59,15 @@ def highest_so_far(
 
 
 def lowest_by_two_rates(
-    lowest: float, step: float, start: float, start_rate: float, start_second: float,
-    end: float, end_rate: float, end_second: float,
-) -> float:  # fmt: skip
+    lowest: float,
+    step: float,
+    start: float,
+    start_rate: float,
+    start_second: float,
+    end: float,
+    end_rate: float,
+    end_second: float,
+) -> float:
     """Lowest value of a signal so far, on the quintic between samples: its second rate is known as well.
 
     The quintic is off by `h^6 s'''''' / 46080`. It is searched in eighths of the step, each for one turn.
@@ -114,9 +120,15 @@ def lowest_by_two_rates(
 
 
 def highest_by_two_rates(
-    highest: float, step: float, start: float, start_rate: float, start_second: float,
-    end: float, end_rate: float, end_second: float,
-) -> float:  # fmt: skip
+    highest: float,
+    step: float,
+    start: float,
+    start_rate: float,
+    start_second: float,
+    end: float,
+    end_rate: float,
+    end_second: float,
+) -> float:
     """Highest value of a signal so far, where its second rate is known as well; see `lowest_by_two_rates`.
 
     >>> round(highest_by_two_rates(-1.0, 2.0, -1.0, 4.0, -12.0, -1.0, -4.0, -12.0), 15) + 0.0

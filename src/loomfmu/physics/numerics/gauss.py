@@ -31,9 +31,7 @@ PLACE_B = 2.0 / 9.0
 PLACE_C = 0.03130601816090556
 
 
-def corrected(
-    stiff: float, first: float, second: float, third: float
-) -> tuple[float, float, float]:  # fmt: skip
+def corrected(stiff: float, first: float, second: float, third: float) -> tuple[float, float, float]:
     """Change of the three accelerations of a Gauss step of a mode for what they are off by.
 
     Solves `(1 + z A^2) d = r` with A the matrix of the Gauss-Legendre method of order 6.
@@ -46,16 +44,35 @@ def corrected(
     (1.0, 2.0, 3.0)
     """
     return solved(
-        1.0 + stiff * SQUARE_11, stiff * SQUARE_12, stiff * SQUARE_13,
-        stiff * SQUARE_21, 1.0 + stiff * SQUARE_22, stiff * SQUARE_23,
-        stiff * SQUARE_31, stiff * SQUARE_32, 1.0 + stiff * SQUARE_33, first, second, third,
-    )  # fmt: skip
+        1.0 + stiff * SQUARE_11,
+        stiff * SQUARE_12,
+        stiff * SQUARE_13,
+        stiff * SQUARE_21,
+        1.0 + stiff * SQUARE_22,
+        stiff * SQUARE_23,
+        stiff * SQUARE_31,
+        stiff * SQUARE_32,
+        1.0 + stiff * SQUARE_33,
+        first,
+        second,
+        third,
+    )
 
 
 def solved(
-    a11: float, a12: float, a13: float, a21: float, a22: float, a23: float, a31: float, a32: float,
-    a33: float, first: float, second: float, third: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    a11: float,
+    a12: float,
+    a13: float,
+    a21: float,
+    a22: float,
+    a23: float,
+    a31: float,
+    a32: float,
+    a33: float,
+    first: float,
+    second: float,
+    third: float,
+) -> tuple[float, float, float]:
     """Solution of three linear equations, by the adjugate.
 
     >>> solved(2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 8.0, 2.0, 4.0, 8.0)
@@ -73,9 +90,20 @@ def solved(
 
 
 def held(
-    weight: float, y11: float, y12: float, y13: float, y21: float, y22: float, y23: float, y31: float,
-    y32: float, y33: float, s1: float, s2: float, s3: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    weight: float,
+    y11: float,
+    y12: float,
+    y13: float,
+    y21: float,
+    y22: float,
+    y23: float,
+    y31: float,
+    y32: float,
+    y33: float,
+    s1: float,
+    s2: float,
+    s3: float,
+) -> tuple[float, float, float]:
     """Reactions r at the three stages of a spring that ties modes together: `r = weight (s - y r)`.
 
     Args:
@@ -87,19 +115,57 @@ def held(
     (1.0, 2.0, 3.0)
     """
     return solved(
-        1.0 + weight * y11, weight * y12, weight * y13, weight * y21, 1.0 + weight * y22, weight * y23,
-        weight * y31, weight * y32, 1.0 + weight * y33, weight * s1, weight * s2, weight * s3,
-    )  # fmt: skip
+        1.0 + weight * y11,
+        weight * y12,
+        weight * y13,
+        weight * y21,
+        1.0 + weight * y22,
+        weight * y23,
+        weight * y31,
+        weight * y32,
+        1.0 + weight * y33,
+        weight * s1,
+        weight * s2,
+        weight * s3,
+    )
 
 
 def stage(
-    by_rate: float, by_a: float, by_b: float, by_c: float,
-    q1: float, q2: float, q3: float, q4: float, q5: float, q6: float,
-    v1: float, v2: float, v3: float, v4: float, v5: float, v6: float,
-    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float,
-    b1: float, b2: float, b3: float, b4: float, b5: float, b6: float,
-    c1: float, c2: float, c3: float, c4: float, c5: float, c6: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    by_rate: float,
+    by_a: float,
+    by_b: float,
+    by_c: float,
+    q1: float,
+    q2: float,
+    q3: float,
+    q4: float,
+    q5: float,
+    q6: float,
+    v1: float,
+    v2: float,
+    v3: float,
+    v4: float,
+    v5: float,
+    v6: float,
+    a1: float,
+    a2: float,
+    a3: float,
+    a4: float,
+    a5: float,
+    a6: float,
+    b1: float,
+    b2: float,
+    b3: float,
+    b4: float,
+    b5: float,
+    b6: float,
+    c1: float,
+    c2: float,
+    c3: float,
+    c4: float,
+    c5: float,
+    c6: float,
+) -> tuple[float, float, float, float, float, float]:
     """Six values at a stage: `q + by_rate v + by_a a + by_b b + by_c c`.
 
     Args:

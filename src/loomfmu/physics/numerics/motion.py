@@ -10,8 +10,13 @@ PLACE_ROUNDING = 4.5e-16
 
 
 def bumps(
-    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float,
-) -> tuple[float, float]:  # fmt: skip
+    start: float,
+    start_rate: float,
+    start_second: float,
+    end: float,
+    end_rate: float,
+    end_second: float,
+) -> tuple[float, float]:
     """Two bumps of the second derivative between two samples, above the line between its ends.
 
     For the quintic that joins the samples. With u the share of the step the second derivative is
@@ -56,8 +61,13 @@ def bent(
 
 
 def joined(
-    start: float, start_rate: float, start_second: float, end: float, end_rate: float, end_second: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
+    start: float,
+    start_rate: float,
+    start_second: float,
+    end: float,
+    end_rate: float,
+    end_second: float,
+) -> tuple[float, float, float, float]:
     """Second derivative of the quintic that joins two samples, as a cubic in the share u of the step.
 
     Integrated twice it meets both samples to rounding. Its own error at a step h is 60 roundings of the
@@ -141,8 +151,14 @@ def expected_bump(before: float, step_before: float, by_rate: float, step: float
 
 
 def joined_value(
-    start: float, start_rate: float, a0: float, a1: float, a2: float, a3: float, share: float,
-) -> tuple[float, float]:  # fmt: skip
+    start: float,
+    start_rate: float,
+    a0: float,
+    a1: float,
+    a2: float,
+    a3: float,
+    share: float,
+) -> tuple[float, float]:
     """Value and second derivative at a share of the step, from the coefficients of `joined`.
 
     >>> joined_value(0.0, 0.0, 0.0, 0.0, 0.0, 20.0, 0.5)
@@ -180,9 +196,14 @@ def moved_on(
 
 
 def joined_area(
-    duration: float, start: float, start_rate: float, start_second: float, end: float, end_rate: float,
+    duration: float,
+    start: float,
+    start_rate: float,
+    start_second: float,
+    end: float,
+    end_rate: float,
     end_second: float,
-) -> float:  # fmt: skip
+) -> float:
     """Integral of the quintic that joins values, rates and second rates: `h^6 / 100,800` of the sixth off.
 
     >>> round(joined_area(2.0, 0.0, 0.0, 0.0, 32.0, 80.0, 160.0), 12)  # t^5

@@ -113,9 +113,15 @@ def stretch_above(
 
 
 def _part_above(
-    level: float, low: float, high: float,
-    length: float, left: float, right: float, left_bend: float, right_bend: float,
-) -> float:  # fmt: skip
+    level: float,
+    low: float,
+    high: float,
+    length: float,
+    left: float,
+    right: float,
+    left_bend: float,
+    right_bend: float,
+) -> float:
     """As `stretch_above`, for a part from `low` to `high` in which the piece is monotone."""
     at_low, _first, _second, _third = cubic_piece(low, length, left, right, left_bend, right_bend)
     at_high, _first, _second, _third = cubic_piece(high, length, left, right, left_bend, right_bend)

@@ -10,9 +10,19 @@ SPLINE_CAM = 7
 
 
 def not_a_knot(
-    x1: float, x2: float, x3: float, x4: float, x5: float, x6: float,
-    y1: float, y2: float, y3: float, y4: float, y5: float, y6: float,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    x1: float,
+    x2: float,
+    x3: float,
+    x4: float,
+    x5: float,
+    x6: float,
+    y1: float,
+    y2: float,
+    y3: float,
+    y4: float,
+    y5: float,
+    y6: float,
+) -> tuple[float, float, float, float, float, float]:
     """Second derivatives at six points of the cubic spline with "cubic ends", Appendix 2.
 
     The first two pieces are one cubic, and so are the last two. With h the distances between the points
