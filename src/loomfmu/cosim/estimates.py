@@ -93,25 +93,20 @@ class Dependence:
         return [set(upstream(each, sources)) for each in owners]
 
     @cached_property
-    def _delayed(self) -> list[Wire]:
-        """The wires that carry values of the step before, although their loops could be iterated."""
-        scene = self._scene
-        _order, lagged = step_order(scene.instances, scene.wires)
-        ours = all(instance.fmu.trusted for instance in scene.instances.values())
-        return lagged if ours and scene.coupling != ITERATED else []
+    def _lagged(self) -> list[Wire]:
+        """The wires that carry values of the step before."""
+        _order, closing = step_order(self._scene.instances, self._scene.wires)
+        return [] if self._scene.coupling == ITERATED else closing
 
     @cached_property
     def methods(self) -> list[Method]:
         """The method that estimates each claim's error."""
-        scene = self._scene
-        _order, lagged = step_order(scene.instances, scene.wires)
-        delayed = bool(lagged) and scene.coupling != ITERATED
         found = []
         for names in self._upstream:
-            components = [scene.instances[name].fmu.component for name in names]
+            components = [self._scene.instances[name].fmu.component for name in names]
             kept = {MOTION if each is None else each.keeps for each in components}
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
-            method = LAGGED if delayed else method
+            method = LAGGED if self._lagged else method
             scatter = max(each.scatter if each else 0.0 for each in components)
             found.append(method._replace(scatter=scatter))
         return found
@@ -120,13 +115,15 @@ class Dependence:
         """The claims, counted from 0, of which coarser runs say nothing, and why."""
         found = dict[int, str]()
         shown = {name: longest_step(scene, name) for name in scene.instances}
+        ours = all(instance.fmu.trusted for instance in scene.instances.values())
+        avoidable = self._lagged if ours else []
         for number, names in enumerate(self._upstream):
             longest, why = min((shown[name] for name in names), default=(math.inf, ""))
             if not longest:
                 found[number] = f"{why}, so that no steps are known to show its outputs"
             elif scene.step_size > TOO_LONG * longest:
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
-            elif wire := next((wire for wire in self._delayed if wire.sink[0] in names), None):
+            elif wire := next((wire for wire in avoidable if wire.sink[0] in names), None):
                 found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
         return found
 
