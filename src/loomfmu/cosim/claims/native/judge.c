@@ -145,12 +145,11 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
                                 model > 0.0 ? 0.0 : scatter * fabs(verdict->worst - start));
     const double left = unresolved(run, &call, verdict);
     if (left == INFINITY) { /* a sample may fail the claim, but does not say by how much the signal does */
-        estimate(verdict, sense, larger(spread, least), spread);
+        estimate(verdict, sense, larger(spread, least), spread, model);
         verdict->error = INFINITY;
         verdict->distance = distance_from_bound(verdict, sense);
     } else
-        /* a bound is met to rounding only where the model itself is sure of the value */
-        estimate(verdict, sense, larger(larger(spread, left), least), larger(spread, left));
+        estimate(verdict, sense, larger(larger(spread, left), least), spread, model);
     return true;
 }
 

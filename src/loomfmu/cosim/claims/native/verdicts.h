@@ -106,18 +106,18 @@ static double distance_from_bound(const struct verdict *verdict, double sense)
     return verdict->holds != 0.0 || known ? distance : NAN;
 }
 
-/* Take an error into a verdict, of which `spread` is what differs between resolutions.
+/* Take an error into a verdict: `spread` is what differs between resolutions, `model` what no resolution shows.
  *
- * Within the error of its bound it is undecided. A bound that all resolutions meet to rounding is met: that is how a
- * count, a value at rest or a limited one meets it. */
-static void estimate(struct verdict *verdict, double sense, double error, double spread)
+ * Within the error of its bound it is undecided. A bound that all resolutions meet to rounding is met, where the model
+ * itself is sure of the value: that is how a count, a value at rest or a limited one meets it. */
+static void estimate(struct verdict *verdict, double sense, double error, double spread, double model)
 {
     const double bound = verdict->bound, worst = verdict->worst;
     const double distance = distance_from_bound(verdict, sense);
     if (!isnan(verdict->error))
         error = larger(error, verdict->error);
     const double scale = larger(fabs(bound), fabs(worst));
-    const bool met = fabs(distance) <= MET * scale && spread <= MET * fabs(worst);
+    const bool met = fabs(distance) <= MET * scale && larger(spread, model) <= MET * fabs(worst);
     const bool decided = verdict->decided != 0.0 && (met || !(fabs(distance) <= error));
     verdict->error = error;
     verdict->spread = spread;
@@ -177,6 +177,6 @@ static struct verdict concluded(struct run *run, const struct call *call, struct
     verdict.error = decided ? NAN : INFINITY;
     verdict.distance = distance_from_bound(&verdict, form.sense);
     if (verdict.holds != 0.0 && !isnan(answer->off))
-        estimate(&verdict, form.sense, answer->off, answer->off);
+        estimate(&verdict, form.sense, answer->off, answer->off, 0.0);
     return verdict;
 }
