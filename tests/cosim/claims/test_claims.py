@@ -134,6 +134,8 @@ def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so(tmp_path
     )
     assert (found.worst, found.time) == (np.cos(time).min(), time[31])
     assert (found.word, found.error) == ("undecided", math.inf)  # nobody knows what lies between
+    fails = judge(wavy, kind="above", signal="a.x", bound=-0.5)
+    assert (fails.word, fails.note) == ("FAILS", "a.x is known only at the samples")
     assert math.isnan(found.distance)
     assert judge(wavy, kind="above", signal="a.x", bound=-0.9).word == "FAILS"  # a sample is below
     sampled = judge(wavy, kind="above", signal="a.x", bound=-2.0, at_samples=True)

@@ -83,8 +83,9 @@ static struct extreme worst_of(struct run *run, const struct call *call, const s
     }
     struct extreme found = lowest(motion, sense, within);
     const int latch = sense > 0.0 ? run->signals[signal].lowest : run->signals[signal].highest;
+    const bool fails = sense * found.sure < sense * answer->bound; /* whatever lies between the samples */
     if (is_known(motion) || latch < 0)
-        note_unknown_with(run, answer, motion, AT_SAMPLES);
+        note_unknown_with(run, answer, motion, fails ? "" : AT_SAMPLES);
     else if (latched(run, signal, sense, &found, within) >= 0)
         note(run, answer, text(run, "between the samples by %s", run->signals[latch].name), PLAIN);
     note_coarse(run, answer, found);
