@@ -127,7 +127,7 @@ def on_the_loom(values: dict[str, Any]) -> Any:
 
 @pytest.fixture(scope="module")
 def said(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, float | None], Any]:
-    """What the page of a scene says at a speed, None for its own, beside what a run does: made once."""
+    """Return the words of a page at a speed, None for its own, beside those of a run: made once."""
     pages: dict[str, Any] = {}
     known: dict[tuple[str, float | None], Any] = {}
 

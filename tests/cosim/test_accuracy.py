@@ -8,7 +8,7 @@ import pytest
 
 from loomfmu import LoomfmuError, Trace, evaluate, limit, prepare
 from loomfmu.cli import main
-from loomfmu.cosim.accuracy import GROWTH, _tried
+from loomfmu.cosim.accuracy import GROWTH, tried_steps
 from loomfmu.cosim.scenes.scene import parse
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
@@ -104,7 +104,7 @@ def test_an_accuracy_needs_claims_and_revolutions() -> None:
 @pytest.mark.parametrize("revolutions", [1, 2.5, 2.025, 2.0625, 91 / 45, 1 + 1 / 1440])
 def test_steps_that_are_tried_grow_and_are_no_multiples_of_those_before(revolutions: float) -> None:
     """With 2.025 revolutions 40 steps were compared with 40 steps."""
-    tried = list(_tried(revolutions))
+    tried = list(tried_steps(revolutions))
     assert all((steps * revolutions) % 1 == pytest.approx(0.0, abs=1e-6) for steps in tried)
     assert all(1.45 <= more / fewer <= 1.7 and more % fewer for fewer, more in pairwise(tried))
     assert len(tried) > 3

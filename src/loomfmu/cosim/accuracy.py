@@ -37,7 +37,7 @@ def chosen(
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
     before: list[tuple[float, ...]] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
-    for steps in _tried(scene.periods):
+    for steps in tried_steps(scene.periods):
         total = scene.periods * steps
         if not 0.0 < total <= MOST_STEPS or abs(total - round(total)) > ROUNDING * total:
             continue
@@ -70,7 +70,7 @@ def chosen(
     )
 
 
-def _tried(periods: float) -> Iterator[int]:
+def tried_steps(periods: float) -> Iterator[int]:
     """Numbers of steps in a revolution, few first, all of which fit the revolutions of a run.
 
     Each is about 1.618 times the one before, and no multiple of it: the sums of Fibonacci.

@@ -165,7 +165,7 @@ class Estimates:
 
     def near(self, scene: Scene, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
-        coarse = max(1.0, WELL_KNOWN / (period(scene) / scene.step_size)) ** 2
+        coarse = max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
         return {
             number
             for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))

@@ -11,7 +11,7 @@ REQUIREMENTS = {row["requirement"]: row for row in table("factor_correlations")}
 
 
 def by_rule(rule: str, *operands: float) -> float:
-    """What a rule of `thesis_arithmetic` makes of its operands."""
+    """Return the result of a rule of `thesis_arithmetic` on its operands."""
     return RULES[rule](operands)
 
 

@@ -58,7 +58,10 @@ def mingw_licence() -> bytes:
 
 
 def library_identity(source: Path, target: str = "") -> str:
-    """What a library of this source depends on, as a name for a cache. Raises as `library`."""
+    """Return a name for a library of this source in a cache: it depends on all that the library does.
+
+    Raises as `library`.
+    """
     _required()
     return hashlib.sha256((target + repr(code_of(source)) + stamp(COMPILER)).encode()).hexdigest()
 

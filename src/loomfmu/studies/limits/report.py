@@ -47,7 +47,7 @@ def _effort(runs: int, found: Sequence[Limits]) -> str:
     if off and math.isfinite(off.error):
         parts.append(f"numerical error of the limits up to {off.error / span.factor:.1g} {span.unit}")
     elif off:
-        parts.append(f"numerical error of the limits unknown ({off.doubt or 'steps too few'})")
+        parts.append(f"numerical error of the limits unknown ({off.doubt or 'not estimated'})")
     return "; ".join((*parts, f"intervals narrower than {resolution} may be missed"))
 
 

@@ -143,7 +143,7 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
     const double start = form.signal < 0 ? 0.0 : sample_of(run, form.signal, 0);
     const double least = larger(larger(noise, share * larger(fabs(verdict->worst), fabs(verdict->bound))),
                                 model > 0.0 ? 0.0 : scatter * fabs(verdict->worst - start));
-    const double left = unresolved(run, &call, verdict);
+    const double left = larger(unresolved(run, &call), model);
     if (left == INFINITY) { /* a sample may fail the claim, but does not say by how much the signal does */
         estimate(verdict, sense, larger(spread, least), spread, model);
         verdict->error = INFINITY;

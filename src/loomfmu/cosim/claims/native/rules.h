@@ -45,17 +45,16 @@ static double left_by_model(struct run *run, const struct call *call, const stru
     return off_by(run, form.signal, verdict->worst, verdict->time, judged.always ? NULL : &judged.within);
 }
 
-/* What it may be off by and runs on other steps may not show. */
-static double unresolved(struct run *run, const struct call *call, const struct verdict *verdict)
+/* What its curve may be off by between the samples, which runs on other steps may not show. */
+static double unresolved(struct run *run, const struct call *call)
 {
-    const double left = left_by_model(run, call, verdict);
     if (!is_by(call, judge_bounded))
-        return left;
+        return 0.0;
     struct answer unused = {0};
     const struct judged judged = when_judged(run, call);
     const struct extreme found = worst_of(run, call, &judged, &unused);
     const double sure = isfinite(found.sure) ? found.sure : found.value;
-    return larger(larger(fabs(found.value - found.possible), fabs(found.value - sure)), left);
+    return larger(fabs(found.value - found.possible), fabs(found.value - sure));
 }
 
 static void add_all(struct run *run, struct times *times, struct times others)
