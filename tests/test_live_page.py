@@ -273,7 +273,7 @@ def test_what_the_model_leaves_open_counts_once_with_other_ends(opened: Open, tm
     page = running(opened(live_page.write(scene, ["belt_motion.guide_end"], tmp_path / "page.html")))
     page.evaluate("loomfmu.live.verdicts = null")
     page.locator(".knob select").select_option(label="play")
-    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts)"))
+    until(page, lambda: page.evaluate("Boolean(loomfmu.live.verdicts?.every(each => !each.waits))"))
     found = page.evaluate("loomfmu.live.verdicts.map(each => each.holds)")
     words = [verdict.word for verdict in loomfmu.evaluate(scene, set=play).claims]
     assert words == ["undecided", "holds"]

@@ -1,5 +1,6 @@
 """A dask cluster instead of processes of our own: the same batches, the same table."""
 
+import importlib
 import logging
 import os
 from collections.abc import Iterator
@@ -110,3 +111,17 @@ def test_a_scheduler_without_workers_is_named(tmp_path: Path, monkeypatch: pytes
         pytest.raises(LoomfmuError, match="the dask scheduler has no workers"),
     ):
         loomfmu.sweep(written(tmp_path, SWEPT), scheduler=empty.scheduler_address, output=tmp_path / "out")
+
+
+def test_a_machine_too_busy_for_a_client_is_tried_again_then_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen under load: dask asserts that its event loop has started within ten seconds."""
+    tried: list[str] = []
+
+    def late(address: str, **_: Any) -> None:
+        tried.append(address)
+        raise AssertionError
+
+    monkeypatch.setattr(distributed, "Client", late)
+    with pytest.raises(LoomfmuError, match="tcp://there:1: this machine is too busy to start a dask client"):
+        importlib.import_module("loomfmu.sweeps.cluster").Cluster("tcp://there:1")
+    assert tried == 3 * ["tcp://there:1"]

@@ -10,16 +10,24 @@ from .pools import Died, Task
 ANSWER = 10.0  # s that a scheduler has to answer, and to find a worker
 
 
+def _client(address: str, attempts: int = 3) -> Any:
+    try:
+        return distributed.Client(address, timeout=ANSWER, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        reason = " ".join(str(error).split())
+        raise LoomfmuError(f"{address}: no dask scheduler answers ({reason})") from None
+    except AssertionError:  # dask gives its event loop ten seconds to start, however busy the machine
+        if attempts > 1:
+            return _client(address, attempts - 1)
+        raise LoomfmuError(f"{address}: this machine is too busy to start a dask client") from None
+
+
 class Cluster:
     """The workers of a dask scheduler. Each process does one task at a time and has one waiting."""
 
     def __init__(self, address: str):
         self.address = address
-        try:
-            self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
-            reason = " ".join(str(error).split())
-            raise LoomfmuError(f"{address}: no dask scheduler answers ({reason})") from None
+        self._client = _client(address)
         try:
             self._client.wait_for_workers(1, timeout=ANSWER)
         except TimeoutError:
