@@ -325,6 +325,16 @@ def test_coarser_runs_are_coarser_however_many_rows_a_table_has() -> None:
     assert coarser == pytest.approx([share * whole for share in SHARES], abs=1)
 
 
+def test_an_accuracy_is_not_reached_by_runs_that_a_table_makes_alike() -> None:
+    """With more rows than steps, those that were tried before are hardly coarser."""
+    rows = ", ".join(f"[{row / 177:.9f}, 0.6]" for row in range(178))
+    text = SETTLING.format(revolutions=2, bound='"6 kN"') + f'[inputs]\n"belt.yarn_tension" = [{rows}]\n'
+    chosen = evaluate(parse(text), set={"accuracy": 1e-2})
+    steps = chosen.scene.steps_per_period
+    (given,) = evaluate(parse(text), set={"steps_per_revolution": steps}).claims
+    assert steps < 177 and chosen.claims[0].error == given.error > 0.0
+
+
 def test_a_bound_of_0_is_not_met_by_what_a_component_may_have_missed() -> None:
     """Without blows below `least_speed` a bound of 0 held, and 0.1 m/s was undecided."""
     text = LOOM.format(steps=90, bound=0.1).replace("[shaft]", 'weave = "10/01"\nplay = true\n[shaft]')
@@ -377,3 +387,36 @@ def test_a_bound_near_0_is_near_where_a_row_of_a_sweep_is_judged(tmp_path: Path)
             for speed in ("681.8017 rpm", "500 rpm")
         )
     assert near.word == "undecided" and math.isnan(far.error)
+
+
+SETTLING = """
+revolutions = {revolutions}
+steps_per_revolution = 180
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+dampers = true
+[shaft]
+speed = "600 rev/min"
+[[claims]]
+kind = "peak_load"
+damper = "damper_1"
+at_most = {bound}
+"""
+
+
+@pytest.mark.parametrize(
+    ("revolutions", "bound", "noted"),
+    [(2, '"5.4 kN"', True), (2, '"6 kN"', False), (2, '"5.2 kN"', False), (4, '"5.65 kN"', False)],
+)
+def test_a_verdict_that_a_longer_run_would_turn_says_so(revolutions: int, bound: str, noted: bool) -> None:
+    """From rest the carrier takes 3 revolutions to its highest load, and the weave repeats after 2."""
+    (found,) = evaluate(parse(SETTLING.format(revolutions=revolutions, bound=bound))).claims
+    assert found.note == ("not settled: about 5597 N in a run of 4 revolutions" if noted else "")
+
+
+def test_steps_that_an_accuracy_chose_say_so_too() -> None:
+    text = SETTLING.format(revolutions=2, bound='"5.4 kN"')
+    (found,) = evaluate(parse(text.replace("steps_per_revolution = 180", "accuracy = 1e-3"))).claims
+    assert found.note.startswith("not settled: about 559")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claims import called
 from .estimates import SHARES, Coarser, Estimates
+from .master.grid import crowded, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene
 from .scenes.times import ROUNDING
@@ -45,6 +47,8 @@ def chosen(
         trace, verdicts = judge(tried)
         if len(before) == len(SHARES):
             coarser = Coarser(everything, estimates.unshown(tried), tuple(before))
+            if crowded(altered(scene, steps_per_period=round(SHARES[-1] * steps))):  # such runs are hardly coarser
+                coarser = estimates.coarser(tried, uniform(tried), everything)
             estimated = estimates.of(trace, verdicts, coarser)
             errors = [
                 _share(verdict, claim.noise)
@@ -55,7 +59,7 @@ def chosen(
                 text = (
                     f"chose {steps} steps in a revolution: estimated error {error:.1g}, accuracy {wanted:g}"
                 )
-                return Choice(tried, coarser, text)
+                return Choice(tried, replace(coarser, longer=estimates.longer(tried, everything)), text)
             name, signal = called(scene.claims[number], verdicts[number]), verdicts[number].signal
             if estimated[number].error <= estimates.claims[number].left_by_model(trace, verdicts[number]):
                 raise LoomfmuError(

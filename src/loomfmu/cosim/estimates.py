@@ -8,9 +8,10 @@ velocity, would lie at the same share of a step in all of them, and equal errors
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
@@ -21,6 +22,7 @@ from .master.grid import SAME, Grid, period, uniform
 from .planning.requested import signals_of
 from .planning.windows import longest_step
 from .scenes.graph import Wire, step_order
+from .scenes.instances import altered
 from .scenes.keys import ITERATED, WINDOWS
 from .scenes.scene import Scene
 
@@ -33,6 +35,8 @@ NO_VALUE = "coarser steps give no value: take more steps"
 TOO_LONG = 2.0
 WELL_KNOWN = 180.0  # steps in a revolution, with which numbers are known to their method's `near`
 SHARES = (0.62, 0.38, 0.24)  # of the steps: powers of the golden ratio are farthest from fractions
+LONGER = 2.0  # times as long as a run is another that shows whether motions have settled
+SETTLING = 0.5  # of the distance from the bound: nearer, a longer run may fail
 
 
 class Method(NamedTuple):
@@ -63,19 +67,30 @@ MEMORY = Method((6.0, 2.0, 0.7), floor=1e-9, near=0.1)
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
 
+class Longer(NamedTuple):
+    """A run on the coarsest steps that goes on for longer, such as "4 revolutions".
+
+    `values` are the worst ones of the claims, NaN for those that depend on no motion that could settle.
+    """
+
+    length: str
+    values: Sequence[float]
+
+
 @dataclass(frozen=True)
 class Coarser:
     """The worst values of the claims in each coarser run, NaN where there is none.
 
     `wanted` are the claims, counted from 0, that were judged. Without values `why` says why. `unshown` are
     those that no number of coarser runs can judge, since all steps are too long for them, or since a loop
-    that could be iterated carries values of the step before, and why.
+    that could be iterated carries values of the step before, and why. `longer` tells of a longer run.
     """
 
     wanted: Collection[int]
     unshown: Mapping[int, str]
     values: tuple[tuple[float, ...], ...] = ()
     why: str = ""
+    longer: Longer | None = None
 
 
 class Dependence:
@@ -99,17 +114,26 @@ class Dependence:
         return [] if self._scene.coupling == ITERATED else closing
 
     @cached_property
+    def kept(self) -> list[set[str]]:
+        """What the FMUs keep that each claim depends on."""
+        return [
+            {MOTION if each is None else each.keeps for each in self._components(names)}
+            for names in self._upstream
+        ]
+
+    @cached_property
     def methods(self) -> list[Method]:
         """The method that estimates each claim's error."""
         found = []
-        for names in self._upstream:
-            components = [self._scene.instances[name].fmu.component for name in names]
-            kept = {MOTION if each is None else each.keeps for each in components}
+        for names, kept in zip(self._upstream, self.kept, strict=True):
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if self._lagged else method
-            scatter = max(each.scatter if each else 0.0 for each in components)
+            scatter = max(each.scatter if each else 0.0 for each in self._components(names))
             found.append(method._replace(scatter=scatter))
         return found
+
+    def _components(self, names: Collection[str]) -> list[Any]:
+        return [self._scene.instances[name].fmu.component for name in names]
 
     def unshown(self, scene: Scene) -> dict[int, str]:
         """The claims, counted from 0, of which coarser runs say nothing, and why."""
@@ -161,7 +185,22 @@ class Estimates:
                 values.append(self.worst(self._run(scene, coarse), wanted))
             except LoomfmuError as error:
                 return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
-        return Coarser(wanted, unshown, tuple(values))
+        return Coarser(wanted, unshown, tuple(values), longer=self.longer(scene, wanted))
+
+    def longer(self, scene: Scene, wanted: Collection[int]) -> Longer | None:
+        """Judge some claims, counted from 0, on a run that goes on for longer; None where none could settle.
+
+        A part of a revolution is chosen for what it leaves out.
+        """
+        whole = scene.periods >= 1.0
+        moving = [number for number in wanted if whole and MOTION in self._dependence.kept[number]]
+        longer = altered(scene, periods=LONGER * scene.periods)
+        grid = uniform(longer, SHARES[-1])
+        if moving and grid.steps * self._signals <= MOST_VALUES:
+            with suppress(LoomfmuError):  # a third-party FMU may refuse: nothing is known then
+                values = self.worst(self._run(longer, grid), moving)
+                return Longer(f"{longer.periods:g} {'revolutions' if scene.step is None else 's'}", values)
+        return None
 
     def near(self, scene: Scene, verdicts: Sequence[Verdict]) -> set[int]:
         """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
@@ -193,6 +232,9 @@ class Estimates:
                 self._dependence.methods[number],
                 [run[number] for run in coarser.values],
             )
+            if coarser.longer:
+                change = coarser.longer.values[number] - coarser.values[-1][number]
+                found[number] = _settled(found[number], change, coarser.longer.length)
         for number, why in coarser.unshown.items():
             found[number] = _undecided(found[number], why)
         return tuple(found)
@@ -212,6 +254,19 @@ def _estimated(
     if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
         spread = math.ceil(spread)  # a count is off by whole numbers
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
+
+
+def _settled(verdict: Verdict, change: float, length: str) -> Verdict:
+    """The verdict, with a note where the longer run comes at least half as near to the bound.
+
+    What is left to settle shrinks with each repeat, so a motion that has come less near stays within.
+    """
+    later, worse = verdict.worst + change, -verdict.sense * change
+    fails = verdict.decided and not verdict.holds
+    if fails or not worse > max(verdict.error, (1.0 - SETTLING) * verdict.distance):
+        return verdict
+    unsettled = f"not settled: about {verdict.shown(later, 4)} in a run of {length}"
+    return replace(_noted(verdict, unsettled), unsettled=unsettled)
 
 
 def _scale(scene: Scene, verdict: Verdict) -> float:

@@ -34,8 +34,8 @@ class Verdict:
     -1 if at most, and 0 if the trace does not say. `error` estimates how far `worst` is off by the numbers
     alone, in the same unit; NaN where nothing was estimated, infinite where the note says why it is
     not known. Where the bound is that near, or the signal is not known in part of the run, the claim is not
-    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions; traces
-    do not keep it.
+    `decided`, and does not hold. `spread` is the part of the error that differs between resolutions, and
+    `unsettled` says, as the note does, that a longer run comes nearer to the bound; traces keep neither.
     """
 
     claim: str
@@ -53,6 +53,7 @@ class Verdict:
     error: float = math.nan
     decided: bool = True
     spread: float = field(default=math.nan, compare=False)
+    unsettled: str = field(default="", compare=False)
 
     def __bool__(self) -> bool:
         return self.holds
@@ -145,13 +146,12 @@ class Verdict:
             return value
         return value * units.unit(self.unit).factor / units.unit(self.display_unit).factor
 
-    def shown(self, value: float) -> str:
+    def shown(self, value: float, digits: int = 7) -> str:
         """One of the verdict's values as text, with its unit."""
         if not math.isfinite(value):
             return "no value"
-        return f"{self.displayed(value) + 0.0:.7g}" + (
-            "" if self.label == "1" else f" {self.label}"
-        )  # not -0
+        number = f"{self.displayed(value) + 0.0:.{digits}g}"  # not -0
+        return number if self.label == "1" else f"{number} {self.label}"
 
     @property
     def label(self) -> str:
@@ -161,7 +161,7 @@ class Verdict:
     def as_dict(self) -> dict[str, Any]:
         """The verdict for JSON, null for what is not finite; `display` has the values in the display unit."""
         known = {field.name: getattr(self, field.name) for field in fields(self)}
-        del known["display_unit"], known["spread"]
+        del known["display_unit"], known["spread"], known["unsettled"]
         known |= {"distance": self.distance, "relative_distance": self.relative_distance}
         display = {name: self.displayed(known[name]) for name in ("bound", "worst", "distance", "error")}
         return _finite(known) | {"display": _finite(display) | {"unit": self.label}}

@@ -60,12 +60,12 @@ class Grid:
 def uniform(scene: Scene, share: float = 1.0) -> Grid:
     """Equal steps of the scene, or a share of them, divided where an input that it drives has a kink.
 
-    Where kinks divide most steps, a share of all these is taken instead: it would hardly be coarser.
+    Where kinks crowd the grid, a share of all points is taken instead: it would hardly be coarser.
     """
     equal = Grid(scene.steps, scene.step_size, scene.steps_per_period)
     if share < 1.0:
         whole = uniform(scene)
-        if whole.points is not None and whole.steps > DENSE * scene.steps:
+        if whole.points is not None and crowded(scene, whole):
             places = np.linspace(0, whole.steps, max(1, round(share * whole.steps)) + 1)
             return chosen(scene, whole.points[np.round(places).astype(int)])
         steps = max(1, round(share * scene.steps))
@@ -77,6 +77,11 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
         return equal
     points = np.concatenate([equal.span(0, equal.steps).ends, divided * equal.step_size, [0.0]])
     return chosen(scene, np.unique(points))
+
+
+def crowded(scene: Scene, whole: Grid | None = None) -> bool:
+    """Return whether kinks divide so many of the equal steps that fewer of these make a run hardly coarser."""
+    return (whole or uniform(scene)).steps > DENSE * scene.steps
 
 
 def kinks(scene: Scene) -> Floats:

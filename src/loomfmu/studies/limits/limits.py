@@ -142,7 +142,8 @@ def _limit(number: int, runs: _Runs, low: float, high: float) -> Limit:
     steepness = abs(distance(high) - distance(low)) / (high - low)
     known = math.isfinite(verdict.error) and steepness > 0.0
     error = verdict.error / steepness if known else math.inf
-    return Limit(*found[:3], begins, jumps=False, error=error, doubt="" if known else verdict.note)
+    doubt = "" if known else verdict.note
+    return Limit(*found[:3], begins, jumps=False, error=error, doubt=doubt, unsettled=verdict.unsettled)
 
 
 def _common(claims: Sequence[ClaimLimits], span: Span) -> tuple[Stretch, ...]:

@@ -21,7 +21,8 @@ class Limit:
 
     The claim changes between `low` and `high`. If it `jumps`, its distance does not pass 0 there: it counts,
     or has no value on one side. `error` is what the numerical error of the claim makes of the value:
-    infinite where that is unknown, and `doubt` says why; NaN for a jump.
+    infinite where that is unknown, and `doubt` says why; NaN for a jump. `unsettled` says what a longer run
+    gives there if it comes beyond the bound.
     """
 
     value: float
@@ -31,6 +32,7 @@ class Limit:
     jumps: bool
     error: float = math.nan
     doubt: str = ""
+    unsettled: str = ""
 
 
 @dataclass(frozen=True)
@@ -187,6 +189,7 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
         yield 'Where a claim "jumps", it counts something, or has no value on one side.'
+    yield from _unsettled(found)
     own = [
         f"{_names(names)} {one if len(names) == 1 else several}"
         for decided, one, several in ((True, "fails", "fail"), (False, "is undecided", "are undecided"))
@@ -196,6 +199,14 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield f"At the scene's own value, {span.show(span.value)}, {' and '.join(own)}."
     if not span.low <= span.value <= span.high:
         yield f"The scene's own value, {span.show(span.value)}, is outside the range that was searched."
+
+
+def _unsettled(found: Limits) -> Iterator[str]:
+    """Yield a sentence for each claim whose limits are those of a run that is too short."""
+    for each in found.claims:
+        for limit in [limit for limit in each.limits if limit.unsettled][:1]:
+            place = found.span.show(limit.value)
+            yield f"At {place} '{each.claim}' is {limit.unsettled}; its limits are of the shorter one."
 
 
 def _sentence(stretch: Stretch, span: Span) -> str:
