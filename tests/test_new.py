@@ -211,6 +211,14 @@ def test_what_is_not_declared_makes_it_slower_or_undecided_and_not_wrong(cam: Pa
         (cam / "picking_cam.py").write_text(before)
 
 
+def test_steps_longer_than_it_allows_leave_its_claims_undecided_whatever_it_keeps(cam: Path) -> None:
+    changed(cam, keeps=("    keeps: ClassVar[str] = EXTREMES\n", ""))
+    for steps, word in ((60, "undecided"), (360, "holds")):
+        (found,) = loomfmu.evaluate(cam / "cam.toml", set={"steps_per_revolution": steps}).claims
+        assert found.word == word
+        assert ("allows steps of at most 2.5 deg" in found.note) == (word == "undecided")
+
+
 def test_one_that_is_cut_off_from_the_shaft_is_named(cam: Path) -> None:
     path = cam / "cam.toml"
     cut = "".join(f'"cam.shaft_{n}" = false\n' for n in ("angle", "velocity", "acceleration"))

@@ -389,6 +389,29 @@ def test_a_bound_near_0_is_near_where_a_row_of_a_sweep_is_judged(tmp_path: Path)
     assert near.word == "undecided" and math.isnan(far.error)
 
 
+def test_a_count_is_near_every_bound() -> None:
+    """A bouncing heald had 56 blows where finer steps have 87: far from 64 on the other side."""
+    text = SETTLING.format(revolutions=2, bound='"9 kN"').replace(
+        "dampers = true", "dampers = true\nplay = true"
+    )
+    claim = '[[claims]]\nkind = "below"\nsignal = "play_1.blows"\nbound = 1000\n'
+    with prepare(parse(text + claim)) as scene:
+        load, count = scene.evaluate(errors="near").claims
+    assert math.isnan(load.error) and count.error >= 0.0
+
+
+def test_steps_too_long_decide_nothing_even_in_searches() -> None:
+    text = LOOM.format(steps=90, bound=0.1).replace("[shaft]", "reed = true\n[reed]\nservo = true\n[shaft]")
+    claim = '[[claims]]\nkind = "below"\nsignal = "reed.velocity"\nbound = 50\n'
+    with prepare(parse(text + claim)) as scene:
+        short, long = (
+            scene.evaluate({"reed.run_angle": angle}, errors="none").claims[1]
+            for angle in ("2 deg", "180 deg")
+        )
+    assert (short.word, long.word) == ("undecided", "holds")
+    assert "the run of the servo of reed takes 2 deg" in short.note
+
+
 SETTLING = """
 revolutions = {revolutions}
 steps_per_revolution = 180

@@ -1,6 +1,7 @@
 """What BeltDynamics is given, shows and keeps: its declarations."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..arrays import array
@@ -33,6 +34,7 @@ class BeltDynamicsVariables(Component):
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (HEAD.of("travel", "velocity", "acceleration"),)
     accuracy: ClassVar[str] = "deflections to 2.5e-4 to 3e-2 of the largest, by its modes and its integration"
+    longest_turn: ClassVar[float] = inf
     # works, energies and loads: 3e-4 as a rule, 3.6e-3 at most, between 35 and 17,000 steps in a revolution
     scatter: ClassVar[float] = 5e-3
 

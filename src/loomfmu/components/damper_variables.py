@@ -1,6 +1,7 @@
 """What HealdDamper is given, shows and keeps: its declarations."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..declarations import at_step_end, input_, output, parameter, state
@@ -30,6 +31,7 @@ class DamperVariables(Threads):
     )
     origin: ClassVar[str] = MIXED
     accuracy: ClassVar[str] = "sixth order in the step; second where threads turn slack, or with warp_force"
+    longest_turn: ClassVar[float] = inf
 
     thread_count: int = parameter(
         "1",

@@ -1,6 +1,7 @@
 """DrivenShaft: the main shaft with its inertia, between its motor and the mechanisms."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..arrays import array
@@ -23,6 +24,7 @@ class DrivenShaft(Component):
 
     terminals: ClassVar[tuple[Terminal, ...]] = (SHAFT.of("angle", "velocity", "acceleration"),)
     accuracy: ClassVar[str] = "fourth order in the step; second for a load that does not state its work"
+    longest_turn: ClassVar[float] = inf
 
     speed: float = parameter(
         "rad/s",

@@ -1,7 +1,7 @@
 """HealdPlay: a heald in its play between the bars of its carrier, and its blows."""
 
 from dataclasses import dataclass
-from math import fabs
+from math import fabs, inf
 from typing import ClassVar
 
 from ..declarations import at_step_end, input_, output, parameter, state
@@ -30,6 +30,7 @@ class HealdPlay(Component):
     )
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
     accuracy: ClassVar[str] = "second order in the step, by the pull of the thread between samples"
+    longest_turn: ClassVar[float] = inf
 
     play: float = parameter(
         "m",

@@ -1,6 +1,7 @@
 """WarpTension: the tension of the warp threads that a heald frame lifts."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..declarations import at_step_end, input_, output, state
@@ -34,6 +35,7 @@ class WarpTension(Threads):
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
     origin: ClassVar[str] = MIXED
     accuracy: ClassVar[str] = "sixth order in the step, by the curve of its frame between samples"
+    longest_turn: ClassVar[float] = inf
 
     inputs_at_step_end: bool = at_step_end()
     lift: float = input_(

@@ -1,6 +1,7 @@
 """What WeftTension is given, shows and keeps: its declarations."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 from ..arrays import array
@@ -34,6 +35,7 @@ class WeftVariables(ShaftDriven):
     accuracy: ClassVar[str] = (
         "exact at samples while the brake yields, fourth order in the step while it holds"
     )
+    longest_turn: ClassVar[float] = inf
 
     linear_density: float = parameter(
         "kg/m",

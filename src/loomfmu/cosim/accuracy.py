@@ -47,7 +47,9 @@ def chosen(
         trace, verdicts = judge(tried)
         if len(before) == len(SHARES):
             coarser = Coarser(everything, estimates.unshown(tried), tuple(before))
-            if crowded(altered(scene, steps_per_period=round(SHARES[-1] * steps))):  # such runs are hardly coarser
+            if crowded(
+                altered(scene, steps_per_period=round(SHARES[-1] * steps))
+            ):  # such runs are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), everything)
             estimated = estimates.of(trace, verdicts, coarser)
             errors = [

@@ -62,7 +62,7 @@ PRESENT = Method((3.0, 0.5, 0.06), floor=1e-12, near=0.01)
 HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
 # 1.6, 6 and 16 times the error.
-MEMORY = Method((6.0, 2.0, 0.7), floor=1e-9, near=0.1)
+MEMORY = Method((6.0, 2.0, 0.7), floor=1e-8, near=0.1)
 # A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
@@ -120,6 +120,16 @@ class Dependence:
             {MOTION if each is None else each.keeps for each in self._components(names)}
             for names in self._upstream
         ]
+
+    @cached_property
+    def foreign(self) -> dict[int, str]:
+        """The claims, counted from 0, that depend on a third-party FMU, and its instance."""
+        instances = self._scene.instances
+        named = (
+            next((name for name in sorted(names) if instances[name].fmu.component is None), "")
+            for names in self._upstream
+        )
+        return {number: name for number, name in enumerate(named) if name}
 
     @cached_property
     def methods(self) -> list[Method]:
@@ -202,13 +212,17 @@ class Estimates:
                 return Longer(f"{longer.periods:g} {'revolutions' if scene.step is None else 's'}", values)
         return None
 
-    def near(self, scene: Scene, verdicts: Sequence[Verdict]) -> set[int]:
-        """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter."""
+    def near(self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict]) -> set[int]:
+        """The verdicts, counted from 0, whose numbers are so near their bounds that an error may matter.
+
+        A count is near any bound: one event more may bring others with it.
+        """
         coarse = max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
         return {
             number
             for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))
-            if not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(scene, verdict)
+            if _counts(trace, verdict)
+            or not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(scene, verdict)
         }
 
     def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
@@ -235,6 +249,11 @@ class Estimates:
             if coarser.longer:
                 change = coarser.longer.values[number] - coarser.values[-1][number]
                 found[number] = _settled(found[number], change, coarser.longer.length)
+        for number, name in self._dependence.foreign.items():
+            if found[number].decided and not coarser.why:
+                found[number] = _noted(
+                    found[number], f"{name} may do more within a step than it shows at its ends"
+                )
         for number, why in coarser.unshown.items():
             found[number] = _undecided(found[number], why)
         return tuple(found)
@@ -251,9 +270,14 @@ def _estimated(
             return verdict
         return _undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
-    if verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu":
+    if _counts(trace, verdict):
         spread = math.ceil(spread)  # a count is off by whole numbers
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
+
+
+def _counts(trace: Signals, verdict: Verdict) -> bool:
+    """Return whether a verdict's number is a whole one."""
+    return verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu"
 
 
 def _settled(verdict: Verdict, change: float, length: str) -> Verdict:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -93,10 +93,11 @@ class Pattern:
         grid = self.grid(scene, self.judged)
         found = self._in_memory(scene, self.judged, grid)
         verdicts = self._judged(found.recording)
-        if errors != "none":
-            wanted = self._estimates.near(scene, verdicts) if errors == "near" else range(len(verdicts))
-            coarser = known or self._estimates.coarser(scene, grid, wanted)
-            verdicts = self._estimates.of(found.recording, verdicts, coarser)
+        wanted: Collection[int] = range(len(verdicts)) if errors == "all" else ()
+        if errors == "near":
+            wanted = self._estimates.near(scene, found.recording, verdicts)
+        coarser = known or self._estimates.coarser(scene, grid, wanted)
+        verdicts = self._estimates.of(found.recording, verdicts, coarser)
         count = len(self.claims)
         return Evaluation(
             scene,
@@ -216,8 +217,8 @@ class Prepared:
         """Run what the claims need with these values, and judge them; as `loomfmu.evaluate`.
 
         Estimating errors takes three more runs, on 62, 38 and 24 % of the steps: "near" estimates only
-        those of verdicts within 1 % of their bounds, or 10 % where a mechanism has a memory; "none", for
-        searches, does without.
+        those of counts and of verdicts within 1 % of their bounds, or 10 % where a mechanism has a memory;
+        "none", for searches, does without.
         """
         if errors not in get_args(Errors):
             raise LoomfmuError(

@@ -55,25 +55,34 @@ def test_mechanisms_that_load_the_shaft_twice_or_not_at_all_are_named(wires, not
     [
         (
             '[heald_9]\npattern = "1100"\n',
-            "[heald_9] adds a frame to heald_1 and heald_2 of the weave; set one of these, or write"
-            ' component = "HealdFrame" if it is meant',
+            "[heald_9] adds a heald to the loom, beside heald_1 and heald_2;"
+            ' write component = "HealdFrame" if it is meant',
         ),
         (
-            '[heald_3]\nstroke = "60 mm"\n',
-            "[heald_3] adds a frame to heald_1 and heald_2 of the weave; set one of these, or write"
-            ' component = "HealdFrame" if it is meant',
+            '[damper_3]\ncarrier_mass = "30 kg"\n',
+            "[damper_3] adds a damper to the loom, which has no heald_3;"
+            ' write component = "HealdDamper" if it is meant',
+        ),
+        (
+            '[shaft_2]\nspeed = "600 rpm"\n',
+            '[shaft_2] adds a shaft to the loom, beside shaft; write component = "MainShaft" if it is meant',
+        ),
+        (
+            "[weft_2]\n",
+            "[weft_2] adds a weft to the loom, beside weft; set loom.both_rapiers = true for the taker's, or"
+            ' write component = "WeftInsertion" if it is meant',
         ),
         ('[heald_3]\ncomponent = "HealdFrame"\n', ""),
         ('[heald_2]\nstroke = "60 mm"\n[damper_1]\n[warp_1]\n', ""),
         (
             "[belt_2]\n",
-            "[belt_2] adds another belt to weft, since there is no weft_2; set loom.both_rapiers = true for"
-            ' the belt of the taker, or write component = "BeltMonitor" if it is meant',
+            "[belt_2] adds a belt to the loom, beside belt; set loom.both_rapiers = true for the taker's, or"
+            ' write component = "BeltMonitor" if it is meant',
         ),
         ("[weft_2]\n[belt_2]\n", ""),
     ],
 )
-def test_a_frame_or_a_belt_that_the_loom_does_not_have_is_named(table: str, note: str) -> None:
+def test_a_numbered_table_that_fits_nothing_of_the_loom_is_named(table: str, note: str) -> None:
     loom = '[loom]\nmachine = "WL680-3600"\nweave = "10/01"\n'
     assert scenes.parse(loom + table).notes == ((note,) if note else ())
 

@@ -80,7 +80,7 @@ def uniform(scene: Scene, share: float = 1.0) -> Grid:
 
 
 def crowded(scene: Scene, whole: Grid | None = None) -> bool:
-    """Return whether kinks divide so many of the equal steps that fewer of these make a run hardly coarser."""
+    """Return whether kinks divide so many equal steps that fewer of these make a run hardly coarser."""
     return (whole or uniform(scene)).steps > DENSE * scene.steps
 
 

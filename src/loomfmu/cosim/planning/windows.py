@@ -149,8 +149,7 @@ def longest_step(scene: Scene, name: str) -> tuple[float, str]:
         component.longest_turn,
         f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
     )
-    # one that keeps a motion looks at every step
-    turn, why = by_event if component.keeps == MOTION else min(by_event, declared)
+    turn, why = min(by_event, declared)
     return min(component.longest_step(instance.effect), (turn * period(scene) / (2.0 * math.pi), why))
 
 

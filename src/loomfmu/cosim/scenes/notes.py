@@ -120,22 +120,23 @@ def _unlike(one: Instance, other: Instance) -> list[str]:
 
 
 def added(tables: dict[str, Any], directory: Path) -> Iterable[str]:
-    """Warnings about numbered tables that add a frame or a belt to a standard loom, perhaps by a slip."""
+    """Warnings about numbered tables that add a mechanism to a standard loom, perhaps by a slip."""
     loom = standard_loom.loom(tables["loom"], directory) if "loom" in tables else {}
-    frames = [name for name in loom if standard_loom.stem(name) == "heald"]
     for name in tables if loom else ():
         stem = standard_loom.stem(name)
-        if name in loom or stem == name or {"component", "fmu"} & tables[name].keys():
+        carrier = standard_loom.FITTED_TO.get(stem, stem) + name.removeprefix(stem)
+        known = stem in standard_loom.COMPONENT_OF and stem != name and name not in loom
+        fitted = carrier != name and carrier in {*loom, *tables}
+        if not known or fitted or {"component", "fmu"} & tables[name].keys():
             continue
-        rapier = name.replace(stem, "weft")
-        meant = f'or write component = "{standard_loom.COMPONENT_OF.get(stem)}" if it is meant'
-        if stem == "heald" and frames:
-            yield f"[{name}] adds a frame to {listed(frames)} of the weave; set one of these, {meant}"
-        elif stem in ("belt", "belt_motion") and rapier not in {*loom, *tables}:
-            yield (
-                f"[{name}] adds another belt to weft, since there is no {rapier};"
-                f" set loom.both_rapiers = true for the belt of the taker, {meant}"
-            )
+        there = standard_loom.members(stem, loom) or [stem] * (stem in loom)
+        if carrier == name and not there:  # it is the only one
+            continue
+        beside = f"beside {listed(there)}" if there else f"which has no {carrier}"
+        rapier = stem in ("weft", "belt", "belt_motion")
+        both = "set loom.both_rapiers = true for the taker's, or " if rapier else ""
+        meant = f'write component = "{standard_loom.COMPONENT_OF[stem]}" if it is meant'
+        yield f"[{name}] adds a {stem.replace('_', ' ')} to the loom, {beside}; {both}{meant}"
 
 
 def still(

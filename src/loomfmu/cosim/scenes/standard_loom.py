@@ -51,6 +51,13 @@ FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one f
 LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock"}  # one for the loom
 RAPIER_FITTINGS = {"belt_motion": "belt_motion"}  # one for each rapier
 FITTINGS = (*FRAME_FITTINGS, *LOOM_FITTINGS, *RAPIER_FITTINGS)
+# what a mechanism is fitted to, by the number that both have
+FITTED_TO = {
+    **dict.fromkeys(FRAME_FITTINGS.values(), "heald"),
+    "belt": "weft",
+    "belt_motion": "weft",
+    "weft": "belt",
+}
 LOOM_KEYS = ("machine", "head", "taker_head", "both_rapiers", "weave", *FITTINGS)
 
 

@@ -41,13 +41,15 @@ def _remark(limits: str) -> str:
 def _effort(runs: int, found: Sequence[Limits]) -> str:
     """Return how many runs it took, how far the limits may be off, and what may be missed."""
     span, resolution = found[0].span, found[0].span.show(found[0].resolution)
-    limits = [limit for row in found for each in row.claims for limit in each.limits if not limit.jumps]
-    off = max(limits, key=lambda limit: limit.error, default=None)
+    every = [limit for row in found for each in row.claims for limit in each.limits]
+    off = max((each for each in every if not each.jumps), key=lambda limit: limit.error, default=None)
     parts = [f"{runs} runs"]
     if off and math.isfinite(off.error):
         parts.append(f"numerical error of the limits up to {off.error / span.factor:.1g} {span.unit}")
     elif off:
         parts.append(f"numerical error of the limits unknown ({off.doubt or 'not estimated'})")
+    if any(each.jumps for each in every):
+        parts.append("that of jumps not estimated" if off else "numerical error of the jumps not estimated")
     return "; ".join((*parts, f"intervals narrower than {resolution} may be missed"))
 
 

@@ -188,7 +188,7 @@ def conclusion(found: Limits) -> Iterator[str]:
         why = f": {_names(never)} hold{'s' * (len(never) == 1)} nowhere" if never else ""
         yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
-        yield 'Where a claim "jumps", it counts something, or has no value on one side.'
+        yield 'Where a claim "jumps", it counts something, or is undecided or without a value on one side.'
     yield from _unsettled(found)
     own = [
         f"{_names(names)} {one if len(names) == 1 else several}"
