@@ -211,6 +211,44 @@ def test_steps_that_pass_an_event_by_leave_a_claim_undecided(tables: str, signal
     assert "takes 2 deg; set steps_per_revolution = 360 or more" in coarse.note
 
 
+SECONDS = """
+duration = "0.1 s"
+step = "{step} ms"
+{instances}
+[[claims]]
+kind = "{kind}"
+{claim}
+"""
+
+
+@pytest.mark.parametrize(
+    ("instances", "kind", "claim", "steps", "why"),
+    [
+        (
+            '[shaft]\nspeed = "600 rpm"\n[reed]\nservo = true\nrun_angle = "3 deg"',
+            "below",
+            'signal = "reed.velocity"\nbound = 1',
+            (2.0, 0.1),
+            "the run of the servo of reed takes 3 deg; set step = 0.00042 s or less",
+        ),
+        (
+            '[weft]\nspeed = "600 rpm"\n[belt]\nspeed = "600 rpm"',
+            "lowest_margin",
+            "bound = 0.5",
+            (20.0, 0.1),
+            "a sample of belt is needed every 18 deg; set step = 0.005 s or less",
+        ),
+    ],
+)
+def test_steps_in_seconds_are_measured_by_the_speed_of_the_shaft(
+    instances: str, kind: str, claim: str, steps: tuple[float, float], why: str
+) -> None:
+    texts = (SECONDS.format(step=each, instances=instances, kind=kind, claim=claim) for each in steps)
+    coarse, fine = (evaluate(parse(text)).claims[0] for text in texts)
+    assert (coarse.word, fine.word) == ("undecided", "FAILS")
+    assert coarse.note.endswith(why)
+
+
 def test_numbers_of_a_belt_in_motion_are_no_better_known_than_they_scatter() -> None:
     """Energies change by up to 3.6e-3 from step size to step size: all runs agreed on a wrong one."""
     text = LOOM.format(steps=93, bound=0.1).replace("[shaft]", "belt_motion = true\n[shaft]")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claims import called
-from .estimates import SHARES, Coarser, Estimates
+from .estimates import SHARES, Coarser, Estimates, worst_of
 from .master.grid import crowded, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene
@@ -70,7 +70,7 @@ def chosen(
                     " steps_per_revolution"
                 )
             reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
-        before = [tuple(verdict.worst for verdict in verdicts), *before[: len(SHARES) - 1]]
+        before = [tuple(worst_of(each, trace) for each in verdicts), *before[: len(SHARES) - 1]]
     raise LoomfmuError(
         f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
     )

@@ -18,7 +18,8 @@ from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
-from .master.grid import SAME, Grid, period, uniform
+from .importing.process import AVAILABLE
+from .master.grid import SAME, Grid, passed_by, period, uniform
 from .planning.requested import signals_of
 from .planning.windows import longest_step
 from .scenes.graph import Wire, step_order
@@ -148,6 +149,7 @@ class Dependence:
     def unshown(self, scene: Scene) -> dict[int, str]:
         """The claims, counted from 0, of which coarser runs say nothing, and why."""
         found = dict[int, str]()
+        passed = passed_by(scene)
         shown = {name: longest_step(scene, name) for name in scene.instances}
         ours = all(instance.fmu.trusted for instance in scene.instances.values())
         avoidable = self._lagged if ours else []
@@ -157,6 +159,8 @@ class Dependence:
                 found[number] = f"{why}, so that no steps are known to show its outputs"
             elif scene.step_size > TOO_LONG * longest:
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
+            elif row := next((passed[name] for name in names if name in passed), ""):
+                found[number] = row
             elif wire := next((wire for wire in avoidable if wire.sink[0] in names), None):
                 found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
         return found
@@ -182,7 +186,7 @@ class Estimates:
             return Coarser(wanted, unshown)
         for name, instance in scene.instances.items():
             # one that crashes when it is freed must not take the run with it
-            if not (instance.fmu.trusted or scene.isolates(name)):
+            if AVAILABLE and not (instance.fmu.trusted or scene.isolates(name)):
                 return Coarser(wanted, unshown, why=f"{name} runs in this process; set isolated = true")
         values = []
         for share in SHARES:
@@ -217,18 +221,17 @@ class Estimates:
 
         A count is near any bound: one event more may bring others with it.
         """
-        coarse = max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
-        return {
-            number
-            for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True))
-            if _counts(trace, verdict)
-            or not abs(verdict.worst - verdict.bound) > coarse * method.near * _scale(scene, verdict)
-        }
+        coarse, found = coarseness(scene), set[int]()
+        for number, (verdict, method) in enumerate(zip(verdicts, self._dependence.methods, strict=True)):
+            near = coarse * method.near * _scale(scene, verdict)
+            if counts(trace, verdict) or not abs(verdict.worst - verdict.bound) > near:
+                found.add(number)
+        return found
 
     def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
         """The worst value of each claim on a run, NaN for those that are not wanted."""
         return tuple(
-            claim.judge(trace).worst if number in wanted else math.nan
+            worst_of(claim.judge(trace), trace) if number in wanted else math.nan
             for number, claim in enumerate(self.claims)
         )
 
@@ -237,7 +240,7 @@ class Estimates:
         found = list(verdicts)
         for number in coarser.wanted:
             if coarser.why:
-                found[number] = _noted(found[number], f"numerical error not estimated: {coarser.why}")
+                found[number] = _unknown(found[number], f"numerical error not estimated: {coarser.why}")
                 continue
             found[number] = _estimated(
                 found[number],
@@ -246,7 +249,7 @@ class Estimates:
                 self._dependence.methods[number],
                 [run[number] for run in coarser.values],
             )
-            if coarser.longer:
+            if coarser.longer and number not in coarser.unshown:
                 change = coarser.longer.values[number] - coarser.values[-1][number]
                 found[number] = _settled(found[number], change, coarser.longer.length)
         for number, name in self._dependence.foreign.items():
@@ -259,10 +262,23 @@ class Estimates:
         return tuple(found)
 
 
+def coarseness(scene: Scene) -> float:
+    """How many times larger errors may be than with steps with which numbers are well known."""
+    return max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
+
+
+def worst_of(verdict: Verdict, trace: Signals) -> float:
+    """The worst value of a signal, or the one that its component holds, which may lie between samples."""
+    role = "lowest" if verdict.sense > 0 else "highest"
+    held = verdict.signal in trace and trace.beside(verdict.signal, role)
+    between = verdict.error if held and math.isfinite(verdict.error) else 0.0
+    return verdict.worst - verdict.sense * between
+
+
 def _estimated(
     verdict: Verdict, claim: Claim, trace: Signals, method: Method, coarser: Sequence[float]
 ) -> Verdict:
-    worst = verdict.worst
+    worst = worst_of(verdict, trace)
     if not math.isfinite(worst):
         return verdict
     if not all(map(math.isfinite, coarser)):
@@ -270,12 +286,12 @@ def _estimated(
             return verdict
         return _undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
-    if _counts(trace, verdict):
+    if counts(trace, verdict):
         spread = math.ceil(spread)  # a count is off by whole numbers
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 
-def _counts(trace: Signals, verdict: Verdict) -> bool:
+def counts(trace: Signals, verdict: Verdict) -> bool:
     """Return whether a verdict's number is a whole one."""
     return verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu"
 
@@ -308,6 +324,11 @@ def _noted(verdict: Verdict, note: str) -> Verdict:
 def _undecided(verdict: Verdict, why: str) -> Verdict:
     noted = _noted(verdict, why)
     return replace(noted, error=math.inf, spread=math.inf, decided=False, holds=False)
+
+
+def _unknown(verdict: Verdict, why: str) -> Verdict:
+    """A verdict whose error is not known: what holds is undecided."""
+    return _undecided(verdict, why) if verdict.holds else _noted(verdict, why)
 
 
 def _enough(scene: Scene, longest: float) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..cosim.claims.claim import Claim
 from ..cosim.claims.judging import FIELDS, SOURCE, Form, Table, beside, number_of
-from ..cosim.estimates import Dependence, Method
+from ..cosim.estimates import Dependence, Method, coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, claims_of
 from ..cosim.scenes.scene import Scene
 from ..fmi.native.libraries import module_of
@@ -32,6 +32,7 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     rows = [
         _claim(claim, method, verdict, trace, table)
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
+        | {"coarseness": coarseness(scene), "counts": counts(trace, verdict)}
         for number, (claim, method, verdict) in enumerate(asked)
     ]
     signals = [
@@ -51,6 +52,7 @@ def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: 
     for name in (SHAFT_ANGLE, *question.signals, *(form.signal for form in question.forms)):
         number_of(read, trace, name)
     parameters = [each for each in question.numbers if isinstance(each, str)]
+    remark = verdict.note.removeprefix(claim.judge(trace).note).removeprefix("; ")
     return {
         "question": question.written(trace, lambda signal: number_of(table, trace, signal)),
         "forms": [_form(form, verdict, trace) for form in question.forms],
@@ -65,7 +67,8 @@ def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: 
             "worst": verdict.worst,
             "estimated": not math.isnan(verdict.spread),
             "spread": 0.0 if math.isnan(verdict.spread) else verdict.spread,
-            "remark": verdict.note.removeprefix(claim.judge(trace).note).removeprefix("; "),
+            "remark": remark.removesuffix(verdict.unsettled).removesuffix("; "),
+            "unsettled": verdict.unsettled,
         },
     }
 

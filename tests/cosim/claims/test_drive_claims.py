@@ -52,6 +52,18 @@ def test_fluctuation_is_judged_in_each_revolution_after_those_that_are_skipped()
     assert found.claims[1].holds == (found.claims[1].worst <= 0.05)
 
 
+def test_an_unfinished_revolution_counts_by_what_the_run_shows_of_it():
+    """A driven shaft turns by less than the nominal revolutions: a load in the last one was never judged."""
+    text = SCENE.replace("start_at_speed = false", "").replace("skip = 1", "")
+    load = '[inputs]\n"shaft.torque_32" = [[0, 0], [1.3, 0], [1.4, 800], [1.5, 0]]\n'
+    loaded, whole = (
+        loomfmu.evaluate(scenes.parse(text + load, overrides={"revolutions": each})).claims[1]
+        for each in (1.9, 2.5)
+    )
+    assert (loaded.word, whole.word) == ("FAILS", "FAILS")
+    assert loaded.revolution == 2 and loaded.worst == pytest.approx(whole.worst, rel=0.05)
+
+
 def test_a_run_without_a_whole_revolution_is_not_judged():
     claim = claims(revolutions=0.5)[1]
     assert not claim.holds

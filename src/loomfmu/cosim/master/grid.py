@@ -1,5 +1,6 @@
 """The communication points of a run: equal steps, or points that were chosen."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,10 +90,31 @@ def kinks(scene: Scene) -> Floats:
 
     There are none where an FMU takes equal steps alone.
     """
-    if any(instance.fmu.fixed_step for instance in scene.instances.values()):
+    if _needs_equal_steps(scene):
         return np.empty(0)
-    turns = sorted({turn for drive in scene.drives for turn in drive.periods})
-    times = np.array(turns) * period(scene)
+    return _rows(scene, (turn for drive in scene.drives for turn in drive.periods))
+
+
+def passed_by(scene: Scene) -> dict[str, str]:
+    """The instances with inputs whose points lie between steps that must be equal, and what to do."""
+    equal = _needs_equal_steps(scene)
+    found = dict[str, str]()
+    for drive in scene.drives if equal else ():
+        places = _rows(scene, drive.periods) / scene.step_size
+        if np.any(np.abs(places - np.round(places)) > SAME):
+            rows = f"rows of inputs.{drive.instance}.{drive.variable} lie between the steps"
+            found[drive.instance] = f"{rows}, which {equal} needs to be equal; take steps that meet all rows"
+    return found
+
+
+def _needs_equal_steps(scene: Scene) -> str:
+    """The first instance whose FMU takes equal steps alone; empty where none does."""
+    return next((name for name, each in scene.instances.items() if each.fmu.fixed_step), "")
+
+
+def _rows(scene: Scene, turns: Iterable[float]) -> Floats:
+    """Times within the run of points of inputs [s], in order."""
+    times = np.array(sorted(set(turns))) * period(scene)
     return times[(times > 0.0) & (times < scene.steps * scene.step_size)]
 
 

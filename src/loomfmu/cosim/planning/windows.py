@@ -23,7 +23,7 @@ from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
-from ..scenes.standard_loom import turns_others
+from ..scenes.standard_loom import shaft_inputs, turns_others
 from .plan import InMemory
 from .pruning import prune
 from .requested import claims_of, shaft_angle, signals_of, with_rates
@@ -39,6 +39,7 @@ DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may b
 RIPPLE = 1e-6  # of a signal's range: what samples about a minimum that is one differ by
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
 EVENT = 4.0  # steps that show an event of a mechanism
+SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
 NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
 
 
@@ -149,8 +150,31 @@ def longest_step(scene: Scene, name: str) -> tuple[float, str]:
         component.longest_turn,
         f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
     )
-    turn, why = min(by_event, declared)
-    return min(component.longest_step(instance.effect), (turn * period(scene) / (2.0 * math.pi), why))
+    turn, why = min(by_event, declared, _alone(scene, name))
+    return min(component.longest_step(instance.effect), _taking(turn, why, _speed(scene, name)))
+
+
+def _alone(scene: Scene, name: str) -> tuple[float, str]:
+    """The turn of a shaft that is an instance's own: no signal shows how far it turns in a step."""
+    instance = scene.instances[name]
+    alone = "shaft" not in scene.instances and shaft_inputs(instance.fmu.component, instance.fmu.ports)
+    return math.radians(
+        SHOWN if alone else math.inf
+    ), f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+
+
+def _taking(turn: float, why: str, speed: float) -> tuple[float, str]:
+    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
+    if math.isinf(turn) or not speed:
+        return math.inf, why
+    return turn / speed, why if math.isfinite(speed) else f"{why}, and the speed of the shaft is not known"
+
+
+def _speed(scene: Scene, name: str) -> float:
+    """The mean speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
+    shaft = scene.instances.get("shaft", scene.instances[name])
+    port = shaft.fmu.ports.get("speed")
+    return abs(float(shaft.values.get("speed", port.start or 0.0))) if port else math.inf
 
 
 def _check(scene: Scene) -> None:

@@ -3,6 +3,7 @@
  * error the page knows at the scene's own values alone what other steps would change: elsewhere it takes more for it. */
 loomfmu.judge = ({ fields, signals }, length, wasm) => {
   const FAR_ABOVE = 10, NEAR = 1e-4; // times the error at the scene's own values; of the bound
+  const NEAR_COUNT = 0.5; // of the bound: one event more may bring others with it
   const NOT_HERE = "loomfmu run judges it";
   const reals = (place, count) => new Float64Array(wasm.memory.buffer, place, count);
   const room = count => wasm.allocate(8 * count);
@@ -45,18 +46,26 @@ loomfmu.judge = ({ fields, signals }, length, wasm) => {
   /* Take a numerical error into a verdict: `spread` is what other steps change, and bounds are no nearer than `near`. */
   function settle(place, { noise, share, scatter }, unsettled, spread, near) {
     reals(verdict, fields.length).set(fields.map(field => unsettled[field]));
-    wasm.settle(judged, place, verdict, spread, Math.max(noise, near * Math.abs(unsettled.bound)), share, scatter);
+    wasm.settle(judged, place, verdict, spread, Math.max(noise, near), share, scatter);
     return found();
+  }
+
+  /* Take in what the error may be at other values than the scene's own. */
+  function elsewhere(place, claim, first, spread) {
+    const { coarseness, counts, unshown } = claim, near = Math.max(NEAR * coarseness, counts ? NEAR_COUNT : 0);
+    const far = unshown ? Infinity : spread && FAR_ABOVE * coarseness * spread;
+    return settle(place, claim, first, far, near * Math.abs(first.bound));
   }
 
   function judge(run, claim, own) {
     const place = asked(run, claim), { native, unshown } = claim, spread = native.spread ?? Infinity;
     wasm.judge(judged, place, claim.said ??= text(claim.words), verdict);
-    const first = found(), notes = [read(wasm.run_note(judged)), native.remark], known = Number.isFinite(first.worst);
+    const first = found(), known = Number.isFinite(first.worst);
+    const notes = [read(wasm.run_note(judged)), native.remark, own && native.unsettled];
     const settled = known && native.estimated ? settle(place, claim, first, spread, 0) : first;
     let far = settled;
     if (known && settled.decided && !own) {
-      far = settle(place, claim, first, unshown ? Infinity : spread && FAR_ABOVE * spread, NEAR);
+      far = elsewhere(place, claim, first, spread);
       if (!far.decided) notes.push(unshown || `it is nearer to its bound than the page can tell; ${NOT_HERE}`);
     }
     wasm.release(place);

@@ -16,14 +16,17 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
     answer->worst = answer->time = NAN;
     answer->unseen = ""; /* each revolution is judged by itself, as far as there is one */
     note_unknown(run, answer, curve(run, velocity));
-    for (ptrdiff_t place = 0; place + 1 < times.count; place++) {
-        struct stretch turn = {times.list[place], times.list[place + 1], true};
+    const ptrdiff_t last = run->samples - 1;
+    for (ptrdiff_t place = 0; place < times.count && times.count > 1; place++) {
+        const bool whole = place + 1 < times.count; /* of an unfinished one, what the run shows counts */
+        struct stretch turn = {times.list[place], whole ? times.list[place + 1] : end_of(run), true};
         struct stretches within = {1, 1, &turn};
-        if ((double)place < skip)
+        double end = sample(shaft_of(run), 1, last), turned = whole ? TURN : fabs(end - value_of(shaft_of(run), turn.start));
+        if ((double)place < skip || (!whole && (isnan(answer->worst) || turned < STANDS * TURN)))
             continue;
         struct extreme low = noted_extreme(run, answer, velocity, 1.0, &within);
         struct extreme high = noted_extreme(run, answer, velocity, -1.0, &within);
-        double fluctuation = (high.value - low.value) * (turn.end - turn.start) / TURN;
+        double fluctuation = (high.value - low.value) * (turn.end - turn.start) / turned;
         if (!(fluctuation <= answer->worst)) {
             answer->worst = fluctuation;
             answer->time = low.time;
