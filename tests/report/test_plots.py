@@ -2,6 +2,8 @@
 
 import hashlib
 import os
+import subprocess
+import sys
 import tracemalloc
 from base64 import b64decode
 from collections.abc import Callable
@@ -224,6 +226,14 @@ def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: 
             assert main([command, str(copied), *signals, "--output", str(target)]) == 0
         pictures.append(target.read_bytes())
     assert pictures[0] == pictures[1]
+
+
+def test_a_backend_of_another_environment_is_not_asked_for(copied: Path) -> None:
+    """As a notebook of another environment sets it for every shell command."""
+    command = [sys.executable, "-m", "loomfmu.cli", "plot", str(copied), "belt.margin", "--output", "a.png"]
+    environment = os.environ | {"MPLBACKEND": "module://not_there.backend_inline"}
+    done = subprocess.run(command, cwd=copied.parent, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "written: a.png\n"), done.stderr
 
 
 def test_a_pattern_draws_all_signals_that_it_names(copied: Path) -> None:

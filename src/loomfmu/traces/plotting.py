@@ -1,5 +1,6 @@
 """Signals drawn by matplotlib over shaft angle or time, in the units that people read."""
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -41,6 +42,12 @@ def check() -> None:
         import matplotlib.figure  # noqa: F401
     except UnicodeDecodeError:
         raise LoomfmuError("a matplotlibrc that matplotlib reads is not text in UTF-8; delete it") from None
+    except (
+        ValueError
+    ):  # MPLBACKEND is that of another environment, as in a notebook's shell; pictures need none
+        if os.environ.pop("MPLBACKEND", None) is None:
+            raise
+        check()
 
 
 @contextmanager

@@ -85,7 +85,7 @@ def found_of(runs: Runs, best: Sequence[Design], own: Sequence[Verdict], files: 
         len(designs),
         runs.ran,
         sum(each.allowed for each in designs),
-        sum(bool(each.error) for each in designs),
+        tuple(each.error for each in designs if each.error),
         _nowhere(designs, names, own),
         _constant(study, designs),
         files.directory,

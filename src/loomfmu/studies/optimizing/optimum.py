@@ -47,9 +47,9 @@ class Optimum:
     """The best designs of a study: one, or several goals' front; true if there is one. A search, not a proof.
 
     `front` has them in the order of the first goal. `runs` counts the designs that were tried, `ran` those
-    that were run now and not before, `allowed` those that meet all claims, `failed` those that could not be
-    run; `nowhere` says which claims no design meets, or from which none keeps the safety distance; `constant`
-    are goals that are the same in all designs. Values are in SI.
+    that were run now and not before, `allowed` those that meet all claims; `failed` says why others could not
+    be run; `nowhere` says which claims no design meets, or from which none keeps the safety distance;
+    `constant` are goals that are the same in all designs. Values are in SI.
     """
 
     study: Study = field(repr=False)
@@ -57,7 +57,7 @@ class Optimum:
     runs: int
     ran: int
     allowed: int
-    failed: int
+    failed: tuple[str, ...]
     nowhere: tuple[str, ...]
     constant: tuple[str, ...]
     path: Path
@@ -250,7 +250,8 @@ def conclusion(found: Optimum) -> Iterator[str]:
             yield f"It is limited by {' and '.join(map(_in_words, best.limits))}."
             yield from _gains(found, best)
         elif not found.constant and found.study.continuous:
-            yield "No claim and no end of a range limits it."
+            beside = "; designs that cannot be run may" if found.failed else ""
+            yield f"No claim and no end of a range limits it{beside}."
     else:
         count = len(found.front)
         yield (
@@ -272,7 +273,9 @@ def conclusion(found: Optimum) -> Iterator[str]:
             f' safety = "{100.0 * share:.1g} %" in the study keeps off it.'
         )
     if found.failed:
-        yield f"{found.failed} of {found.runs} designs could not be run."
+        reason, others = found.failed[0], len(set(found.failed)) - 1
+        more = f", and {others} other reason{'s' * (others > 1)}" if others else ""
+        yield f"{len(found.failed)} of {found.runs} designs could not be run ({reason}{more})."
 
 
 def _in_words(limit: Limit, of: str = "the end of the range of ") -> str:

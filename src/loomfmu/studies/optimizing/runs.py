@@ -65,7 +65,7 @@ class Runs:
         self.designs: dict[tuple[Value, ...], Design] = {}  # in the order in which they were first wanted
         self.ran = 0  # now, and not in an earlier search
         self._job, self._pool, self.limits, self._advance = job, pool, limits, advance
-        self._results = _read(path)
+        self._path, self._results = path, _read(path)
         try:
             self._file: BufferedRandom = path.open("r+b" if path.exists() else "w+b")
         except OSError as error:
@@ -97,10 +97,13 @@ class Runs:
             return [self.study.fixed | self.study.setting(left[row]) for row in rows]
 
         def keep(rows: range, batch: Batch) -> None:
-            for row, result in zip(rows, batch.results, strict=True):
-                self._results[left[row]] = result
-                self._file.write(json.dumps([left[row], result]).encode() + b"\n")
-            self._file.flush()
+            try:
+                for row, result in zip(rows, batch.results, strict=True):
+                    self._results[left[row]] = result
+                    self._file.write(json.dumps([left[row], result]).encode() + b"\n")
+                self._file.flush()
+            except OSError as error:
+                raise cannot_write(self._path, error) from None
             self.ran += len(rows)
 
         run_batches(self.study.scene, settings, self._job, [range(len(left))], self._pool, keep)

@@ -71,6 +71,11 @@ def check_effects(runs: Runs, points: Sequence[Point], path: Path) -> None:
                 left.pop(place, None)
         if not left:
             return
+    tried = list(runs.designs.values())
+    if all(each.error for each in tried):
+        raise LoomfmuError(
+            f"{path}: none of {len(tried)} designs that were tried can be run ({tried[0].error})"
+        )
     for each in left.values():
         raise LoomfmuError(
             f"{path}: {'ranges' if each.range else 'choices'}.{each.key} changes neither a goal nor a claim"
