@@ -81,9 +81,9 @@ class SceneFile(pytest.File):
     @cached_property
     def scene(self) -> "Scene":
         """The scene, read and checked. Raises LoomfmuError."""
-        from .cosim.reading import checked
+        from .cosim.reading import checked, protected
 
-        return checked(_relative(self.path), None, "native")
+        return protected(checked(_relative(self.path), None, "native"))
 
     @cached_property
     def outcome(self) -> "Evaluation | Result | Exception":

@@ -217,6 +217,8 @@ class Component:
     # how much its outputs differ from step size to step size, however short the steps: a share of how far
     # they have moved since the start, unless an output says how far they may be off
     scatter: ClassVar[float] = 0.0
+    # the output that counts contacts, where each makes a small difference larger
+    bounces: ClassVar[str] = ""
     # outputs that are all positive where the extremes that it holds lie: the edges are where they change sign
     windows: ClassVar[tuple[str, ...]] = ()
     # the longest turn of the shaft [rad] whose ends show how its outputs change: inf for what is as smooth as

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from foreign_motors import motor2
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, prepare, run
 from loomfmu.components import COMPONENTS
@@ -247,6 +248,75 @@ def test_steps_in_seconds_are_measured_by_the_speed_of_the_shaft(
     coarse, fine = (evaluate(parse(text)).claims[0] for text in texts)
     assert (coarse.word, fine.word) == ("undecided", "FAILS")
     assert coarse.note.endswith(why)
+
+
+FASTER = """
+revolutions = 1
+steps_per_revolution = 90
+[loom]
+machine = "WL680-3600"
+[shaft]
+speed = "100 rev/min"
+{fast}
+[reed]
+component = "ReedBeatUp"
+servo = true
+run_angle = "12 deg"
+[[claims]]
+kind = "below"
+signal = "reed.velocity"
+bound = "1 m/s"
+"""
+DRIVE = """[drive]
+component = "MainShaft"
+speed = "2000 rev/min"
+[wires]
+"reed.shaft_angle" = "drive.angle"
+"reed.shaft_velocity" = "drive.velocity"
+"reed.shaft_acceleration" = "drive.acceleration"
+"""
+DRIVEN = 'component = "DrivenShaft"\ntorque_slope = 400\ntorque_32 = -15000\n'
+
+
+@pytest.mark.parametrize(("fast", "steps"), [(DRIVE, 1200), (DRIVEN, 289)])
+def test_steps_are_too_long_by_the_shaft_that_a_mechanism_follows(fast: str, steps: int) -> None:
+    """One that turned faster than the main shaft's mean speed passed all samples by in its run."""
+    (found,) = evaluate(parse(FASTER.format(fast=fast))).claims
+    assert found.word == "undecided"
+    wanted = int(found.note.partition("set steps_per_revolution = ")[2].split()[0])
+    assert "the run of the servo of reed takes 12 deg" in found.note and wanted == pytest.approx(
+        steps, rel=0.1
+    )
+
+
+def test_a_loop_of_ours_beside_an_fmu_of_others_is_iterated_or_undecided(tmp_path: Path) -> None:
+    motor2(tmp_path)
+    scene = parse(f'{HUNG}[motor]\nfmu = "Motor.fmu"\n', "beside", directory=tmp_path)
+    found = evaluate(scene).claims[0]
+    assert found.word == "undecided" and 'set coupling = "iterated"' in found.note
+
+
+def test_blows_that_other_steps_count_otherwise_decide_nothing() -> None:
+    """Each flight of a bouncing heald makes a difference larger: 0.79 m/s was 0.91 with fine steps."""
+    text = SETTLING.format(revolutions=4, bound=1e4).replace("[shaft]", "play = true\nwarps = true\n[shaft]")
+    text = (
+        text.replace("600 rev/min", "678.6 rev/min").replace("= 180", "= 720")
+        + """
+[[claims]]
+kind = "heald_blows"
+play = "play_1"
+at_most = "0.85 m/s"
+[play_1]
+restitution = 0.9
+play = "1.35 mm"
+[damper]
+free_travel = "16.38 mm"
+spring_stiffness = 3351
+"""
+    )
+    found = evaluate(parse(text)).claims[1]
+    assert found.word == "undecided"
+    assert "play_1.blows is 37, 39 or 41 with other steps; take more" in found.note
 
 
 def test_numbers_of_a_belt_in_motion_are_no_better_known_than_they_scatter() -> None:

@@ -31,6 +31,7 @@ class HealdPlay(Component):
     terminals: ClassVar[tuple[Terminal, ...]] = (FRAME.of("lift", "velocity", "acceleration"),)
     accuracy: ClassVar[str] = "second order in the step, by the pull of the thread between samples"
     longest_turn: ClassVar[float] = inf
+    bounces: ClassVar[str] = "blows"
 
     play: float = parameter(
         "m",

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claims import called
-from .estimates import SHARES, Coarser, Estimates, worst_of
+from .estimates import SHARES, Coarser, Estimates, Judged
 from .master.grid import crowded, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene
@@ -37,7 +37,7 @@ def chosen(
     LoomfmuError where the accuracy is not reached.
     """
     wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
-    before: list[tuple[float, ...]] = []
+    before: list[Judged] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in tried_steps(scene.periods):
         total = scene.periods * steps
@@ -46,12 +46,12 @@ def chosen(
         tried = altered(scene, steps_per_period=steps)
         trace, verdicts = judge(tried)
         if len(before) == len(SHARES):
-            coarser = Coarser(everything, estimates.unshown(tried), tuple(before))
+            coarser = Coarser(everything, tuple(before))
             if crowded(
                 altered(scene, steps_per_period=round(SHARES[-1] * steps))
             ):  # such runs are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), everything)
-            estimated = estimates.of(trace, verdicts, coarser)
+            estimated = estimates.of(tried, trace, verdicts, coarser)
             errors = [
                 _share(verdict, claim.noise)
                 for verdict, claim in zip(estimated, estimates.claims, strict=True)
@@ -70,7 +70,7 @@ def chosen(
                     " steps_per_revolution"
                 )
             reached = f"with {steps} steps in a revolution, the error of {name!r} is {error:.1g} of its bound"
-        before = [tuple(worst_of(each, trace) for each in verdicts), *before[: len(SHARES) - 1]]
+        before = [estimates.judged(trace, everything), *before[: len(SHARES) - 1]]
     raise LoomfmuError(
         f"accuracy = {wanted:g} is not reached: {reached}; set a larger accuracy, or steps_per_revolution"
     )

@@ -13,14 +13,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from ..errors import LoomfmuError
+import numpy as np
+
+from ..errors import LoomfmuError, listed
 from ..traces import Signals, Verdict
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
 from .importing.process import AVAILABLE
 from .master.grid import SAME, Grid, passed_by, period, uniform
-from .planning.requested import signals_of
+from .planning.requested import SHAFT_ANGLE, signals_of
 from .planning.windows import longest_step
 from .scenes.graph import Wire, step_order
 from .scenes.instances import altered
@@ -78,18 +80,22 @@ class Longer(NamedTuple):
     values: Sequence[float]
 
 
+class Judged(NamedTuple):
+    """The worst values of the claims in a run, NaN where there is none, and what was counted of its blows."""
+
+    worst: Sequence[float]
+    counted: Mapping[str, int]
+
+
 @dataclass(frozen=True)
 class Coarser:
-    """The worst values of the claims in each coarser run, NaN where there is none.
+    """Coarser runs, judged: `wanted` are the claims, counted from 0.
 
-    `wanted` are the claims, counted from 0, that were judged. Without values `why` says why. `unshown` are
-    those that no number of coarser runs can judge, since all steps are too long for them, or since a loop
-    that could be iterated carries values of the step before, and why. `longer` tells of a longer run.
+    Without runs `why` says why. `longer` tells of a longer run.
     """
 
     wanted: Collection[int]
-    unshown: Mapping[int, str]
-    values: tuple[tuple[float, ...], ...] = ()
+    runs: tuple[Judged, ...] = ()
     why: str = ""
     longer: Longer | None = None
 
@@ -103,16 +109,29 @@ class Dependence:
     @cached_property
     def _upstream(self) -> list[set[str]]:
         """The instances on which the signals of each claim depend."""
-        scene = self._scene
-        sources = sources_of((wire.source[0], wire.sink[0]) for wire in scene.wires)
-        owners = ({signal.partition(".")[0] for signal in signals_of(scene, each)} for each in self.claims)
-        return [set(upstream(each, sources)) for each in owners]
+        signals = (signals_of(self._scene, each) for each in self.claims)
+        owners = ({signal.partition(".")[0] for signal in each} for each in signals)
+        return [set(upstream(each, self._sources)) for each in owners]
+
+    @cached_property
+    def _sources(self) -> dict[str, set[str]]:
+        return sources_of((wire.source[0], wire.sink[0]) for wire in self._scene.wires)
 
     @cached_property
     def _lagged(self) -> list[Wire]:
         """The wires that carry values of the step before."""
         _order, closing = step_order(self._scene.instances, self._scene.wires)
         return [] if self._scene.coupling == ITERATED else closing
+
+    @cached_property
+    def _avoidable(self) -> list[Wire]:
+        """Those of them whose loops are of our own FMUs, and so could be iterated."""
+        return [wire for wire in self._lagged if self._is_ours(wire)]
+
+    def _is_ours(self, wire: Wire) -> bool:
+        before = upstream([wire.source[0]], self._sources)
+        loop = (name for name in before if wire.sink[0] in upstream([name], self._sources))
+        return all(self._scene.instances[name].fmu.trusted for name in loop)
 
     @cached_property
     def kept(self) -> list[set[str]]:
@@ -139,29 +158,53 @@ class Dependence:
         for names, kept in zip(self._upstream, self.kept, strict=True):
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if self._lagged else method
-            scatter = max(each.scatter if each else 0.0 for each in self._components(names))
-            found.append(method._replace(scatter=scatter))
+            components = self._components(names)
+            scatter = max(each.scatter if each else 0.0 for each in components)
+            # a blow more or less changes all that follow: no number is far from a bound
+            near = math.inf if any(each and each.bounces for each in components) else method.near
+            found.append(method._replace(scatter=scatter, near=near))
+        return found
+
+    @cached_property
+    def counters(self) -> dict[str, list[int]]:
+        """The outputs that count contacts, each of which makes a small difference larger, and the claims."""
+        found: dict[str, list[int]] = {}
+        for number, names in enumerate(self._upstream):
+            for name in sorted(names):
+                component = self._scene.instances[name].fmu.component
+                if component and component.bounces:
+                    found.setdefault(f"{name}.{component.bounces}", []).append(number)
+        return found
+
+    def differing(self, runs: Sequence[Judged]) -> dict[int, str]:
+        """The claims that depend on contacts of which these runs do not count the same, and why."""
+        found = dict[int, str]()
+        for counter, numbers in self.counters.items():
+            counts = {run.counted[counter] for run in runs if counter in run.counted}
+            why = f"{counter} is {listed(map(str, sorted(counts)), 'or')} with other steps; take more"
+            found |= dict.fromkeys(numbers if len(counts) > 1 else (), why)
         return found
 
     def _components(self, names: Collection[str]) -> list[Any]:
         return [self._scene.instances[name].fmu.component for name in names]
 
-    def unshown(self, scene: Scene) -> dict[int, str]:
-        """The claims, counted from 0, of which coarser runs say nothing, and why."""
+    def unshown(self, scene: Scene, fastest: float = 0.0) -> dict[int, str]:
+        """The claims, counted from 0, of which coarser runs say nothing, and why.
+
+        `fastest` is the speed of the main shaft in a run, where it is faster than its mean speed [rad/s].
+        """
         found = dict[int, str]()
         passed = passed_by(scene)
-        shown = {name: longest_step(scene, name) for name in scene.instances}
-        ours = all(instance.fmu.trusted for instance in scene.instances.values())
-        avoidable = self._lagged if ours else []
+        shown = {name: longest_step(scene, name, fastest) for name in scene.instances}
         for number, names in enumerate(self._upstream):
             longest, why = min((shown[name] for name in names), default=(math.inf, ""))
             if not longest:
                 found[number] = f"{why}, so that no steps are known to show its outputs"
-            elif scene.step_size > TOO_LONG * longest:
+            elif scene.step_size > TOO_LONG * longest * (1.0 + SAME):
                 found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
             elif row := next((passed[name] for name in names if name in passed), ""):
                 found[number] = row
-            elif wire := next((wire for wire in avoidable if wire.sink[0] in names), None):
+            elif wire := next((wire for wire in self._avoidable if wire.sink[0] in names), None):
                 found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
         return found
 
@@ -177,29 +220,28 @@ class Estimates:
     ):
         self.claims, self._run, self._signals = claims, run, signals
         self._dependence = Dependence(scene, claims)
-        self.unshown = self._dependence.unshown
+        self.counters = tuple(self._dependence.counters)
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
-        unshown = self.unshown(scene)
         if not wanted:
-            return Coarser(wanted, unshown)
+            return Coarser(wanted)
         for name, instance in scene.instances.items():
             # one that crashes when it is freed must not take the run with it
             if AVAILABLE and not (instance.fmu.trusted or scene.isolates(name)):
-                return Coarser(wanted, unshown, why=f"{name} runs in this process; set isolated = true")
-        values = []
+                return Coarser(wanted, why=f"{name} runs in this process; set isolated = true")
+        runs = []
         for share in SHARES:
             coarse = _coarser(scene, grid, share)
             if coarse is None:
-                return Coarser(wanted, unshown, why="it takes too few steps for coarser runs")
+                return Coarser(wanted, why="it takes too few steps for coarser runs")
             if coarse.steps * self._signals > MOST_VALUES:
-                return Coarser(wanted, unshown, why="the run is too long")
+                return Coarser(wanted, why="the run is too long")
             try:
-                values.append(self.worst(self._run(scene, coarse), wanted))
+                runs.append(self.judged(self._run(scene, coarse), wanted))
             except LoomfmuError as error:
-                return Coarser(wanted, unshown, why=f"with {share:.0%} of the steps, {error}")
-        return Coarser(wanted, unshown, tuple(values), longer=self.longer(scene, wanted))
+                return Coarser(wanted, why=f"with {share:.0%} of the steps, {error}")
+        return Coarser(wanted, tuple(runs), longer=self.longer(scene, wanted))
 
     def longer(self, scene: Scene, wanted: Collection[int]) -> Longer | None:
         """Judge some claims, counted from 0, on a run that goes on for longer; None where none could settle.
@@ -212,7 +254,7 @@ class Estimates:
         grid = uniform(longer, SHARES[-1])
         if moving and grid.steps * self._signals <= MOST_VALUES:
             with suppress(LoomfmuError):  # a third-party FMU may refuse: nothing is known then
-                values = self.worst(self._run(longer, grid), moving)
+                values = self.judged(self._run(longer, grid), moving).worst
                 return Longer(f"{longer.periods:g} {'revolutions' if scene.step is None else 's'}", values)
         return None
 
@@ -228,16 +270,22 @@ class Estimates:
                 found.add(number)
         return found
 
-    def worst(self, trace: Signals, wanted: Collection[int]) -> tuple[float, ...]:
-        """The worst value of each claim on a run, NaN for those that are not wanted."""
-        return tuple(
+    def judged(self, trace: Signals, wanted: Collection[int]) -> Judged:
+        """Judge some claims on a run."""
+        worst = [
             worst_of(claim.judge(trace), trace) if number in wanted else math.nan
             for number, claim in enumerate(self.claims)
-        )
+        ]
+        counters = self._dependence.counters
+        return Judged(worst, {each: int(trace[each][-1]) for each in counters if each in trace})
 
-    def of(self, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser) -> tuple[Verdict, ...]:
+    def of(
+        self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser
+    ) -> tuple[Verdict, ...]:
         """The verdicts, with the errors of those that were judged on coarser steps, too."""
         found = list(verdicts)
+        unshown = self._dependence.unshown(scene, _fastest(trace))
+        unshown |= self._dependence.differing([self.judged(trace, ()), *coarser.runs])
         for number in coarser.wanted:
             if coarser.why:
                 found[number] = _unknown(found[number], f"numerical error not estimated: {coarser.why}")
@@ -247,17 +295,17 @@ class Estimates:
                 self.claims[number],
                 trace,
                 self._dependence.methods[number],
-                [run[number] for run in coarser.values],
+                [run.worst[number] for run in coarser.runs],
             )
-            if coarser.longer and number not in coarser.unshown:
-                change = coarser.longer.values[number] - coarser.values[-1][number]
+            if coarser.longer and number not in unshown:
+                change = coarser.longer.values[number] - coarser.runs[-1].worst[number]
                 found[number] = _settled(found[number], change, coarser.longer.length)
         for number, name in self._dependence.foreign.items():
             if found[number].decided and not coarser.why:
                 found[number] = _noted(
                     found[number], f"{name} may do more within a step than it shows at its ends"
                 )
-        for number, why in coarser.unshown.items():
+        for number, why in unshown.items():
             found[number] = _undecided(found[number], why)
         return tuple(found)
 
@@ -265,6 +313,13 @@ class Estimates:
 def coarseness(scene: Scene) -> float:
     """How many times larger errors may be than with steps with which numbers are well known."""
     return max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
+
+
+def _fastest(trace: Signals) -> float:
+    """The highest mean speed of the main shaft in any step [rad/s]; 0 where the trace does not show it."""
+    if SHAFT_ANGLE not in trace:
+        return 0.0
+    return float(np.max(np.abs(np.diff(trace[SHAFT_ANGLE])) / np.diff(trace.time), initial=0.0))
 
 
 def worst_of(verdict: Verdict, trace: Signals) -> float:

@@ -48,9 +48,10 @@ class Pattern:
         self._all = [*self.claims, *measures]
         if self._all:
             judging.library()  # before the run, which could not be judged without
-        self.judged = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
+        needed = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
-        self._estimates = Estimates(scene, self._all, self._on, len(self.judged))
+        self._estimates = Estimates(scene, self._all, self._on, len(needed))
+        self.judged = tuple(dict.fromkeys([*needed, *self._estimates.counters]))
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
@@ -84,8 +85,8 @@ class Pattern:
     def _judged(self, trace: Signals) -> tuple[Verdict, ...]:
         return tuple(claim.judge(trace) for claim in self._all)
 
-    def _estimated(self, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
-        return self._estimates.of(trace, self._judged(trace), coarser)[: len(self.claims)]
+    def _estimated(self, scene: Scene, coarser: Coarser, trace: Signals) -> tuple[Verdict, ...]:
+        return self._estimates.of(scene, trace, self._judged(trace), coarser)[: len(self.claims)]
 
     def evaluate(self, scene: Scene, errors: Errors = "all") -> Evaluation:
         """Run what the claims of the scene need, and judge them."""
@@ -97,7 +98,7 @@ class Pattern:
         if errors == "near":
             wanted = self._estimates.near(scene, found.recording, verdicts)
         coarser = known or self._estimates.coarser(scene, grid, wanted)
-        verdicts = self._estimates.of(found.recording, verdicts, coarser)
+        verdicts = self._estimates.of(scene, found.recording, verdicts, coarser)
         count = len(self.claims)
         return Evaluation(
             scene,
@@ -158,14 +159,14 @@ class Pattern:
             warnings = (*scene.notes, *master.warnings())
             # while the instances are still there: one that crashes when it is freed takes nothing with it
             if coarser is not None:
-                verdicts, trace = finish(partial(self._estimated, coarser), writer, path, early)
+                verdicts, trace = finish(partial(self._estimated, scene, coarser), writer, path, early)
         if coarser is None:
             with kept(writer, path):
                 try:
                     coarser = self._estimates.coarser(scene, plan.grid, everything)
                 except KeyboardInterrupt:
                     raise Interrupted from None
-            verdicts, trace = finish(partial(self._estimated, coarser), writer, path, early)
+            verdicts, trace = finish(partial(self._estimated, scene, coarser), writer, path, early)
         return Result(
             scene,
             verdicts,

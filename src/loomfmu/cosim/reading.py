@@ -7,6 +7,7 @@ from typing import Any
 
 from ..errors import LoomfmuError, listed, path_of, shown
 from .importing.built import check_flavour
+from .importing.process import AVAILABLE
 from .planning.requested import checked_claims
 from .scenes import scene as scenes
 from .scenes.scene import Scene
@@ -27,6 +28,14 @@ def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour
         return checked_claims(scene)
     except LoomfmuError as error:
         raise LoomfmuError(f"{place}{error}") from None
+
+
+def protected(scene: Scene) -> Scene:
+    """A scene whose FMUs cannot end this process, for what must come to an end. Raises LoomfmuError."""
+    if AVAILABLE and scene.unprotected:
+        names = listed(scene.unprotected)
+        raise LoomfmuError(f"{names} could end this process before all runs are done; set isolated = true")
+    return scene
 
 
 def _check_step_timeout(scene: Scene) -> None:

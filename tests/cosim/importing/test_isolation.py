@@ -6,7 +6,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -458,3 +458,15 @@ def test_a_status_that_fmi_does_not_know_is_a_failure(tmp_path: Path, status: in
     (tmp_path / "x.toml").write_text(MOTOR)
     with pytest.raises(LoomfmuError, match=rf"motor at 0\.05 s: fmi2DoStep returned status {status}: "):
         loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})
+
+
+@pytest.mark.parametrize("study", [loomfmu.limit, loomfmu.tolerances])
+def test_a_study_whose_process_an_fmu_could_end_is_refused(
+    tmp_path: Path, study: Callable[..., object]
+) -> None:
+    """One that called _exit made each of them a success without a word."""
+    motor2(tmp_path)
+    claim = '[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = 100.0\n'
+    scene = scenes.parse(f"isolated = false\n{MOTOR}{claim}", "motor", directory=tmp_path)
+    with pytest.raises(LoomfmuError, match=r"motor could end this process .*; set isolated = true"):
+        study(scene, vary="motor.setpoint=1..2")

@@ -282,3 +282,26 @@ def test_values_that_cannot_be_run_are_refused_with_those_that_can() -> None:
 def test_a_scene_without_claims_has_no_limits() -> None:
     with pytest.raises(LoomfmuError, match=r"the scene has no claims, so there is no limit to find"):
         limit(parse(LOOM), vary="shaft.speed")
+
+
+def test_a_range_in_which_a_claim_is_undecided_is_no_range_in_which_it_holds() -> None:
+    """With 24 steps a blow of 0.34 m/s held; with 2880 it is 0.55 m/s, beyond the bound."""
+    text = """
+revolutions = 2
+steps_per_revolution = 24
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+dampers = true
+play = true
+[shaft]
+speed = "574 rpm"
+[[claims]]
+kind = "heald_blows"
+play = "play_1"
+at_most = "0.4 m/s"
+"""
+    found = limit(parse(text, "blows"), vary="shaft.speed=574rpm..575.9rpm", points=3)
+    assert not found and not found.claims[0].ranges
+    assert "From 574 to 575.9 rev/min 'hardest blow (play_1.hardest_blow)' is undecided: " in str(found)

@@ -115,7 +115,8 @@ def test_a_share_of_a_bound_of_0_is_refused(tmp_path: Path, monkeypatch: pytest.
          "choices.heald.stroke: no design with 10 mm can be run (claim 'clear_shed' of heald_1: "),
         ("[choices]\n'dobby.law' = ['table', 'sloped_sine']",
          "choices.dobby.law: no design with table can be run (dobby: law = table has no table: "),
-        ("'weft.coupler_length' = ['10 mm', '20 mm']", "none of the first "),
+        ("'weft.coupler_length' = ['10 mm', '20 mm']",
+         "none of 39 designs that were tried can be run (weft: "),
         ("[choices]\n'dobby.law' = ['uniform']", "choices.dobby.law has one value; fix it in [set]"),
     ],
 )  # fmt: skip

@@ -137,8 +137,11 @@ def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
         yield longest or fine, why
 
 
-def longest_step(scene: Scene, name: str) -> tuple[float, str]:
-    """The longest step that shows how an instance moves [s], and why; 0 where none is known."""
+def longest_step(scene: Scene, name: str, fastest: float = 0.0) -> tuple[float, str]:
+    """The longest step that shows how an instance moves [s], and why; 0 where none is known.
+
+    `fastest` is the speed of the main shaft in a run, where it is faster than its mean speed [rad/s].
+    """
     instance = scene.instances[name]
     component = instance.fmu.component
     if component is None:
@@ -151,7 +154,7 @@ def longest_step(scene: Scene, name: str) -> tuple[float, str]:
         f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
     )
     turn, why = min(by_event, declared, _alone(scene, name))
-    return min(component.longest_step(instance.effect), _taking(turn, why, _speed(scene, name)))
+    return min(component.longest_step(instance.effect), _taking(turn, why, _speed(scene, name, fastest)))
 
 
 def _alone(scene: Scene, name: str) -> tuple[float, str]:
@@ -170,11 +173,19 @@ def _taking(turn: float, why: str, speed: float) -> tuple[float, str]:
     return turn / speed, why if math.isfinite(speed) else f"{why}, and the speed of the shaft is not known"
 
 
-def _speed(scene: Scene, name: str) -> float:
-    """The mean speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
-    shaft = scene.instances.get("shaft", scene.instances[name])
-    port = shaft.fmu.ports.get("speed")
-    return abs(float(shaft.values.get("speed", port.start or 0.0))) if port else math.inf
+def _speed(scene: Scene, name: str, fastest: float) -> float:
+    """The speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
+    moved_by = {wire.sink: wire.source[0] for wire in scene.wires}
+    passed = set[str]()
+    while name not in passed:
+        passed.add(name)
+        each = scene.instances[name]
+        inputs = ((name, variable) for variable in shaft_inputs(each.fmu.component, each.fmu.ports))
+        name = next((moved_by[sink] for sink in inputs if sink in moved_by), name)
+    port, known = each.fmu.ports.get("speed"), fastest if name == "shaft" else 0.0
+    if port is None:
+        return known or math.inf
+    return max(known, abs(float(each.values.get("speed", port.start or 0.0))))
 
 
 def _check(scene: Scene) -> None:

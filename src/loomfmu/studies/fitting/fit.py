@@ -11,7 +11,7 @@ import numpy as np
 
 from ... import notebook
 from ...cosim.provenance import texts
-from ...cosim.reading import checked
+from ...cosim.reading import checked, protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
@@ -152,7 +152,7 @@ def fit(
         raise LoomfmuError(
             f"loss = {shown(loss)} is not one of {listed(LOSSES)}{suggestion(str(loss), LOSSES)}"
         )
-    loaded = replace(checked(scene, set, "native"), claims=[])
+    loaded = replace(protected(checked(scene, set, "native")), claims=[])
     if loaded.accuracy is not None:
         raise LoomfmuError(
             f"{loaded.name}: accuracy = {loaded.accuracy:g} chooses steps by the errors of claims, and a fit"

@@ -14,7 +14,7 @@ from ...errors import LoomfmuError, listed, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
 from ..span import Span, warnings_of
-from .results import ClaimLimits, Limit, Limits, Stretch
+from .results import ClaimLimits, Doubt, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
 
 POINTS = 41  # of the scan
@@ -119,13 +119,34 @@ def _claim_limits(
     ]
     edges = [tried[0], *(each.value for each in limits), tried[-1]]
     holding = holds(distance(tried[0]))
-    ranges = []
+    ranges, doubts = [], []
     for low, high in pairwise(edges):
         if holding:
-            ranges.append(Stretch(low, high))
+            stretch, inside = Stretch(low, high), [value for value in tried if low <= value <= high]
+            doubt = _doubt(number, runs, inside, limits)
+            ranges += [stretch] * (not doubt)
+            doubts += [Doubt(stretch, doubt)] * bool(doubt)
         holding = not holding
     points = tuple((value, distance(value)) for value in tried)
-    return ClaimLimits(called(claim, verdict), tuple(limits), tuple(ranges), depends, verdict, points)
+    name = called(claim, verdict)
+    return ClaimLimits(name, tuple(limits), tuple(ranges), depends, verdict, points, tuple(doubts))
+
+
+def _doubt(number: int, runs: _Runs, inside: Sequence[float], limits: Sequence[Limit]) -> str:
+    """Return why a claim, counted from 0, may fail in a range of values where it seems to hold.
+
+    It is asked where it is nearest to its bound, but not as near to a limit as that may be off.
+    """
+    clear = [
+        value
+        for value in inside
+        if not any(abs(value - each.value) <= each.error < math.inf for each in limits)
+    ]
+    if not clear:
+        return "the range is narrower than the numerical error of its limits" if inside else ""
+    distance = runs.distance(number)
+    verdict = runs.estimated(min(clear, key=distance))[number]
+    return "" if verdict.holds else verdict.note or f"numerical error {verdict.shown_error}"
 
 
 def _limit(number: int, runs: _Runs, low: float, high: float) -> Limit:

@@ -49,11 +49,20 @@ class Stretch:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """A range in which a claim seems to hold, but is undecided where it is nearest to its bound, and why."""
+
+    stretch: Stretch
+    why: str
+
+
+@dataclass(frozen=True)
 class ClaimLimits:
     """The limits of one claim, ascending, and the ranges in which it holds.
 
     `points` are the values that were tried and the distances there, NaN where the claim fails without one.
     `depends` is false if the distance is the same everywhere. `verdict` is the one at the scene's own value.
+    `doubts` are ranges that are left out, since numerical errors leave the claim undecided there.
     """
 
     claim: str
@@ -62,6 +71,7 @@ class ClaimLimits:
     depends: bool
     verdict: Verdict
     points: tuple[tuple[float, float], ...] = field(repr=False)
+    doubts: tuple[Doubt, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -148,7 +158,7 @@ def _own(each: ClaimLimits) -> str:
 def _holds(each: ClaimLimits, span: Span) -> str:
     """Return the ranges in which a claim holds, in words."""
     if not each.ranges:
-        return "nowhere"
+        return "nowhere for sure" if each.doubts else "nowhere"
     if not each.limits:
         return "everywhere"
     return ", ".join(_range(stretch, span) for stretch in each.ranges)
@@ -190,6 +200,10 @@ def conclusion(found: Limits) -> Iterator[str]:
     if any(limit.jumps for each in found.claims for limit in each.limits):
         yield 'Where a claim "jumps", it counts something, or is undecided or without a value on one side.'
     yield from _unsettled(found)
+    for each in found.claims:
+        for stretch, why in ((doubt.stretch, doubt.why) for doubt in each.doubts):
+            where = f"{span.number(stretch.low)} to {span.show(stretch.high)}"
+            yield f"From {where} '{each.claim}' is undecided: {why}."
     own = [
         f"{_names(names)} {one if len(names) == 1 else several}"
         for decided, one, several in ((True, "fails", "fail"), (False, "is undecided", "are undecided"))

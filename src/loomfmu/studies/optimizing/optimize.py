@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...cosim.prepared import Prepared
+from ...cosim.reading import protected
 from ...cosim.scenes.scene_files import files_of
 from ...errors import LoomfmuError, path_of
 from ...extras import need
@@ -62,7 +63,8 @@ def optimize(
         own = own_point(study)
         try:  # what could not be run or written is refused now, not after the search
             files.check(study, own)
-            tried = Prepared(study.scene, None, study.flavour, (), study.measures).evaluate(errors="none")
+            scene = protected(study.scene)
+            tried = Prepared(scene, None, study.flavour, (), study.measures).evaluate(errors="none")
             tried.check_end()
         except LoomfmuError as error:
             raise LoomfmuError(f"{path}: {error}") from None

@@ -125,6 +125,8 @@ EXPORT(judge) bool judge(struct run *run, const double *question, const char *wo
     answer.fails_for_good = true;
     answer.unseen = short_run(run);
     RULES[call.rule].judge(run, &call, &answer);
+    if (run->samples < 2)
+        answer.unseen = "the run has no step";
     *verdict = concluded(run, &call, &answer);
     return true;
 }
