@@ -23,6 +23,13 @@ FILES = {
     ),
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
 }
+REFERS = (
+    "Failed to validate modelDescription.xml: The derivative attribute of model variable J (line 21)"
+    " references model variable index 0 which does not exist."
+)
+FILES[f"its modelDescription.xml cannot be read ({REFERS})"] = description2().replace(
+    '<Real start="0.5"', '<Real derivative="0" start="0.5"', 1
+)
 NO_IDENTIFIER = (
     "modelIdentifier = {!r} is not a C identifier; it must name a library of the FMU by letters, digits and"
     " _, and no digit first"

@@ -249,9 +249,7 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
         component = COMPONENTS[description.modelName] if trusted else None
         ports = ports_of(description, component)
     except Exception as error:  # fmpy raises its own kinds for a description that is none
-        raise LoomfmuError(
-            f"{path}: its modelDescription.xml cannot be read ({_first_line(error)})"
-        ) from None
+        raise LoomfmuError(f"{path}: its modelDescription.xml cannot be read ({_reason(error)})") from None
     _check_runnable(path, description)
     kind = description.coSimulation
     return Fmu(
@@ -269,6 +267,13 @@ def _read(path: Path, sha256: str, directory: Path) -> Fmu:
             path, sha256, directory, description.guid, kind.modelIdentifier, description.version or ""
         ),
     )
+
+
+def _reason(error: Exception) -> str:
+    """The first line of an error, and of a list that follows its first entry."""
+    lines = str(error).splitlines()
+    heading = len(lines) > 1 and lines[0].endswith(":")
+    return f"{lines[0]} {lines[1].strip(' -')}" if heading else _first_line(error)
 
 
 def _first_line(error: Exception) -> str:

@@ -45,7 +45,8 @@ def _effort(runs: int, found: Sequence[Limits]) -> str:
     off = max((each for each in every if not each.jumps), key=lambda limit: limit.error, default=None)
     parts = [f"{runs} runs"]
     if off and math.isfinite(off.error):
-        parts.append(f"numerical error of the limits up to {off.error / span.factor:.1g} {span.unit}")
+        unit = "" if span.unit == "1" else f" {span.unit}"
+        parts.append(f"numerical error of the limits up to {off.error / span.factor:.1g}{unit}")
     elif off:
         parts.append(f"numerical error of the limits unknown ({off.doubt or 'not estimated'})")
     if any(each.jumps for each in every):

@@ -1,7 +1,7 @@
 /* Where the main shaft stands in a run, and when it passes an angle; where a signal is not known. */
 
 /* Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest margin of
- * the published looms is known to 2e-3, with 16 to 5e-3, with 8 to 0.05, and with 6 not at all. */
+ * the published looms is known to 2e-3, with 16 to 5e-3, and with 8 not at all. */
 static const double FARTHEST = 6.283185307179586 / 20.0;
 static const double STANDS = 1e-9; /* of a revolution: angles that are closer are one where a run begins or ends */
 static const char UNPASSED[] = "the run never passes through the whole window";
