@@ -416,6 +416,18 @@ def test_a_shaft_that_turns_back_outside_the_shed_or_turns_backward_throughout_i
     )
 
 
+def test_rounding_turns_no_head_round():
+    """A shaft at rest after many turns: the last bits of the travel fell, and the yarn with them."""
+
+    def trembling(t):
+        travel, _velocity, _acceleration = harmonic(0.25 * pi / SPEED)
+        return travel * (1.0 + 1e-13 * (-1) ** round(1e4 * t)), 0.0, 0.0
+
+    tensions = []
+    drawn(trembling, end=0.002, steps=20, watch=lambda _now, weft: tensions.append(weft.tension))
+    assert tensions[0] > 0.3 and tensions == pytest.approx(21 * [tensions[0]], rel=1e-9)
+
+
 def test_the_snatch_is_that_of_the_wave_along_the_yarn():
     """The wave equation for yarn at rest whose end moves off at v; exact along its characteristics."""
     stiffness, density, speed = 75.0, 30e-6, 20.0
