@@ -13,7 +13,8 @@ from foreign_motors import motor2
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, prepare, run
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.judging import Form, Question, Run
-from loomfmu.cosim.estimates import MEMORY, PRESENT, SHARES
+from loomfmu.cosim.dependence import MEMORY, PRESENT
+from loomfmu.cosim.estimates import SHARES
 from loomfmu.cosim.master.grid import uniform
 from loomfmu.cosim.scenes.scene import parse
 from loomfmu.design import loom

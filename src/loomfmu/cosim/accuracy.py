@@ -9,7 +9,8 @@ from typing import NamedTuple
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claims import called
-from .estimates import SHARES, Coarser, Estimates, Judged
+from .dependence import Judged
+from .estimates import SHARES, Coarser, Estimates
 from .master.grid import crowded, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene

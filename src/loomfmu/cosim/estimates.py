@@ -7,67 +7,32 @@ velocity, would lie at the same share of a step in all of them, and equal errors
 """
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import LoomfmuError, listed
+from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
-from ..upstream import sources_of, upstream
-from ..variables import EXTREMES, MOTION
+from ..variables import MOTION
 from .claims.claim import Claim
+from .dependence import Dependence, Judged, Method
 from .importing.process import AVAILABLE
-from .master.grid import SAME, Grid, passed_by, period, uniform
-from .planning.requested import SHAFT_ANGLE, signals_of
-from .planning.windows import longest_step
-from .scenes.graph import Wire, step_order
+from .master.grid import Grid, uniform
+from .planning.requested import SHAFT_ANGLE
 from .scenes.instances import altered
-from .scenes.keys import ITERATED, WINDOWS
+from .scenes.keys import WINDOWS
 from .scenes.scene import Scene
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 
-
 NO_VALUE = "coarser steps give no value: take more steps"
-# of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
-# to the coarsest run
-TOO_LONG = 2.0
 WELL_KNOWN = 180.0  # steps in a revolution, with which numbers are known to their method's `near`
 SHARES = (0.62, 0.38, 0.24)  # of the steps: powers of the golden ratio are farthest from fractions
 LONGER = 2.0  # times as long as a run is another that shows whether motions have settled
 SETTLING = 0.5  # of the distance from the bound: nearer, a longer run may fail
-
-
-class Method(NamedTuple):
-    """Factors by which the changes from coarser runs give the error of the finest one.
-
-    The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: two of
-    them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
-    leave, hide the order; `scatter` a share of how far the signal has moved since the start, which changes by
-    so much whatever the steps. Numbers farther from their bound than the share `near` of it are not estimated
-    where only near ones are: it is far above what errors are with a few dozen steps in a revolution.
-    """
-
-    factors: tuple[float, float, float]
-    floor: float
-    near: float
-    scatter: float = 0.0
-
-
-# Between the samples of what depends on the present alone the order is four or more where rates are known,
-# and two at a kink: the changes are 6, 47 and 300, or 1.6, 6 and 16 times the error.
-PRESENT = Method((3.0, 0.5, 0.06), floor=1e-12, near=0.01)
-# An extreme that a component holds is found beyond what it takes for noise of its samples.
-HELD = PRESENT._replace(floor=1e-9)
-# What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
-# 1.6, 6 and 16 times the error.
-MEMORY = Method((6.0, 2.0, 0.7), floor=1e-8, near=0.1)
-# A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
-LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
 
 class Longer(NamedTuple):
@@ -78,13 +43,6 @@ class Longer(NamedTuple):
 
     length: str
     values: Sequence[float]
-
-
-class Judged(NamedTuple):
-    """The worst values of the claims in a run, NaN where there is none, and what was counted of its blows."""
-
-    worst: Sequence[float]
-    counted: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -98,115 +56,6 @@ class Coarser:
     runs: tuple[Judged, ...] = ()
     why: str = ""
     longer: Longer | None = None
-
-
-class Dependence:
-    """The FMUs that the claims of one scene depend on, and what follows for the errors of their verdicts."""
-
-    def __init__(self, scene: Scene, claims: Sequence[Claim]):
-        self._scene, self.claims = scene, claims
-
-    @cached_property
-    def _upstream(self) -> list[set[str]]:
-        """The instances on which the signals of each claim depend."""
-        signals = (signals_of(self._scene, each) for each in self.claims)
-        owners = ({signal.partition(".")[0] for signal in each} for each in signals)
-        return [set(upstream(each, self._sources)) for each in owners]
-
-    @cached_property
-    def _sources(self) -> dict[str, set[str]]:
-        return sources_of((wire.source[0], wire.sink[0]) for wire in self._scene.wires)
-
-    @cached_property
-    def _lagged(self) -> list[Wire]:
-        """The wires that carry values of the step before."""
-        _order, closing = step_order(self._scene.instances, self._scene.wires)
-        return [] if self._scene.coupling == ITERATED else closing
-
-    @cached_property
-    def _avoidable(self) -> list[Wire]:
-        """Those of them whose loops are of our own FMUs, and so could be iterated."""
-        return [wire for wire in self._lagged if self._is_ours(wire)]
-
-    def _is_ours(self, wire: Wire) -> bool:
-        before = upstream([wire.source[0]], self._sources)
-        loop = (name for name in before if wire.sink[0] in upstream([name], self._sources))
-        return all(self._scene.instances[name].fmu.trusted for name in loop)
-
-    @cached_property
-    def kept(self) -> list[set[str]]:
-        """What the FMUs keep that each claim depends on."""
-        return [
-            {MOTION if each is None else each.keeps for each in self._components(names)}
-            for names in self._upstream
-        ]
-
-    @cached_property
-    def foreign(self) -> dict[int, str]:
-        """The claims, counted from 0, that depend on a third-party FMU, and its instance."""
-        instances = self._scene.instances
-        named = (
-            next((name for name in sorted(names) if instances[name].fmu.component is None), "")
-            for names in self._upstream
-        )
-        return {number: name for number, name in enumerate(named) if name}
-
-    @cached_property
-    def methods(self) -> list[Method]:
-        """The method that estimates each claim's error."""
-        found = []
-        for names, kept in zip(self._upstream, self.kept, strict=True):
-            method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
-            method = LAGGED if self._lagged else method
-            components = self._components(names)
-            scatter = max(each.scatter if each else 0.0 for each in components)
-            # a blow more or less changes all that follow: no number is far from a bound
-            near = math.inf if any(each and each.bounces for each in components) else method.near
-            found.append(method._replace(scatter=scatter, near=near))
-        return found
-
-    @cached_property
-    def counters(self) -> dict[str, list[int]]:
-        """The outputs that count contacts, each of which makes a small difference larger, and the claims."""
-        found: dict[str, list[int]] = {}
-        for number, names in enumerate(self._upstream):
-            for name in sorted(names):
-                component = self._scene.instances[name].fmu.component
-                if component and component.bounces:
-                    found.setdefault(f"{name}.{component.bounces}", []).append(number)
-        return found
-
-    def differing(self, runs: Sequence[Judged]) -> dict[int, str]:
-        """The claims that depend on contacts of which these runs do not count the same, and why."""
-        found = dict[int, str]()
-        for counter, numbers in self.counters.items():
-            counts = {run.counted[counter] for run in runs if counter in run.counted}
-            why = f"{counter} is {listed(map(str, sorted(counts)), 'or')} with other steps; take more"
-            found |= dict.fromkeys(numbers if len(counts) > 1 else (), why)
-        return found
-
-    def _components(self, names: Collection[str]) -> list[Any]:
-        return [self._scene.instances[name].fmu.component for name in names]
-
-    def unshown(self, scene: Scene, fastest: float = 0.0) -> dict[int, str]:
-        """The claims, counted from 0, of which coarser runs say nothing, and why.
-
-        `fastest` is the speed of the main shaft in a run, where it is faster than its mean speed [rad/s].
-        """
-        found = dict[int, str]()
-        passed = passed_by(scene)
-        shown = {name: longest_step(scene, name, fastest) for name in scene.instances}
-        for number, names in enumerate(self._upstream):
-            longest, why = min((shown[name] for name in names), default=(math.inf, ""))
-            if not longest:
-                found[number] = f"{why}, so that no steps are known to show its outputs"
-            elif scene.step_size > TOO_LONG * longest * (1.0 + SAME):
-                found[number] = f"the steps are too long: {why}; {_enough(scene, TOO_LONG * longest)}"
-            elif row := next((passed[name] for name in names if name in passed), ""):
-                found[number] = row
-            elif wire := next((wire for wire in self._avoidable if wire.sink[0] in names), None):
-                found[number] = f'{wire} carries the value of the step before; set coupling = "{ITERATED}"'
-        return found
 
 
 class Estimates:
@@ -384,13 +233,6 @@ def _undecided(verdict: Verdict, why: str) -> Verdict:
 def _unknown(verdict: Verdict, why: str) -> Verdict:
     """A verdict whose error is not known: what holds is undecided."""
     return _undecided(verdict, why) if verdict.holds else _noted(verdict, why)
-
-
-def _enough(scene: Scene, longest: float) -> str:
-    """Steps that would be short enough."""
-    if scene.step is not None:
-        return f"set step = {longest:.2g} s or less"
-    return f"set steps_per_revolution = {math.ceil(period(scene) / longest - SAME)} or more"
 
 
 def _coarser(scene: Scene, grid: Grid, share: float) -> Grid | None:

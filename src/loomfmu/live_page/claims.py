@@ -8,7 +8,8 @@ from typing import Any
 
 from ..cosim.claims.claim import Claim
 from ..cosim.claims.judging import FIELDS, SOURCE, Form, Table, beside, number_of
-from ..cosim.estimates import Dependence, Method, coarseness, counts
+from ..cosim.dependence import Dependence, Method
+from ..cosim.estimates import coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, claims_of
 from ..cosim.scenes.scene import Scene
 from ..fmi.native.libraries import module_of

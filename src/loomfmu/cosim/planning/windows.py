@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...errors import LoomfmuError
 from ...traces import Recording
-from ...variables import MOTION, variables_of
+from ...variables import MOTION, Component, variables_of
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
@@ -135,6 +135,16 @@ def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     for each in scene.instances:
         longest, why = longest_step(scene, each)
         yield longest or fine, why
+
+
+def may_pass_by(scene: Scene, name: str) -> bool:
+    """Return whether steps may be too long to show how an instance moves, whatever the values."""
+    component = scene.instances[name].fmu.component
+    if component is None:
+        return False
+    own = component.shortest_event.__func__, component.longest_step.__func__  # type: ignore[attr-defined]
+    usual = Component.shortest_event.__func__, Component.longest_step.__func__  # type: ignore[attr-defined]
+    return own != usual or component.longest_turn < math.inf or "shaft" not in scene.instances
 
 
 def longest_step(scene: Scene, name: str, fastest: float = 0.0) -> tuple[float, str]:
