@@ -4,6 +4,7 @@ import pytest
 from live_fmus import in_a_process
 
 WARM_UP = 50
+ARENA = 1 << 20  # bytes that Python takes from the system at once
 
 SCRIPT = """
 import gc, os, sys, tempfile
@@ -49,13 +50,13 @@ print(*(new - old for old, new in zip(before, after)))
 """
 
 
-@pytest.mark.parametrize("runs", [150, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("runs", [250, pytest.param(1000, marks=pytest.mark.slow)])
 def test_many_runs_take_no_more_memory_than_a_few(runs: int) -> None:
     grown, files, paths, modules = map(int, in_a_process(SCRIPT, str(runs), str(WARM_UP)).split())
     print(f"memory grew by {grown / runs / 1000:.2f} kB a run")
     # measured 0.1 kB a run. An instance that is not reused leaks 12 to 19 kB and a place in sys.path: a
     # run may leave a third of one, which is also what a new page for every run would be
-    assert grown / runs < 5_000
+    assert (grown - ARENA) / runs < 5_000
     assert (files, paths, modules) == (0, 0, 0)
 
 

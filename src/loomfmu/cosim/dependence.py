@@ -1,4 +1,4 @@
-"""What claims depend on, and what follows for the errors of their verdicts.
+"""Dependence of claims on FMUs, and what follows for the errors of their verdicts.
 
 The FMUs upstream of a claim say by which method its error is estimated, and whether steps show what they do.
 """
@@ -94,7 +94,7 @@ class Dependence:
 
     @cached_property
     def kept(self) -> list[set[str]]:
-        """What the FMUs keep that each claim depends on."""
+        """The kinds of memory of the FMUs that each claim depends on."""
         return [
             {MOTION if each is None else each.keeps for each in self._components(names)}
             for names in self._upstream

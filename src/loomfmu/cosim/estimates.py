@@ -160,7 +160,7 @@ class Estimates:
 
 
 def coarseness(scene: Scene) -> float:
-    """How many times larger errors may be than with steps with which numbers are well known."""
+    """The factor by which errors may be larger than with steps with which numbers are well known."""
     return max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
 
 

@@ -168,9 +168,15 @@ def longest_step(scene: Scene, name: str, fastest: float = 0.0) -> tuple[float, 
 
 
 def _alone(scene: Scene, name: str) -> tuple[float, str]:
-    """The turn of a shaft that is an instance's own: no signal shows how far it turns in a step."""
+    """The turn of a shaft that is an instance's own: no signal shows how far it turns in a step.
+
+    Of a shaft that a third-party FMU turns nothing is known.
+    """
     instance = scene.instances[name]
-    alone = "shaft" not in scene.instances and shaft_inputs(instance.fmu.component, instance.fmu.ports)
+    follows = shaft_inputs(instance.fmu.component, instance.fmu.ports)
+    alone = (
+        follows and "shaft" not in scene.instances and scene.instances[_shaft_of(scene, name)].fmu.component
+    )
     return math.radians(
         SHOWN if alone else math.inf
     ), f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
@@ -185,6 +191,16 @@ def _taking(turn: float, why: str, speed: float) -> tuple[float, str]:
 
 def _speed(scene: Scene, name: str, fastest: float) -> float:
     """The speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
+    shaft = _shaft_of(scene, name)
+    each = scene.instances[shaft]
+    port, known = each.fmu.ports.get("speed"), fastest if shaft == "shaft" else 0.0
+    if port is None:
+        return known or math.inf
+    return max(known, abs(float(each.values.get("speed", port.start or 0.0))))
+
+
+def _shaft_of(scene: Scene, name: str) -> str:
+    """The instance whose shaft another one follows, through others or not; itself if it follows none."""
     moved_by = {wire.sink: wire.source[0] for wire in scene.wires}
     passed = set[str]()
     while name not in passed:
@@ -192,10 +208,7 @@ def _speed(scene: Scene, name: str, fastest: float) -> float:
         each = scene.instances[name]
         inputs = ((name, variable) for variable in shaft_inputs(each.fmu.component, each.fmu.ports))
         name = next((moved_by[sink] for sink in inputs if sink in moved_by), name)
-    port, known = each.fmu.ports.get("speed"), fastest if name == "shaft" else 0.0
-    if port is None:
-        return known or math.inf
-    return max(known, abs(float(each.values.get("speed", port.start or 0.0))))
+    return name
 
 
 def _check(scene: Scene) -> None:
