@@ -279,7 +279,12 @@ speed = "2000 rev/min"
 DRIVEN = 'component = "DrivenShaft"\ntorque_slope = 400\ntorque_32 = -15000\n'
 
 
-@pytest.mark.parametrize(("fast", "steps"), [(DRIVE, 1200), (DRIVEN, 289)])
+OTHER = DRIVE.replace("MainShaft", "DrivenShaft").replace(
+    '"2000 rev/min"', f'"100 rev/min"\n{DRIVEN}'.replace('component = "DrivenShaft"\n', "")
+)
+
+
+@pytest.mark.parametrize(("fast", "steps"), [(DRIVE, 1200), (DRIVEN, 289), (OTHER, 289)])
 def test_steps_are_too_long_by_the_shaft_that_a_mechanism_follows(fast: str, steps: int) -> None:
     """One that turned faster than the main shaft's mean speed passed all samples by in its run."""
     (found,) = evaluate(parse(FASTER.format(fast=fast))).claims

@@ -14,7 +14,7 @@ from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
 from .master.grid import SAME, passed_by, period
 from .planning.requested import signals_of
-from .planning.windows import longest_step, may_pass_by
+from .planning.windows import followed, longest_step, may_pass_by
 from .scenes.graph import Wire, step_order
 from .scenes.keys import ITERATED
 from .scenes.scene import Scene
@@ -48,15 +48,23 @@ HELD = PRESENT._replace(floor=1e-9)
 # What has a memory loses its order to two where it hits a stop or a thread goes slack: then the changes are
 # 1.6, 6 and 16 times the error.
 MEMORY = Method((6.0, 2.0, 0.7), floor=1e-8, near=0.1)
+# Each blow makes a difference larger, by no order of the steps: one more or less changes all that follow, so
+# that no number is far from a bound.
+BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf)
 # A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 
 
 class Judged(NamedTuple):
-    """The worst values of the claims in a run, NaN where there is none, and what was counted of its blows."""
+    """A run, judged: the worst values of the claims, NaN where there is none, its blows, and its speeds.
+
+    `counted` has the number of blows by the signal that counts them, `speeds` the highest mean speed in any
+    step [rad/s] by the signal of a shaft's angle.
+    """
 
     worst: Sequence[float]
     counted: Mapping[str, int]
+    speeds: Mapping[str, float]
 
 
 class Dependence:
@@ -88,9 +96,10 @@ class Dependence:
         return [wire for wire in self._lagged if self._is_ours(wire)]
 
     def _is_ours(self, wire: Wire) -> bool:
-        before = upstream([wire.source[0]], self._sources)
-        loop = (name for name in before if wire.sink[0] in upstream([name], self._sources))
-        return all(self._scene.instances[name].fmu.trusted for name in loop)
+        """Return whether some loop through a wire is of our own FMUs alone."""
+        ours = {name for name, each in self._scene.instances.items() if each.fmu.trusted}
+        sources = {name: each & ours for name, each in self._sources.items() if name in ours}
+        return wire.sink[0] in upstream([wire.source[0]], sources) and wire.source[0] in ours
 
     @cached_property
     def kept(self) -> list[set[str]]:
@@ -118,10 +127,8 @@ class Dependence:
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if self._lagged else method
             components = self._components(names)
-            scatter = max(each.scatter if each else 0.0 for each in components)
-            # a blow more or less changes all that follow: no number is far from a bound
-            near = math.inf if any(each and each.bounces for each in components) else method.near
-            found.append(method._replace(scatter=scatter, near=near))
+            method = BOUNCING if any(each and each.bounces for each in components) else method
+            found.append(method._replace(scatter=max(each.scatter if each else 0.0 for each in components)))
         return found
 
     @cached_property
@@ -153,14 +160,21 @@ class Dependence:
     def _components(self, names: Collection[str]) -> list[Any]:
         return [self._scene.instances[name].fmu.component for name in names]
 
-    def unshown(self, scene: Scene, fastest: float = 0.0) -> dict[int, str]:
-        """The claims, counted from 0, of which coarser runs say nothing, and why.
+    @cached_property
+    def angles(self) -> dict[str, str]:
+        """The signals of the angles of the shafts that instances follow for which steps may be too long."""
+        found = {name: followed(self._scene, name) for name in self._passing}
+        return {name: signal for name, signal in found.items() if signal}
 
-        `fastest` is the speed of the main shaft in a run, where it is faster than its mean speed [rad/s].
-        """
+    def unshown(self, scene: Scene, runs: Sequence[Judged] = ()) -> dict[int, str]:
+        """The claims, counted from 0, of which coarser runs say nothing, and why; `runs` show speeds."""
         found = dict[int, str]()
         passed = passed_by(scene)
-        shown = {name: longest_step(scene, name, fastest) for name in self._passing}
+        speeds = {
+            name: max((each.speeds[angle] for each in runs if angle in each.speeds), default=None)
+            for name, angle in self.angles.items()
+        }
+        shown = {name: longest_step(scene, name, speeds.get(name)) for name in self._passing}
         for number, names in enumerate(self._upstream):
             longest, why = min((shown[name] for name in names if name in shown), default=(math.inf, ""))
             if not longest:

@@ -21,7 +21,6 @@ from .claims.claim import Claim
 from .dependence import Dependence, Judged, Method
 from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
-from .planning.requested import SHAFT_ANGLE
 from .scenes.instances import altered
 from .scenes.keys import WINDOWS
 from .scenes.scene import Scene
@@ -32,6 +31,7 @@ NO_VALUE = "coarser steps give no value: take more steps"
 WELL_KNOWN = 180.0  # steps in a revolution, with which numbers are known to their method's `near`
 SHARES = (0.62, 0.38, 0.24)  # of the steps: powers of the golden ratio are farthest from fractions
 LONGER = 2.0  # times as long as a run is another that shows whether motions have settled
+BLOWN = 0.5  # of the size of a signal: what blows that other steps count otherwise may change
 SETTLING = 0.5  # of the distance from the bound: nearer, a longer run may fail
 
 
@@ -69,7 +69,8 @@ class Estimates:
     ):
         self.claims, self._run, self._signals = claims, run, signals
         self._dependence = Dependence(scene, claims)
-        self.counters = tuple(self._dependence.counters)
+        # what is kept of a run, beside what claims need, to tell whether steps are short enough
+        self.beside = (*self._dependence.counters, *dict.fromkeys(self._dependence.angles.values()))
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
@@ -125,16 +126,20 @@ class Estimates:
             worst_of(claim.judge(trace), trace) if number in wanted else math.nan
             for number, claim in enumerate(self.claims)
         ]
-        counters = self._dependence.counters
-        return Judged(worst, {each: int(trace[each][-1]) for each in counters if each in trace})
+        counted = {each: int(trace[each][-1]) for each in self._dependence.counters if each in trace}
+        angles = dict.fromkeys(self._dependence.angles.values())
+        return Judged(worst, counted, {each: _fastest(trace, each) for each in angles if each in trace})
 
     def of(
         self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser
     ) -> tuple[Verdict, ...]:
         """The verdicts, with the errors of those that were judged on coarser steps, too."""
         found = list(verdicts)
-        unshown = self._dependence.unshown(scene, _fastest(trace))
-        unshown |= self._dependence.differing([self.judged(trace, ()), *coarser.runs])
+        runs = [self.judged(trace, ()), *coarser.runs]
+        unshown = self._dependence.unshown(scene, runs)
+        for number, why in self._dependence.differing(runs).items():
+            if abs(found[number].distance) <= BLOWN * _scale(scene, found[number]):
+                unshown.setdefault(number, why)
         for number in coarser.wanted:
             if coarser.why:
                 found[number] = _unknown(found[number], f"numerical error not estimated: {coarser.why}")
@@ -147,8 +152,8 @@ class Estimates:
                 [run.worst[number] for run in coarser.runs],
             )
             if coarser.longer and number not in unshown:
-                change = coarser.longer.values[number] - coarser.runs[-1].worst[number]
-                found[number] = _settled(found[number], change, coarser.longer.length)
+                coarsest = coarser.runs[-1].worst[number]
+                found[number] = _settled(found[number], coarsest, coarser.longer, number)
         for number, name in self._dependence.foreign.items():
             if found[number].decided and not coarser.why:
                 found[number] = _noted(
@@ -164,11 +169,9 @@ def coarseness(scene: Scene) -> float:
     return max(1.0, WELL_KNOWN / scene.steps_per_period) ** 2
 
 
-def _fastest(trace: Signals) -> float:
-    """The highest mean speed of the main shaft in any step [rad/s]; 0 where the trace does not show it."""
-    if SHAFT_ANGLE not in trace:
-        return 0.0
-    return float(np.max(np.abs(np.diff(trace[SHAFT_ANGLE])) / np.diff(trace.time), initial=0.0))
+def _fastest(trace: Signals, angle: str) -> float:
+    """The highest mean speed of a shaft in any step [rad/s]."""
+    return float(np.max(np.abs(np.diff(trace[angle])) / np.diff(trace.time), initial=0.0))
 
 
 def worst_of(verdict: Verdict, trace: Signals) -> float:
@@ -200,16 +203,18 @@ def counts(trace: Signals, verdict: Verdict) -> bool:
     return verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu"
 
 
-def _settled(verdict: Verdict, change: float, length: str) -> Verdict:
+def _settled(verdict: Verdict, coarsest: float, longer: Longer, number: int) -> Verdict:
     """The verdict, with a note where the longer run comes at least half as near to the bound.
 
-    What is left to settle shrinks with each repeat, so a motion that has come less near stays within.
+    What is left to settle shrinks with each repeat, so a motion that has come less near stays within. A
+    change that is smaller than what coarse steps change shows nothing.
     """
+    change = longer.values[number] - coarsest
     later, worse = verdict.worst + change, -verdict.sense * change
-    fails = verdict.decided and not verdict.holds
-    if fails or not worse > max(verdict.error, (1.0 - SETTLING) * verdict.distance):
+    fails, by_steps = verdict.decided and not verdict.holds, abs(verdict.worst - coarsest)
+    if fails or not worse > max(verdict.error, by_steps, (1.0 - SETTLING) * verdict.distance):
         return verdict
-    unsettled = f"not settled: about {verdict.shown(later, 4)} in a run of {length}"
+    unsettled = f"not settled: about {verdict.shown(later, 4)} in a run of {longer.length}"
     return replace(_noted(verdict, unsettled), unsettled=unsettled)
 
 

@@ -51,7 +51,7 @@ class Pattern:
         needed = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
         self._estimates = Estimates(scene, self._all, self._on, len(needed))
-        self.judged = tuple(dict.fromkeys([*needed, *self._estimates.counters]))
+        self.judged = tuple(dict.fromkeys([*needed, *self._estimates.beside]))
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:

@@ -22,11 +22,12 @@ from ...variables import MOTION, Component, variables_of
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
+from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from ..scenes.standard_loom import shaft_inputs, turns_others
 from .plan import InMemory
 from .pruning import prune
-from .requested import claims_of, shaft_angle, signals_of, with_rates
+from .requested import SHAFT_ANGLE, claims_of, shaft_angle, signals_of, with_rates
 
 Floats = NDArray[np.float64]
 Scout = Callable[[Scene, Sequence[str], Grid], InMemory]
@@ -144,13 +145,13 @@ def may_pass_by(scene: Scene, name: str) -> bool:
         return False
     own = component.shortest_event.__func__, component.longest_step.__func__  # type: ignore[attr-defined]
     usual = Component.shortest_event.__func__, Component.longest_step.__func__  # type: ignore[attr-defined]
-    return own != usual or component.longest_turn < math.inf or "shaft" not in scene.instances
+    return own != usual or component.longest_turn < math.inf or _apart(scene, name)[0] < math.inf
 
 
-def longest_step(scene: Scene, name: str, fastest: float = 0.0) -> tuple[float, str]:
+def longest_step(scene: Scene, name: str, speed: float | None = None) -> tuple[float, str]:
     """The longest step that shows how an instance moves [s], and why; 0 where none is known.
 
-    `fastest` is the speed of the main shaft in a run, where it is faster than its mean speed [rad/s].
+    `speed` is the highest one of the shaft that it follows [rad/s], where a run has shown that.
     """
     instance = scene.instances[name]
     component = instance.fmu.component
@@ -163,52 +164,60 @@ def longest_step(scene: Scene, name: str, fastest: float = 0.0) -> tuple[float, 
         component.longest_turn,
         f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
     )
-    turn, why = min(by_event, declared, _alone(scene, name))
-    return min(component.longest_step(instance.effect), _taking(turn, why, _speed(scene, name, fastest)))
+    mean = _mean_speed(scene, name)
+    apart = _apart(scene, name) if speed is not None or math.isfinite(mean) else (math.inf, "")
+    turn, why = min(by_event, declared, apart)
+    taking = _taking(turn, why, mean if speed is None else max(speed, mean if math.isfinite(mean) else 0.0))
+    return min(component.longest_step(instance.effect), taking)
 
 
-def _alone(scene: Scene, name: str) -> tuple[float, str]:
-    """The turn of a shaft that is an instance's own: no signal shows how far it turns in a step.
+def _apart(scene: Scene, name: str) -> tuple[float, str]:
+    """The turn of a shaft that is not the main one, whose angle claims look at themselves."""
+    instance = scene.instances[name]
+    follows = bool(shaft_inputs(instance.fmu.component, instance.fmu.ports))
+    other = follows and followed(scene, name).partition(".")[0] != "shaft"
+    return math.radians(
+        SHOWN if other else math.inf
+    ), f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
 
-    Of a shaft that a third-party FMU turns nothing is known.
+
+def followed(scene: Scene, name: str) -> str:
+    """The signal of the shaft's angle that an instance follows; empty for one that turns by itself.
+
+    What follows no shaft moves with what the main shaft moves.
     """
     instance = scene.instances[name]
-    follows = shaft_inputs(instance.fmu.component, instance.fmu.ports)
-    alone = (
-        follows and "shaft" not in scene.instances and scene.instances[_shaft_of(scene, name)].fmu.component
-    )
-    return math.radians(
-        SHOWN if alone else math.inf
-    ), f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+    inputs = shaft_inputs(instance.fmu.component, instance.fmu.ports)
+    wires = {wire.sink: ".".join(wire.source) for wire in scene.wires} if inputs else {}
+    if inputs:
+        return wires.get((name, inputs[0]), "")
+    turned = "shaft" in scene.instances and name != "shaft" and "angle" in scene.instances["shaft"].fmu.ports
+    return SHAFT_ANGLE if turned and _own_speed(instance) is None else ""
+
+
+def _own_speed(instance: Instance) -> float | None:
+    """The speed that an instance is given [rad/s]; None where it has none."""
+    port = instance.fmu.ports.get("speed")
+    if port is None or port.causality == "output":
+        return None
+    return abs(float(instance.values.get("speed", port.start or 0.0)))
 
 
 def _taking(turn: float, why: str, speed: float) -> tuple[float, str]:
     """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
-    if math.isinf(turn) or not speed:
+    if math.isinf(turn) or not speed:  # it stands
         return math.inf, why
     return turn / speed, why if math.isfinite(speed) else f"{why}, and the speed of the shaft is not known"
 
 
-def _speed(scene: Scene, name: str, fastest: float) -> float:
-    """The speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
-    shaft = _shaft_of(scene, name)
-    each = scene.instances[shaft]
-    port, known = each.fmu.ports.get("speed"), fastest if shaft == "shaft" else 0.0
-    if port is None:
-        return known or math.inf
-    return max(known, abs(float(each.values.get("speed", port.start or 0.0))))
-
-
-def _shaft_of(scene: Scene, name: str) -> str:
-    """The instance whose shaft another one follows, through others or not; itself if it follows none."""
-    moved_by = {wire.sink: wire.source[0] for wire in scene.wires}
+def _mean_speed(scene: Scene, name: str) -> float:
+    """The mean speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
     passed = set[str]()
     while name not in passed:
         passed.add(name)
-        each = scene.instances[name]
-        inputs = ((name, variable) for variable in shaft_inputs(each.fmu.component, each.fmu.ports))
-        name = next((moved_by[sink] for sink in inputs if sink in moved_by), name)
-    return name
+        name = followed(scene, name).partition(".")[0] or name
+    own = _own_speed(scene.instances[name])
+    return math.inf if own is None else own
 
 
 def _check(scene: Scene) -> None:
