@@ -231,7 +231,7 @@ def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: 
 def test_a_backend_of_another_environment_is_not_asked_for(copied: Path) -> None:
     """As a notebook of another environment sets it for every shell command."""
     command = [sys.executable, "-m", "loomfmu.cli", "plot", str(copied), "belt.margin", "--output", "a.png"]
-    environment = os.environ | {"MPLBACKEND": "module://not_there.backend_inline"}
+    environment = os.environ | {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
     done = subprocess.run(command, cwd=copied.parent, env=environment, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, "written: a.png\n"), done.stderr
 

@@ -151,7 +151,7 @@ class Estimates:
                 self._dependence.methods[number],
                 [run.worst[number] for run in coarser.runs],
             )
-            if coarser.longer and number not in unshown:
+            if coarser.longer and number not in unshown and not counts(trace, found[number]):
                 coarsest = coarser.runs[-1].worst[number]
                 found[number] = _settled(found[number], coarsest, coarser.longer, number)
         for number, name in self._dependence.foreign.items():
@@ -193,8 +193,8 @@ def _estimated(
             return verdict
         return _undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
-    if counts(trace, verdict):
-        spread = math.ceil(spread)  # a count is off by whole numbers
+    if counts(trace, verdict):  # which is off by whole numbers, and one of blows by one at least
+        spread = max(math.ceil(spread), int(method.near == math.inf and worst > 0.0))
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 

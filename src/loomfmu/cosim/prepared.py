@@ -132,7 +132,7 @@ class Pattern:
     def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
         """Run the scene, record it to a file, and judge its claims."""
         scene, known, chosen = self._with_steps(scene)
-        signals = recorded(scene)
+        signals = list(dict.fromkeys([*recorded(scene), *self._estimates.beside]))
         stepping = self.stepping(signals)
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)

@@ -1,8 +1,9 @@
 """Signals drawn by matplotlib over shaft angle or time, in the units that people read."""
 
 import os
+import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -38,16 +39,18 @@ def plot(trace: Signals, signals: Sequence[str], over: str | None, fold: bool, a
 def check() -> None:
     """Raise LoomfmuError if the extra `plot` is not installed, or matplotlib fails over a matplotlibrc."""
     need("a picture", "plot")
+    # one of another environment, as a notebook sets it for its shell, keeps matplotlib from being imported
+    first, backend = "matplotlib" not in sys.modules, os.environ.pop("MPLBACKEND", None)
     try:
-        import matplotlib.figure  # noqa: F401
+        import matplotlib.figure
     except UnicodeDecodeError:
         raise LoomfmuError("a matplotlibrc that matplotlib reads is not text in UTF-8; delete it") from None
-    except (
-        ValueError
-    ):  # MPLBACKEND is that of another environment, as in a notebook's shell; pictures need none
-        if os.environ.pop("MPLBACKEND", None) is None:
-            raise
-        check()
+    finally:
+        if backend is not None:
+            os.environ["MPLBACKEND"] = backend
+    if first and backend is not None:
+        with suppress(ValueError):
+            matplotlib.rcParams["backend"] = backend
 
 
 @contextmanager

@@ -18,12 +18,11 @@ def sentence() -> str:
     of_all = {name: int(count) for name, count in table("verdicts")[-1].items() if count.isdecimal()}
     shown = {name: f"{count:,}" if count else "none" for name, count in of_all.items()}
     wrong = of_all["false_holds"] + of_all["false_fails"]
-    small = of_all["too_small"]
+    verb = "is" if of_all["too_small"] == 1 else "are"
     return (
         f"Of {shown['verdicts']} verdicts on {shown['scenes']} random scenes {wrong or 'none'} are wrong,"
-        f" {shown['false_holds']} of them a false \"holds\" and {shown['wrong_from_1440']} with 1440 steps in a"
-        f" revolution or more; {shown['too_small']} of {shown['errors']} errors {'is' if small == 1 else 'are'}"
-        " too small."
+        f' {shown["false_holds"]} of them a false "holds" and {shown["wrong_from_1440"]} with 1440 steps in'
+        f" a revolution or more; {shown['too_small']} of {shown['errors']} errors {verb} too small."
     )
 
 

@@ -14,7 +14,7 @@ from ...errors import LoomfmuError, listed, shown
 from ...traces import Verdict
 from ..evaluations import Evaluations
 from ..span import Span, warnings_of
-from .results import ClaimLimits, Doubt, Limit, Limits, Stretch
+from .results import ClaimLimits, Limit, Limits, Stretch
 from .search import Function, holds, near_zero, root, touching
 
 POINTS = 41  # of the scan
@@ -122,18 +122,21 @@ def _claim_limits(
     ranges, doubts = [], []
     for low, high in pairwise(edges):
         if holding:
-            stretch, inside = Stretch(low, high), [value for value in tried if low <= value <= high]
+            inside = [value for value in tried if low <= value <= high]
             doubt = _doubt(number, runs, inside, limits)
-            ranges += [stretch] * (not doubt)
-            doubts += [Doubt(stretch, doubt)] * bool(doubt)
+            ranges += _sure(number, runs, inside) if doubt else [Stretch(low, high)]
+            if doubt:
+                doubts.append(doubt)
         holding = not holding
     points = tuple((value, distance(value)) for value in tried)
     name = called(claim, verdict)
     return ClaimLimits(name, tuple(limits), tuple(ranges), depends, verdict, points, tuple(doubts))
 
 
-def _doubt(number: int, runs: _Runs, inside: Sequence[float], limits: Sequence[Limit]) -> str:
-    """Return why a claim, counted from 0, may fail in a range of values where it seems to hold.
+def _doubt(
+    number: int, runs: _Runs, inside: Sequence[float], limits: Sequence[Limit]
+) -> tuple[float, str] | None:
+    """Return where a claim, counted from 0, is undecided among values at which it seems to hold, and why.
 
     It is asked where it is nearest to its bound, but not as near to a limit as that may be off.
     """
@@ -143,10 +146,17 @@ def _doubt(number: int, runs: _Runs, inside: Sequence[float], limits: Sequence[L
         if not any(abs(value - each.value) <= each.error < math.inf for each in limits)
     ]
     if not clear:
-        return "the range is narrower than the numerical error of its limits" if inside else ""
-    distance = runs.distance(number)
-    verdict = runs.estimated(min(clear, key=distance))[number]
-    return "" if verdict.holds else verdict.note or f"numerical error {verdict.shown_error}"
+        return (inside[0], "the range is narrower than the numerical error of its limits") if inside else None
+    value = min(clear, key=runs.distance(number))
+    verdict = runs.estimated(value)[number]
+    return None if verdict.holds else (value, verdict.note or f"numerical error {verdict.shown_error}")
+
+
+def _sure(number: int, runs: _Runs, inside: Sequence[float]) -> list[Stretch]:
+    """Return the ranges between values tried in which a claim, counted from 0, holds with its error."""
+    parts = groupby(inside, lambda value: runs.estimated(value)[number].holds)
+    found = [list(values) for holding, values in parts if holding]
+    return [Stretch(each[0], each[-1]) for each in found if len(each) > 1]
 
 
 def _limit(number: int, runs: _Runs, low: float, high: float) -> Limit:

@@ -49,20 +49,13 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Doubt:
-    """A range in which a claim seems to hold, but is undecided where it is nearest to its bound, and why."""
-
-    stretch: Stretch
-    why: str
-
-
-@dataclass(frozen=True)
 class ClaimLimits:
     """The limits of one claim, ascending, and the ranges in which it holds.
 
     `points` are the values that were tried and the distances there, NaN where the claim fails without one.
     `depends` is false if the distance is the same everywhere. `verdict` is the one at the scene's own value.
-    `doubts` are ranges that are left out, since numerical errors leave the claim undecided there.
+    `doubts` are values about which a range is left out, since numerical errors leave the claim undecided
+    there, and why.
     """
 
     claim: str
@@ -71,7 +64,7 @@ class ClaimLimits:
     depends: bool
     verdict: Verdict
     points: tuple[tuple[float, float], ...] = field(repr=False)
-    doubts: tuple[Doubt, ...] = ()
+    doubts: tuple[tuple[float, str], ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -201,9 +194,9 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield 'Where a claim "jumps", it counts something, or is undecided or without a value on one side.'
     yield from _unsettled(found)
     for each in found.claims:
-        for stretch, why in ((doubt.stretch, doubt.why) for doubt in each.doubts):
-            where = f"{span.number(stretch.low)} to {span.show(stretch.high)}"
-            yield f"From {where} '{each.claim}' is undecided: {why}."
+        yield from (
+            f"At {span.show(value)} '{each.claim}' is undecided: {why}." for value, why in each.doubts
+        )
     own = [
         f"{_names(names)} {one if len(names) == 1 else several}"
         for decided, one, several in ((True, "fails", "fail"), (False, "is undecided", "are undecided"))
