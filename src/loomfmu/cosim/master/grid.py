@@ -103,10 +103,10 @@ def passed_by(scene: Scene) -> dict[str, str]:
     for drive in scene.drives if equal else ():
         places = _rows(scene, drive.periods) / scene.step_size
         # between the steps lies a line, which a slow table hardly leaves
-        ends = [drive.along(side(places) / scene.steps_per_period) for side in (np.floor, np.ceil)]
-        line = ends[0] + (places - np.floor(places)) * (ends[1] - ends[0])
-        off = np.abs(drive.along(places / scene.steps_per_period) - line)
-        if np.any(off > LEFT * np.ptp(drive.values)):
+        at = (np.floor(places), places, np.ceil(places))
+        before, here, after = (drive.along(each / scene.steps_per_period).astype(float) for each in at)
+        off = np.abs(here - before - (places - at[0]) * (after - before))
+        if np.any(off > LEFT * np.ptp(np.array(drive.values, dtype=float))):
             rows = f"rows of inputs.{drive.instance}.{drive.variable} lie between the steps"
             found[drive.instance] = f"{rows}, which {equal} needs to be equal; take steps that meet all rows"
     return found
