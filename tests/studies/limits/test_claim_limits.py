@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from loomfmu import LoomfmuError, limit, prepare
 from loomfmu.cosim.scenes.scene import Scene, parse
 from loomfmu.design import loom as design
 from loomfmu.machines import MACHINES
-from loomfmu.studies.limits.results import ClaimLimits, Limits
+from loomfmu.studies.limits.results import ClaimLimits, Limits, Stretch, rows
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 RPM = 2.0 * math.pi / 60.0
@@ -305,3 +306,14 @@ at_most = "0.4 m/s"
     found = limit(parse(text, "blows"), vary="shaft.speed=574rpm..575.9rpm", points=3)
     assert not found and not found.claims[0].ranges
     assert "'hardest blow (play_1.hardest_blow)' is undecided: " in str(found)
+
+
+def test_a_claim_that_is_undecided_in_part_of_the_range_does_not_hold_everywhere() -> None:
+    found = limit(DEMO, vary="shaft.speed=400rpm..500rpm", set={"steps_per_revolution": 90}, points=3)
+    one, *others = (replace(each, limits=()) for each in found.claims)
+    low, high = found.span.low, 450.0 * RPM
+    doubtful = replace(one, ranges=(Stretch(low, high),), doubts=((500.0 * RPM, "numerical error 1"),))
+    found = replace(found, claims=(doubtful, *others), ranges=(Stretch(low, high, above=one.claim),))
+    assert rows(found)[0][1] == "up to 450 rev/min"
+    assert f"The first that is not sure to hold is '{one.claim}' above this range." in str(found)
+    assert f"At 500 rev/min '{one.claim}' is undecided: numerical error 1." in str(found)

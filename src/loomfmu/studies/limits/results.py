@@ -152,7 +152,7 @@ def _holds(each: ClaimLimits, span: Span) -> str:
     """Return the ranges in which a claim holds, in words."""
     if not each.ranges:
         return "nowhere for sure" if each.doubts else "nowhere"
-    if not each.limits:
+    if not (each.limits or each.doubts):
         return "everywhere"
     return ", ".join(_range(stretch, span) for stretch in each.ranges)
 
@@ -185,7 +185,7 @@ def conclusion(found: Limits) -> Iterator[str]:
     if not found.depends:
         yield f"No claim depends on {span.key} between {span.number(span.low)} and {span.show(span.high)}."
     for stretch in found.ranges:
-        yield _sentence(stretch, span)
+        yield _sentence(stretch, found)
     if not found.ranges:
         never = [each.claim for each in found.claims if not each.ranges]
         why = f": {_names(never)} hold{'s' * (len(never) == 1)} nowhere" if never else ""
@@ -211,19 +211,23 @@ def conclusion(found: Limits) -> Iterator[str]:
 def _unsettled(found: Limits) -> Iterator[str]:
     """Yield a sentence for each claim whose limits are those of a run that is too short."""
     for each in found.claims:
-        for limit in [limit for limit in each.limits if limit.unsettled][:1]:
+        if limit := next((limit for limit in each.limits if limit.unsettled), None):
             place = found.span.show(limit.value)
             yield f"At {place} '{each.claim}' is {limit.unsettled}; its limits are of the shorter one."
 
 
-def _sentence(stretch: Stretch, span: Span) -> str:
+def _sentence(stretch: Stretch, found: Limits) -> str:
+    """Return what holds in a range, and which claims end it: by failing, or by being undecided."""
+    span, limits = found.span, {limit.value for each in found.claims for limit in each.limits}
     text = f"All claims hold from {span.number(stretch.low)} to {span.show(stretch.high)}"
     ends = [
         f"'{claim}' {way} this range"
         for way, claim in (("below", stretch.below), ("above", stretch.above))
         if claim
     ]
-    return f"{text}. The first to fail is {' and '.join(ends)}." if ends else f"{text}, the whole range."
+    edges = [edge for edge, claim in ((stretch.low, stretch.below), (stretch.high, stretch.above)) if claim]
+    first = "to fail" if limits.issuperset(edges) else "that is not sure to hold"
+    return f"{text}. The first {first} is {' and '.join(ends)}." if ends else f"{text}, the whole range."
 
 
 def _names(claims: Sequence[str]) -> str:
