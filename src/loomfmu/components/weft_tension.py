@@ -7,7 +7,7 @@ from ..physics.weft import capstan_gain, drag_per_length, snatch_tension, unstre
 from .weft_way import NEAREST, PEAK, PLACE, POINT, SLACK, TURN, YIELD, WeftWay
 
 SHORTEST = 1e-15  # s: two samples that are closer are one, since the squares of their distance underflow
-STILL = 1e-11  # m: a way between two samples that rounding may make of none
+STILL = 1e-11  # m: a way between two samples that rounding may have made
 PARTS = 4  # of the way between two samples: in each the tension turns once at most
 MOST_POINTS = 24  # of the brake's program in a part: all of them, and more than steps should be long
 MOST_CHANGES = 3  # of the brake in a part, between holding the yarn and letting it through
@@ -142,7 +142,7 @@ class WeftTension(WeftWay):
     def face(self, velocity: float, travel: float) -> None:
         """Turn to the head's direction: a giver begins a new pick, a taker goes on with the giver's yarn.
 
-        A way that is no longer than what rounding leaves of a travel shows no direction.
+        A way so short that rounding may have made it shows no direction.
         """
         if velocity > STILL and not self.inward:
             self.inward = True

@@ -48,9 +48,8 @@ def chosen(
         trace, verdicts = judge(tried)
         if len(before) == len(SHARES):
             coarser = Coarser(everything, tuple(before))
-            if crowded(
-                altered(scene, steps_per_period=round(SHARES[-1] * steps))
-            ):  # such runs are hardly coarser
+            coarsest = altered(scene, steps_per_period=round(SHARES[-1] * steps))
+            if crowded(coarsest):  # those that were tried before are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), everything)
             estimated = estimates.of(tried, trace, verdicts, coarser)
             errors = [

@@ -30,14 +30,16 @@ class Method(NamedTuple):
     The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: two of
     them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
     leave, hide the order; `scatter` a share of how far the signal has moved since the start, which changes by
-    so much whatever the steps. Numbers farther from their bound than the share `near` of it are not estimated
-    where only near ones are: it is far above what errors are with a few dozen steps in a revolution.
+    so much whatever the steps. A count above 0 is off by `least_count` at least. Numbers farther from their
+    bound than the share `near` of it are not estimated where only near ones are: it is far above what errors
+    are with a few dozen steps in a revolution.
     """
 
     factors: tuple[float, float, float]
     floor: float
     near: float
     scatter: float = 0.0
+    least_count: int = 0
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
@@ -50,7 +52,7 @@ HELD = PRESENT._replace(floor=1e-9)
 MEMORY = Method((6.0, 2.0, 0.7), floor=1e-8, near=0.1)
 # Each blow makes a difference larger, by no order of the steps: one more or less changes all that follow, so
 # that no number is far from a bound.
-BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf)
+BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf, least_count=1)
 # A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
 

@@ -152,8 +152,10 @@ class Estimates:
                 [run.worst[number] for run in coarser.runs],
             )
             if coarser.longer and number not in unshown and not counts(trace, found[number]):
-                coarsest = coarser.runs[-1].worst[number]
-                found[number] = _settled(found[number], coarsest, coarser.longer, number)
+                length, values = coarser.longer
+                found[number] = _settled(
+                    found[number], coarser.runs[-1].worst[number], values[number], length
+                )
         for number, name in self._dependence.foreign.items():
             if found[number].decided and not coarser.why:
                 found[number] = _noted(
@@ -193,8 +195,8 @@ def _estimated(
             return verdict
         return _undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
-    if counts(trace, verdict):  # which is off by whole numbers, and one of blows by one at least
-        spread = max(math.ceil(spread), int(method.near == math.inf and worst > 0.0))
+    if counts(trace, verdict):  # which is off by whole numbers
+        spread = max(math.ceil(spread), method.least_count if worst > 0.0 else 0)
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 
@@ -203,18 +205,18 @@ def counts(trace: Signals, verdict: Verdict) -> bool:
     return verdict.signal in trace and trace[verdict.signal].dtype.kind in "iu"
 
 
-def _settled(verdict: Verdict, coarsest: float, longer: Longer, number: int) -> Verdict:
+def _settled(verdict: Verdict, coarsest: float, longer: float, length: str) -> Verdict:
     """The verdict, with a note where the longer run comes at least half as near to the bound.
 
     What is left to settle shrinks with each repeat, so a motion that has come less near stays within. A
     change that is smaller than what coarse steps change shows nothing.
     """
-    change = longer.values[number] - coarsest
+    change = longer - coarsest
     later, worse = verdict.worst + change, -verdict.sense * change
     fails, by_steps = verdict.decided and not verdict.holds, abs(verdict.worst - coarsest)
     if fails or not worse > max(verdict.error, by_steps, (1.0 - SETTLING) * verdict.distance):
         return verdict
-    unsettled = f"not settled: about {verdict.shown(later, 4)} in a run of {longer.length}"
+    unsettled = f"not settled: about {verdict.shown(later, 4)} in a run of {length}"
     return replace(_noted(verdict, unsettled), unsettled=unsettled)
 
 

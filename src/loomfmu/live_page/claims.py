@@ -33,14 +33,15 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     rows = [
         _claim(claim, method, verdict, trace, table)
         | {"unshown": next((each[number] for each in unshown if number in each), "")}
-        | {"coarseness": coarseness(scene), "counts": counts(trace, verdict)}
+        | {"counts": counts(trace, verdict)}
         for number, (claim, method, verdict) in enumerate(asked)
     ]
     signals = [
         {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table
     ]
     wasm = b64encode(module_of(SOURCE)).decode()
-    return {"wasm": wasm, "fields": FIELDS, "signals": signals, "claims": rows}
+    about = {"fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
+    return {"wasm": wasm, **about, "claims": rows}
 
 
 def _claim(claim: Claim, method: Method, verdict: Verdict, trace: Trace, table: Table) -> dict[str, Any]:

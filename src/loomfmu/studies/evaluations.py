@@ -20,6 +20,7 @@ class Evaluations:
     def __init__(self, loom: Prepared, spans: Sequence[Span], fixed: Mapping[str, Any] | None = None):
         self._loom, self._spans, self._fixed = loom, tuple(spans), dict(fixed or {})
         self._verdicts: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
+        self._estimated: dict[tuple[float, ...], tuple[Verdict, ...]] = {}
         self.warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
@@ -34,7 +35,9 @@ class Evaluations:
 
     def estimated(self, *values: float) -> tuple[Verdict, ...]:
         """The same with their numerical errors, which takes further runs."""
-        return self._evaluated(values, "all")
+        if values not in self._estimated:
+            self._estimated[values] = self._evaluated(values, "all")
+        return self._estimated[values]
 
     def _evaluated(self, values: Sequence[float], errors: Errors) -> tuple[Verdict, ...]:
         settings = dict(self._fixed)

@@ -164,11 +164,10 @@ def longest_step(scene: Scene, name: str, speed: float | None = None) -> tuple[f
         component.longest_turn,
         f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
     )
-    mean = _mean_speed(scene, name)
-    apart = _apart(scene, name) if speed is not None or math.isfinite(mean) else (math.inf, "")
-    turn, why = min(by_event, declared, apart)
-    taking = _taking(turn, why, mean if speed is None else max(speed, mean if math.isfinite(mean) else 0.0))
-    return min(component.longest_step(instance.effect), taking)
+    speeds = [each for each in (speed, _mean_speed(scene, name)) if each is not None]
+    fastest = max(speeds, default=None)
+    turns = [by_event, declared] if fastest is None else [by_event, declared, _apart(scene, name)]
+    return min(component.longest_step(instance.effect), _taking(*min(turns), fastest))
 
 
 def _apart(scene: Scene, name: str) -> tuple[float, str]:
@@ -176,9 +175,8 @@ def _apart(scene: Scene, name: str) -> tuple[float, str]:
     instance = scene.instances[name]
     follows = bool(shaft_inputs(instance.fmu.component, instance.fmu.ports))
     other = follows and followed(scene, name).partition(".")[0] != "shaft"
-    return math.radians(
-        SHOWN if other else math.inf
-    ), f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+    why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+    return math.radians(SHOWN) if other else math.inf, why
 
 
 def followed(scene: Scene, name: str) -> str:
@@ -187,12 +185,29 @@ def followed(scene: Scene, name: str) -> str:
     What follows no shaft moves with what the main shaft moves.
     """
     instance = scene.instances[name]
-    inputs = shaft_inputs(instance.fmu.component, instance.fmu.ports)
-    wires = {wire.sink: ".".join(wire.source) for wire in scene.wires} if inputs else {}
-    if inputs:
-        return wires.get((name, inputs[0]), "")
+    if inputs := shaft_inputs(instance.fmu.component, instance.fmu.ports):
+        angle = name, inputs[0]
+        return next((".".join(wire.source) for wire in scene.wires if wire.sink == angle), "")
     turned = "shaft" in scene.instances and name != "shaft" and "angle" in scene.instances["shaft"].fmu.ports
     return SHAFT_ANGLE if turned and _own_speed(instance) is None else ""
+
+
+def _taking(turn: float, why: str, speed: float | None) -> tuple[float, str]:
+    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
+    if math.isinf(turn) or speed == 0.0:  # it stands
+        return math.inf, why
+    if speed is None:
+        return 0.0, f"{why}, and the speed of the shaft is not known"
+    return turn / speed, why
+
+
+def _mean_speed(scene: Scene, name: str) -> float | None:
+    """The mean speed of the shaft that an instance follows [rad/s]; None where it is not known."""
+    passed = set[str]()
+    while name not in passed:
+        passed.add(name)
+        name = followed(scene, name).partition(".")[0] or name
+    return _own_speed(scene.instances[name])
 
 
 def _own_speed(instance: Instance) -> float | None:
@@ -201,23 +216,6 @@ def _own_speed(instance: Instance) -> float | None:
     if port is None or port.causality == "output":
         return None
     return abs(float(instance.values.get("speed", port.start or 0.0)))
-
-
-def _taking(turn: float, why: str, speed: float) -> tuple[float, str]:
-    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
-    if math.isinf(turn) or not speed:  # it stands
-        return math.inf, why
-    return turn / speed, why if math.isfinite(speed) else f"{why}, and the speed of the shaft is not known"
-
-
-def _mean_speed(scene: Scene, name: str) -> float:
-    """The mean speed of the shaft that an instance follows [rad/s]; infinite where it is not known."""
-    passed = set[str]()
-    while name not in passed:
-        passed.add(name)
-        name = followed(scene, name).partition(".")[0] or name
-    own = _own_speed(scene.instances[name])
-    return math.inf if own is None else own
 
 
 def _check(scene: Scene) -> None:

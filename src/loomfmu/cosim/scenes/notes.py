@@ -124,7 +124,8 @@ def added(tables: dict[str, Any], directory: Path) -> Iterable[str]:
     loom = standard_loom.loom(tables["loom"], directory) if "loom" in tables else {}
     for name in tables if loom else ():
         stem = standard_loom.stem(name)
-        carrier = standard_loom.FITTED_TO.get(stem, stem) + name.removeprefix(stem)
+        fitting = standard_loom.FITTED_TO.get(stem, stem)
+        carrier = fitting + name.removeprefix(stem)
         known = stem in standard_loom.COMPONENT_OF and stem != name and name not in loom
         fitted = carrier != name and carrier in {*loom, *tables}
         if not known or fitted or {"component", "fmu"} & tables[name].keys():
@@ -133,8 +134,7 @@ def added(tables: dict[str, Any], directory: Path) -> Iterable[str]:
         if carrier == name and not there:  # it is the only one
             continue
         beside = f"beside {listed(there)}" if there else f"which has no {carrier}"
-        rapier = stem in ("weft", "belt", "belt_motion")
-        both = "set loom.both_rapiers = true for the taker's, or " if rapier else ""
+        both = "set loom.both_rapiers = true for the taker's, or " if "weft" in (stem, fitting) else ""
         meant = f'write component = "{standard_loom.COMPONENT_OF[stem]}" if it is meant'
         yield f"[{name}] adds a {stem.replace('_', ' ')} to the loom, {beside}; {both}{meant}"
 

@@ -1,7 +1,7 @@
 /* The claims on a run, judged by the rules that judge every run, compiled from C: see cosim/claims/native. A verdict has the
  * worst value with its bound, time, error and note, and `holds`, which is null where the claim is undecided. Of the numerical
  * error the page knows at the scene's own values alone what other steps would change: elsewhere it takes more for it. */
-loomfmu.judge = ({ fields, signals }, length, wasm) => {
+loomfmu.judge = ({ fields, signals, coarseness }, length, wasm) => {
   const FAR_ABOVE = 10, NEAR = 1e-4; // times the error at the scene's own values; of the bound
   const NEAR_COUNT = 0.5; // of the bound: one event more may bring others with it
   const NOT_HERE = "loomfmu run judges it";
@@ -52,7 +52,7 @@ loomfmu.judge = ({ fields, signals }, length, wasm) => {
 
   /* Take in what the error may be at other values than the scene's own. */
   function elsewhere(place, claim, first, spread) {
-    const { coarseness, counts, unshown } = claim, near = Math.max(NEAR * coarseness, counts ? NEAR_COUNT : 0);
+    const { counts, unshown } = claim, near = Math.max(NEAR * coarseness, counts ? NEAR_COUNT : 0);
     const far = unshown ? Infinity : spread && FAR_ABOVE * coarseness * spread;
     return settle(place, claim, first, far, near * Math.abs(first.bound));
   }

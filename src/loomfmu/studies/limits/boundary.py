@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from ...cosim.prepared import Prepared
-from ...cosim.reading import checked, protected
+from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
@@ -92,7 +92,8 @@ def limit(
             " varied; vary a second one or leave rows out"
         )
     points, rows = whole_points(points), whole_points(ROWS if rows is None else rows, "rows", 2)
-    with prepare(protected(checked(scene, set, "native"))) as loom:
+    with prepare(scene, set=set) as loom:
+        protected(loom.scene)
         first = span_of(loom.scene, keys[0], from_, to)
         if len(keys) == 1:
             with progress_bar(f"limits of {first.key}", points, wanted=progress) as advance:

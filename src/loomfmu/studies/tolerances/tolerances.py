@@ -12,7 +12,7 @@ from typing import Any
 from ... import notebook
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
-from ...cosim.reading import checked, protected
+from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
@@ -145,7 +145,8 @@ def tolerances(
     Raises:
         LoomfmuError: no tolerances, no claims, bad input, or values within the box that cannot be run
     """
-    with prepare(protected(checked(scene, set, "native"))) as loom:
+    with prepare(scene, set=set) as loom:
+        protected(loom.scene)
         loaded = loom.scene
         keys = [vary] if isinstance(vary, str) else list(vary)
         given = [(key, None, None) for key in keys] or [
