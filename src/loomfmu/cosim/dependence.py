@@ -8,7 +8,10 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..errors import listed
+from ..traces.signals import Floats, Integers
 from ..upstream import sources_of, upstream
 from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
@@ -30,16 +33,16 @@ class Method(NamedTuple):
     The estimate is the largest of `factors` times the change from each of the `SHARES` of the steps: two of
     them may be small by chance. `floor` is a share of the value, below which rounding, and what iterations
     leave, hide the order; `scatter` a share of how far the signal has moved since the start, which changes by
-    so much whatever the steps. A count above 0 is off by `least_count` at least. Numbers farther from their
-    bound than the share `near` of it are not estimated where only near ones are: it is far above what errors
-    are with a few dozen steps in a revolution.
+    so much whatever the steps. A count is off by the share `miscounted` of it at least, rounded up. Numbers
+    farther from their bound than the share `near` of it are not estimated where only near ones are: it is far
+    above what errors are with a few dozen steps in a revolution.
     """
 
     factors: tuple[float, float, float]
     floor: float
     near: float
     scatter: float = 0.0
-    least_count: int = 0
+    miscounted: float = 0.0
 
 
 # Between the samples of what depends on the present alone the order is four or more where rates are known,
@@ -52,20 +55,37 @@ HELD = PRESENT._replace(floor=1e-9)
 MEMORY = Method((6.0, 2.0, 0.7), floor=1e-8, near=0.1)
 # Each blow makes a difference larger, by no order of the steps: one more or less changes all that follow, so
 # that no number is far from a bound.
-BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf, least_count=1)
+BOUNCING = MEMORY._replace(factors=(12.0, 4.0, 2.0), near=math.inf, miscounted=0.05)
 # A loop that carries values of the step before is of order one: the changes are 0.6, 1.6 and 3 times it.
 LAGGED = MEMORY._replace(factors=(12.0, 4.0, 2.0))
+
+
+class Count(NamedTuple):
+    """A number of blows so far [1] over time [s], each of shape (samples,)."""
+
+    time: Floats
+    blows: Integers
+
+    def follows(self, finer: "Count") -> bool:
+        """Return whether each blow of a run on finer steps comes here, too, within a step of it."""
+        step = float(np.max(np.diff(self.time), initial=0.0)) * (1.0 + SAME)
+        earliest, latest = finer.until(self.time - step), finer.until(self.time + step)
+        return bool(np.all((earliest <= self.blows) & (self.blows <= latest)))
+
+    def until(self, time: Floats) -> Integers:
+        """The blows so far at times that need be no samples."""
+        return self.blows[np.maximum(np.searchsorted(self.time, time, side="right") - 1, 0)]
 
 
 class Judged(NamedTuple):
     """A run, judged: the worst values of the claims, NaN where there is none, its blows, and its speeds.
 
-    `counted` has the number of blows by the signal that counts them, `speeds` the highest mean speed in any
-    step [rad/s] by the signal of a shaft's angle.
+    `counted` has the blows by the signal that counts them, `speeds` the highest mean speed in any step
+    [rad/s] by the signal of a shaft's angle.
     """
 
     worst: Sequence[float]
-    counted: Mapping[str, int]
+    counted: Mapping[str, Count]
     speeds: Mapping[str, float]
 
 
@@ -145,12 +165,21 @@ class Dependence:
         return found
 
     def differing(self, runs: Sequence[Judged]) -> dict[int, str]:
-        """The claims that depend on contacts of which these runs do not count the same, and why."""
+        """The claims that depend on blows that these runs, the finest first, do not share, and why.
+
+        Equal numbers do not suffice: a blow that is missed may be made up for by another one later.
+        """
         found = dict[int, str]()
         for counter, numbers in self.counters.items():
-            counts = {run.counted[counter] for run in runs if counter in run.counted}
-            why = f"{counter} is {listed(map(str, sorted(counts)), 'or')} with other steps; take more"
-            found |= dict.fromkeys(numbers if len(counts) > 1 else (), why)
+            counts = [run.counted[counter] for run in runs if counter in run.counted]
+            totals = {int(count.blows[-1]) for count in counts}
+            if len(totals) > 1:
+                how = f"is {listed(map(str, sorted(totals)), 'or')}"
+            elif not all(count.follows(counts[0]) for count in counts[1:]):
+                how = "counts blows at other times"
+            else:
+                continue
+            found |= dict.fromkeys(numbers, f"{counter} {how} with other steps; take more steps")
         return found
 
     @cached_property

@@ -18,7 +18,7 @@ from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from ..variables import MOTION
 from .claims.claim import Claim
-from .dependence import Dependence, Judged, Method
+from .dependence import Count, Dependence, Judged, Method
 from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
 from .scenes.instances import altered
@@ -126,7 +126,8 @@ class Estimates:
             worst_of(claim.judge(trace), trace) if number in wanted else math.nan
             for number, claim in enumerate(self.claims)
         ]
-        counted = {each: int(trace[each][-1]) for each in self._dependence.counters if each in trace}
+        counters = self._dependence.counters
+        counted = {each: Count(trace.time, trace[each]) for each in counters if each in trace}
         angles = dict.fromkeys(self._dependence.angles.values())
         return Judged(worst, counted, {each: _fastest(trace, each) for each in angles if each in trace})
 
@@ -196,7 +197,7 @@ def _estimated(
         return _undecided(verdict, NO_VALUE)
     spread = max(factor * abs(worst - value) for factor, value in zip(method.factors, coarser, strict=True))
     if counts(trace, verdict):  # which is off by whole numbers
-        spread = max(math.ceil(spread), method.least_count if worst > 0.0 else 0)
+        spread = math.ceil(max(spread, method.miscounted * worst))
     return claim.settled(trace, verdict, spread, method.floor, method.scatter)
 
 
