@@ -53,6 +53,10 @@ def test_values_beside_those_of_the_machine_are_named_and_varied_ones_left_out()
     varied = ["shaft.speed", "weft.crank_length"]
     assert heading(read, varied) == "WL680-3600, G6300 left; belt.head_mass = 100 g"
     assert heading(scenes.parse("[shaft]\n", "bare")) == "bare, 400 rev/min"
+    by_default = '[loom]\nhead = "G6300 left"\n'
+    assert heading(scenes.parse(by_default, "mine")) == start
+    own = by_default + "[belt]\nidle_travel = 0.25\n[weft]\noutput_length = 0.12\n"
+    assert heading(scenes.parse(own, "mine")) == "G6300 left, 400 rev/min"
     assert heading(scenes.load(SIMS / "driven_loom.toml")).endswith("nominally 412 rev/min")
 
 

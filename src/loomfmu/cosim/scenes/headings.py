@@ -30,11 +30,24 @@ def heading(scene: Scene, varied: Collection[str] = ()) -> str:
 
 
 def _published(scene: Scene) -> Iterator[str]:
-    """The machines and the heads that instances have."""
+    """The machines and the heads that instances have, be it by default."""
     for kind in machines.TAKERS:
-        instances = scene.instances.values()
-        if names := dict.fromkeys(each.published[kind] for each in instances if kind in each.published):
-            yield listed(names)
+        names = (each.published.get(kind) or _default(each, kind) for each in scene.instances.values())
+        if found := dict.fromkeys(filter(None, names)):
+            yield listed(found)
+
+
+def _default(instance: Instance, kind: str) -> str:
+    """The one machine or head whose values an instance has that was given none; "" if there is none."""
+    fmu, values = instance.fmu, instance.values
+    if not fmu.ours or fmu.name not in machines.TAKERS[kind]:
+        return ""
+    same = []
+    for name in machines.PUBLISHED[kind]:
+        published = machines.parameters(fmu.name, **{kind: name})
+        if all(value == values.get(key, fmu.ports[key].start) for key, value in published.items()):
+            same.append(name)
+    return same[0] if len(same) == 1 else ""
 
 
 def _own_values(scene: Scene) -> dict[str, str]:
