@@ -18,33 +18,16 @@ AT_STEP_END = "inputs_at_step_end"  # false where inputs are values at the start
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of a component, as it was declared.
-
-    `unit` is SI; `display` the unit people read it in; `rate` names the variable that is its time
-    derivative; `depends` the inputs that an output depends on (None: on all of them; empty: on parameters
-    alone; TIME: on time alone); `follows` the one input with which an output only rises or only falls;
-    `choices` the names of an enumeration's values, counted from 1; `indicator` says that it changes its sign
-    where an output jumps; `source` is the output that an input is usually wired to, `instance.variable`, with
-    # for the instance's own number, and in an array with * for every instance that has such an output;
-    several are separated by |, and the first in the scene counts. The `source` of a parameter is another
-    instance's parameter, whose value it takes unless it has its own. `source_for` limits both to scenes in
-    which that output is taken, or that input is wired to the same instance;
-    `lowest_of` and `highest_of` name the output whose extreme so far this one holds; `so_far` says that an
-    output only rises or only falls, such as a count, a sum or the extreme of something else; `when` and
-    `unless` name the yes-or-no parameter with which, or without which alone, it has an effect, or an
-    enumeration that is off at the first of its choices; `pole` says that an output grows without bound at the
-    edges of its component's windows; `element` is its place in an array,
-    such as `table[35]` for `table_36`; `carried` says that outputs beside extremes follow from what it held
-    before the step; `valid_if` names the yes-or-no output that says when an output can be relied on; `error`
-    the output, in the same unit, that says how far this one may be off whatever the steps.
-    """
+    """One variable of a component, as it was declared. Bounds and the start value are SI."""
 
     name: str
     type: type
     causality: str
     variability: str
     unit: str
+    """SI."""
     display: str
+    """The unit that people read it in."""
     start: float | int | bool
     description: str
     minimum: float | None = None
@@ -52,22 +35,43 @@ class Variable:
     nominal: float | None = None
     unbounded: bool = False
     rate: str | None = None
+    """The variable that is its time derivative."""
     depends: tuple[str, ...] | None = None
+    """Inputs that an output depends on: None for all, () for none, TIME for time alone."""
     follows: str | None = None
+    """The one input with which an output only rises or only falls."""
     choices: tuple[str, ...] = ()
+    """Names of an enumeration's values, counted from 1."""
     indicator: bool = False
+    """It changes its sign where an output jumps."""
     source: str | None = None
+    """What gives an input, or a parameter without a value of its own, its value: `instance.variable`.
+
+    # stands for the instance's own number, * in an array for all instances that have the variable. Several
+    are separated by |: the first that the scene has counts.
+    """
     source_for: str | None = None
+    """The output taken, or the input wired to the same instance, without which `source` does not count."""
     lowest_of: str | None = None
+    """The output whose lowest value so far it holds."""
     highest_of: str | None = None
+    """The output whose highest value so far it holds."""
     so_far: bool = False
+    """It only rises or only falls: a count, a sum, an extreme of something else."""
     when: str | None = None
+    """The parameter with which alone it has an effect: a Boolean, or an enumeration that has an "off" first."""
     unless: str | None = None
+    """The parameter, of the same types, without which alone it has an effect."""
     pole: bool = False
+    """It grows without bound at the edges of its component's windows."""
     element: str = ""
+    """Its place in an array, such as `table[35]` for `table_36`."""
     carried: bool = False
+    """It holds what the outputs beside extremes follow from, from before the step."""
     valid_if: str | None = None
+    """The Boolean output that tells when an output can be relied on."""
     error: str | None = None
+    """The output, in the same unit, that tells how far this one may be off whatever the steps."""
 
     @property
     def member(self) -> str:
