@@ -59,9 +59,9 @@ class Variable:
     so_far: bool = False
     """It only rises or only falls: a count, a sum, an extreme of something else."""
     when: str | None = None
-    """The parameter with which alone it has an effect: a Boolean, or an enumeration that has an "off" first."""
+    """The only parameter with which it has an effect: a Boolean, or an enumeration that starts with off."""
     unless: str | None = None
-    """The parameter, of the same types, without which alone it has an effect."""
+    """The parameter, of the same types, that takes its effect away."""
     pole: bool = False
     """It grows without bound at the edges of its component's windows."""
     element: str = ""
