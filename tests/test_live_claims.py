@@ -14,7 +14,7 @@ from browser import until
 
 import loomfmu
 from loomfmu import live_page
-from loomfmu.cosim.claims.claims import KINDS
+from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.traces import Verdict
 
@@ -109,7 +109,7 @@ def with_claims(text: str, claims: list[dict[str, Any]], values: dict[str, Any] 
 
 
 def test_each_kind_is_here() -> None:
-    assert {claim["kind"] for claim in ON_THE_LOOM + ON_A_MOTOR} == set(KINDS)
+    assert {claim["kind"] for claim in ON_THE_LOOM + ON_A_MOTOR} == set(kinds())
 
 
 SHORT = {"revolutions": 0.6, "steps_per_revolution": 25, "shaft.ramp_duration": "0 s"}

@@ -11,13 +11,13 @@ from unittest import mock
 import loomfmu
 from loomfmu import arguments, mechanism
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.claims import claims  # noqa: F401  it knows all kinds
 from loomfmu.cosim.claims.arguments import Argument, argument_of
-from loomfmu.cosim.claims.claim import AT_LEAST, Claim
+from loomfmu.cosim.claims.claim import AT_LEAST
+from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes.keys import COUPLINGS, GRIDS, KEYS
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.cosim.scenes.standard_loom import LOOM_KEYS
 from loomfmu.fmi.description.documentation import limits_text, start_text
+from loomfmu.loom.standard_loom import LOOM_KEYS
 from loomfmu.variables import variables_of
 
 DESIGN = ("loom", "buckling", "shed", "cam", "cam_export", "rocker_cam", "guidance", "dobby", "loads", "reed")
@@ -76,7 +76,7 @@ def scene_keys() -> str:
 def kinds_of_claims() -> str:
     """Every kind of claim with its arguments."""
     parts = ["# Kinds of claims", "[Claims](../docs/claims.md) says how they are judged."]
-    for name, kind in sorted(Claim.kinds.items()):
+    for name, kind in sorted(kinds().items()):
         parts += [f"## {name}", inspect.cleandoc(kind.__doc__ or "")]
         judged = kind.unit[1] if kind.unit[1] != "1" else ""
         side = "at least" if kind.sense == AT_LEAST else "at most"

@@ -8,13 +8,13 @@ compares two. `design` solves the same physics for a design; `report` and `live_
 
 from typing import TYPE_CHECKING, Any
 
+from .cosim.standard import Standard, hand_down
 from .version import __version__ as __version__
 
 if TYPE_CHECKING:
     from . import design as design
     from . import live_page as live_page
     from . import report as report
-    from .cosim.claims.claims import judge as judge
     from .cosim.prepared import Prepared as Prepared
     from .cosim.results import Evaluation as Evaluation
     from .cosim.results import Result as Result
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .cosim.run import prepare as prepare
     from .cosim.run import run as run
     from .errors import LoomfmuError as LoomfmuError
+    from .loom.judged import judge as judge
     from .studies.fitting.fit import Fit as Fit
     from .studies.fitting.fit import fit as fit
     from .studies.limits.boundary import limit as limit
@@ -57,7 +58,7 @@ _HOMES = {
     "design": "",
     "evaluate": "cosim.run",
     "prepare": "cosim.run",
-    "judge": "cosim.claims.claims",
+    "judge": "loom.judged",
     "live_page": "",
     "report": "",
     "fit": "studies.fitting.fit",
@@ -67,6 +68,15 @@ _HOMES = {
     "sweep": "sweeps.run",
     "tolerances": "studies.tolerances.tolerances",
 }
+
+
+def _loom() -> Standard:
+    from . import loom
+
+    return loom
+
+
+hand_down(_loom)
 
 
 def __getattr__(name: str) -> Any:

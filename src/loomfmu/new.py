@@ -11,9 +11,9 @@ from pathlib import Path
 from . import mechanism
 from .components import COMPONENTS
 from .cosim.scenes.keys import KEYS, TAKEN
-from .cosim.scenes.standard_loom import COMPONENT_OF
 from .errors import LoomfmuError
 from .files import ANY, cannot_write, check_target, put, write_file
+from .loom.standard_loom import COMPONENT_OF
 
 NAME = re.compile("[A-Z][A-Za-z0-9]*")
 TEMPLATE = Path(__file__).with_name("template")

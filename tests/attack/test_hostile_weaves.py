@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hostile import LONG, SHORT, attacked, damaged, revalued
 
-from loomfmu.cosim.scenes import weave
+from loomfmu.loom import weave
 
 FILES = sorted((Path(__file__).parents[2] / "sims" / "weaves").glob("*.wif"))
 

@@ -15,7 +15,7 @@ from peers import Ecos, Fmpy, Libcosim, absent
 from records import Notes, Row, Table, say
 from texts import Figures, Find, error, items, parts, pivot, shown, table
 
-from loomfmu.cosim.claims.claims import judge
+from loomfmu import judge
 from loomfmu.traces import Channel, Recording
 
 NAME = "precision"

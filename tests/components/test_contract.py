@@ -20,8 +20,9 @@ from driving import (
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.scenes import standard_loom
+from loomfmu.cosim.scenes import usual_wires
 from loomfmu.errors import numbered
+from loomfmu.loom.standard_loom import COMPONENT_OF
 from loomfmu.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
@@ -63,10 +64,10 @@ def test_what_is_said_of_variables_names_variables(component):
 
 @every_component
 def test_every_usual_source_is_an_output_of_the_standard_loom(component):
-    for name, source in standard_loom.wires({"damper_1": component}).items():
+    for name, source in usual_wires.wires({"damper_1": component}).items():
         sink = name.removeprefix("damper_1.")
         owner, variable = source.split(".")
-        feeding = COMPONENTS[standard_loom.COMPONENT_OF[standard_loom.stem(owner)]]
+        feeding = COMPONENTS[COMPONENT_OF[usual_wires.stem(owner)]]
         units_of = {v.name: v.unit for v in declared(feeding) if v.causality == "output"}
         assert units_of[variable] == next(v.unit for v in declared(component) if v.name == sink)
 

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 from loomfmu.components import COMPONENTS, DrivenShaft, WeftInsertion
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.standard_loom import gathered
+from loomfmu.cosim.scenes.usual_wires import gathered
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import parameters
 from loomfmu.physics.driven_shaft import driven_motion

@@ -8,7 +8,7 @@ import pytest
 
 from loomfmu import Trace
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.standard_loom import COMPONENT_OF
+from loomfmu.loom.standard_loom import COMPONENT_OF
 
 SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted(path.relative_to(SIMS).as_posix() for path in SIMS.glob("*.toml"))

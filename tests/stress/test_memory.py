@@ -12,7 +12,7 @@ import psutil
 import loomfmu
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.standard_loom import COMPONENT_OF
+from loomfmu.loom.standard_loom import COMPONENT_OF
 
 runs, warm_up = int(sys.argv[1]), int(sys.argv[2])
 text = '''

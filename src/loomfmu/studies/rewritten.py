@@ -8,13 +8,13 @@ from typing import Any
 
 from .. import units
 from ..cosim.scenes import scene as scenes
-from ..cosim.scenes import weave
 from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
 from ..extras import need
 from ..files import Kind, check_target, write_file
+from ..loom import weave
 from ..machines import TAKERS
 from ..own import load
 

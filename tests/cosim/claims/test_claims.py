@@ -18,13 +18,14 @@ from loomfmu.components import DobbyDrive
 from loomfmu.cosim.claims import judging
 from loomfmu.cosim.claims.arguments import Name, Quantity, argument
 from loomfmu.cosim.claims.claim import AT_MOST, Claim
-from loomfmu.cosim.claims.claims import KINDS, Kind
+from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.claims.judging import Form, Question, Run
 from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
 from loomfmu.fmi.native import compiler, platforms
+from loomfmu.loom.judged import Kind
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 from loomfmu.traces import Channel, Signals, TraceWriter
@@ -832,10 +833,10 @@ def test_the_distance_is_continuous_across_the_bound(loom: Callable[..., Trace])
 @pytest.fixture
 def kept_kinds() -> Iterator[None]:
     """The kinds of claims, as they were after the test."""
-    before = dict(KINDS)
+    before = dict(kinds())
     yield
-    KINDS.clear()
-    KINDS.update(before)
+    kinds().clear()
+    kinds().update(before)
 
 
 @pytest.mark.usefixtures("fmu_cache")
@@ -1058,7 +1059,7 @@ def test_a_negative_speed_is_refused_as_a_bound(loom: Callable[..., Trace]) -> N
 
 def test_a_limit_of_speed_that_turns_negative_in_a_page_is_not_compared(loom: Callable[..., Trace]) -> None:
     trace = loom(90)
-    question = KINDS["above"](signal="belt.lowest_speed_limit", bound="shaft.speed").question(trace)
+    question = kinds()["above"](signal="belt.lowest_speed_limit", bound="shaft.speed").question(trace)
     negative = question._replace(numbers=[-80.0, *question.numbers[1:]])
     found = Run(trace).verdict(trace, negative)
     assert found.word == "undecided"

@@ -11,60 +11,21 @@ bound, and by no more than it may be off there; the note says so.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields
-from typing import Any, Literal
+from typing import Any
 
 from ...errors import LoomfmuError, shown, suggestion
-from ...traces import Signals, Verdict
-from . import drive_claims, heald_claims, latched_claims, loom_claims, signal_claims
+from ...traces import Verdict
+from ..standard import standard
+from . import signal_claims
 from .claim import Claim
 
-KINDS = Claim.kinds
-FILES = (
-    signal_claims,
-    latched_claims,
-    heald_claims,
-    loom_claims,
-    drive_claims,
-)  # each kind in them adds itself to KINDS
+FILES = (signal_claims,)  # each kind of claim in them adds itself to the kinds
 
 
-Kind = Literal[  # for editors and type checkers; a test holds it to the classes
-    "above",
-    "below",
-    "belt_deflection",
-    "clear_shed",
-    "dwell",
-    "dwell_contains",
-    "energy_balance",
-    "heald_blows",
-    "locks_in_time",
-    "lowest_margin",
-    "motor_power",
-    "nip_holds",
-    "peak_load",
-    "rapier_in_open_shed",
-    "reed_clear_of_rapier",
-    "speed_fluctuation",
-    "stop_contacts",
-    "transfer_in_time",
-    "transfer_speed",
-]
-
-
-def judge(trace: Signals, *, kind: Kind, **arguments: Any) -> Verdict:
-    """Judge one claim on a trace.
-
-    Args:
-        trace: a recorded run, such as `result.trace`
-        kind: such as "above"; arguments are those of that kind, with units or in SI, and `name`, what the
-            verdict calls the claim
-
-    Raises:
-        LoomfmuError: an unknown kind, argument, signal or unit, or a missing one
-    """
-    if not isinstance(trace, Signals):
-        raise LoomfmuError(f"trace = {shown(trace)} is not a trace, such as result.trace")
-    return read({"kind": kind, **arguments}, trace.unit).judge(trace)
+def kinds() -> Mapping[str, type[Claim]]:
+    """Return the class of each kind of claim, those on the standard machine included."""
+    standard()
+    return Claim.kinds
 
 
 def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
@@ -74,15 +35,15 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
         LoomfmuError: what is unknown, missing, or cannot be read or compared
     """
     kind = table.get("kind")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), KINDS)}")
+    if not isinstance(kind, str) or kind not in kinds():
+        raise LoomfmuError(f"claim kind = {kind!r} is unknown{suggestion(str(kind), kinds())}")
     where = place_of(table)
-    arguments = KINDS[kind].declared()
+    arguments = kinds()[kind].declared()
     for name in table:
         if name not in arguments and name != "kind":
             raise LoomfmuError(f"{where} has no {name!r}{suggestion(name, arguments)}")
     values = {}
-    for each in fields(KINDS[kind]):
+    for each in fields(kinds()[kind]):
         value = table.get(each.name)
         if each.name not in table and each.default is MISSING:
             raise LoomfmuError(f"{where} needs {each.name!r}")
@@ -90,7 +51,7 @@ def read(table: Mapping[str, Any], unit_of: Callable[[str], str]) -> Claim:
             values[each.name] = arguments[each.name].read(
                 value, f"{where}: {each.name}", lambda: unit_of(table["signal"])
             )
-    return KINDS[kind](**values)
+    return kinds()[kind](**values)
 
 
 def place_of(table: Mapping[str, Any]) -> str:
@@ -105,12 +66,12 @@ def called(table: Mapping[str, Any], verdict: Verdict) -> str:
 
 def angles_in(table: Mapping[str, Any]) -> list[str]:
     """The arguments in a claim's table that are shaft angles."""
-    arguments = KINDS[table["kind"]].declared()
+    arguments = kinds()[table["kind"]].declared()
     return [name for name in table if name != "kind" and arguments[name].unit == "rad"]
 
 
 def doubts(table: Mapping[str, Any]) -> Iterator[str]:
     """Numbers of a claim's table that were probably meant in another unit."""
-    for name, argument in KINDS[table["kind"]].declared().items():
+    for name, argument in kinds()[table["kind"]].declared().items():
         if name in table:
             yield from argument.doubts(table[name], f"{place_of(table)}: {name}")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...errors import LoomfmuError
 from ...fmi.native.libraries import needed_library
 from ...traces import Signals, Verdict
-from .lifted import weave_of
+from ..standard import standard
 
 SOURCE = Path(__file__).with_name("native") / "judge.c"
 ROOM = 16  # for the times that a function finds, at first
@@ -80,7 +80,7 @@ class Question(NamedTuple):
         """
         forms = [(number(form.signal), form.sense, form.judges(trace)) for form in self.forms]
         signals = [number(signal) for signal in self.signals]
-        weave = weave_of({signal.partition(".")[0] for signal in self.signals}, trace)
+        weave = standard().weave_of({signal.partition(".")[0] for signal in self.signals}, trace)
         rule = library().rule_of(self.rule.encode())
         found: list[float | str] = [rule, len(forms), *chain.from_iterable(forms)]
         for part in (signals, self.numbers, weave):

@@ -13,9 +13,8 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
-from .claim import Claim
+from .claim import Claim, Wired
 from .judging import Form, Question, needs_shaft, run_of
-from .lifted import Wired
 from .signal_claims import Above, Below
 
 FORMS = "'highest {0}', 'lowest {0}', 'mean {0}' or '{0} at 90 deg'"

@@ -6,9 +6,8 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals
 from .arguments import Bound, Edges, Flag, Name, Window, argument
-from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim
+from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim, Wired
 from .judging import Form, Question, needs_shaft
-from .lifted import Wired
 
 
 class Bounded(Claim, kind=False):

@@ -13,7 +13,7 @@ from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
-from ..scenes.standard_loom import FOLLOWED, follows, turning
+from ..scenes.shafts import FOLLOWED, follows, turning
 from .requested import claims_of
 
 

@@ -12,7 +12,7 @@ from ..claims.claims import angles_in, doubts, place_of, read
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
-from ..scenes.standard_loom import left_out
+from ..scenes.usual_wires import left_out
 
 SHAFT_ANGLE = "shaft.angle"
 MOST = 5  # names that a warning lists

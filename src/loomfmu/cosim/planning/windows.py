@@ -24,7 +24,7 @@ from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
-from ..scenes.standard_loom import shaft_inputs, turns_others
+from ..scenes.shafts import shaft_inputs, turns_others
 from .plan import InMemory
 from .pruning import prune
 from .requested import SHAFT_ANGLE, claims_of, shaft_angle, signals_of, with_rates

@@ -5,7 +5,7 @@ from typing import Any
 
 from ... import machines, units
 from ...errors import LoomfmuError, listed, one_line
-from ..claims.lifted import pegs as pegs_of
+from ..standard import standard
 from .instances import Instance
 from .overrides import WEAVE, components, overridden
 from .scene import Scene
@@ -68,7 +68,7 @@ def _weave(instances: Iterable[Instance]) -> str:
     if not frames:
         return ""
     starts = [{name: port.start for name, port in each.fmu.ports.items()} for each in frames]
-    pegs = [pegs_of(start | each.values) for start, each in zip(starts, frames, strict=True)]
+    pegs = [standard().pegs(start | each.values) for start, each in zip(starts, frames, strict=True)]
     text = "/".join(pegs)
     if len(text) > LONGEST_WEAVE:
         text = f"of {len(pegs)} frames and {max(map(len, pegs))} picks"

@@ -10,9 +10,11 @@ from ...own import load
 from ...own.declared import FILES, PARAMETER_SETS
 from ..importing import fmus
 from ..importing.fmus import Fmu
-from . import standard_loom
+from ..standard import standard
+from . import shafts
 from .instances import Instance
 from .keys import KEYS, check_name
+from .usual_wires import is_numbered, stem
 
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
@@ -21,8 +23,8 @@ def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[s
     """The table of each instance: the standard loom's, then what the scene says of each."""
     given = _loom(tables, directory)
     groups: set[str] = set()
-    of_loom = {standard_loom.stem(name) for name in given if standard_loom.is_numbered(name)}
-    numbered = of_loom | {standard_loom.stem(name) for name in tables if standard_loom.is_numbered(name)}
+    of_loom = {stem(name) for name in given if is_numbered(name)}
+    numbered = of_loom | {stem(name) for name in tables if is_numbered(name)}
     for key, table in tables.items():
         if key in KEYS:
             continue
@@ -31,16 +33,16 @@ def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[s
         if key not in given and key in (of_loom if "component" in table else numbered):
             groups.add(key)
             continue
-        known = standard_loom.COMPONENT_OF
+        known = standard().COMPONENT_OF
         named = "component" in table or "fmu" in table
-        if key not in given and not named and standard_loom.stem(key) not in known:
+        if key not in given and not named and stem(key) not in known:
             hint = suggestion(key, dict.fromkeys([*KEYS, *given, *known]))
             raise LoomfmuError(f'[{key}] is unknown and has no component = "..." of its own{hint}')
         check_name(key)
         given[key] = given.get(key, {}) | table
     for name in given:  # a table for all members says less than a member's own
-        group = standard_loom.stem(name)
-        if group in groups and standard_loom.is_numbered(name):
+        group = stem(name)
+        if group in groups and is_numbered(name):
             given[name] = given[name] | tables[group] | tables.get(name, {})
     return given
 
@@ -52,7 +54,7 @@ def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
         return {} if "duration" in tables or "step" in tables else {"shaft": {}}
     if not isinstance(loom, dict):
         raise LoomfmuError(f"loom = {shown(loom)} must be a table [loom]")
-    return standard_loom.loom(loom, directory)
+    return standard().instances_of(loom, directory)
 
 
 def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
@@ -71,12 +73,12 @@ def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     for key in ("component", "fmu"):
         if not isinstance(table.get(key, ""), str):
             raise LoomfmuError(f"{name}.{key} = {shown(table[key])} is not a name in quotes")
-    component = str(table.get("component", standard_loom.COMPONENT_OF.get(standard_loom.stem(name))))
+    component = str(table.get("component", standard().COMPONENT_OF.get(stem(name))))
     if "fmu" not in table:
         fmu = _of_component(name, component, directory)
-        if name == "shaft" and not (fmu.component and standard_loom.turns_others(fmu.component)):
-            shafts = " or a ".join(standard_loom.shafts())
-            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {shafts}")
+        if name == "shaft" and not (fmu.component and shafts.turns_others(fmu.component)):
+            known = " or a ".join(shafts.shafts())
+            raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {known}")
         return fmu
     if "component" in table:
         raise LoomfmuError(f"{name} has both a component and an fmu; keep one of them")

@@ -10,10 +10,11 @@ from ...errors import LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ...variables import AT_STEP_END, Component, Variable, variables_of
 from ..importing.fmus import Fmu, Port, Value
-from . import standard_loom
+from ..standard import standard
 from .graph import Wire
 from .keys import KEYS
 from .tables import truth
+from .usual_wires import stem
 
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 
@@ -50,7 +51,7 @@ class Instance:
         if self.fmu.ours and key == "pattern":
             if "pattern_length" not in self.fmu.ports:
                 raise LoomfmuError(f"{self.name}.pattern: a {self.fmu.name} has no pattern")
-            self.values |= standard_loom.pattern(given, f"{self.name}.pattern")
+            self.values |= standard().pattern(given, f"{self.name}.pattern")
             return
         name = self.fmu.name_of(key)
         if key == ISOLATED and name not in self.fmu.ports:
@@ -104,7 +105,7 @@ class Instance:
 
         `fed` are the wired inputs: some parameters have that value only with one of these.
         """
-        number = self.name.removeprefix(standard_loom.stem(self.name))
+        number = self.name.removeprefix(stem(self.name))
         for name, variable in self._declared().items():
             if variable.causality != "parameter" or not variable.source or name in self.values:
                 continue

@@ -11,7 +11,7 @@ from ...variables import variables_of
 from .instance_tables import fmu_of
 from .instances import Instance
 from .keys import TIMES, WHOLE
-from .standard_loom import members, stem
+from .usual_wires import members, stem
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 

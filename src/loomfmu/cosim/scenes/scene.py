@@ -11,7 +11,8 @@ from ...errors import LoomfmuError, check_text
 from ...own.declared import ISOLATED
 from ..importing.ports import Port
 from ..importing.process import AVAILABLE
-from . import notes, settings, standard_loom
+from ..standard import standard
+from . import notes, settings
 from .drives import Drive
 from .graph import Wire
 from .instance_tables import instance, instance_tables, own_texts
@@ -131,7 +132,7 @@ def parse(
     tables = toml(text)
     check_kind(tables, "scene")
     rest = override_weave(tables, overrides or {})
-    texts = standard_loom.resolve(tables, Path(directory))
+    texts = standard().resolve(tables, Path(directory))
     given = instance_tables(tables, Path(directory))
     for key in replaced(rest):
         tables.pop(key, None)
@@ -152,7 +153,7 @@ def parse(
     keys = [(owner, key) for owner, table in given.items() for key in table]
     check_free(scene, keys)
     doubts = (
-        *notes.added(tables, Path(directory)),
+        *standard().added(tables, Path(directory)),
         *notes.still(
             instances, tables.get("wires", {}), fed | {(d.instance, d.variable) for d in scene.drives}
         ),

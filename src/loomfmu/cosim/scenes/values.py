@@ -9,7 +9,7 @@ from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from .instances import Instance, altered
 from .overrides import components, overridden
 from .scene import Scene
-from .standard_loom import FOLLOWING
+from .shafts import FOLLOWING
 from .times import Times, check_times
 
 NOT_VALUES = (*PARAMETER_SETS, *FILES, ISOLATED)

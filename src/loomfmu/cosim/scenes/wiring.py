@@ -5,7 +5,7 @@ from typing import Any
 
 from ...errors import LoomfmuError, shown, suggestion
 from ..importing.ports import mismatch
-from . import standard_loom
+from . import usual_wires
 from .drives import Drive, drive, split
 from .graph import Wire
 from .instances import Instance
@@ -20,18 +20,18 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     spelt = dotted(spelt_out)
     components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
-    usual = standard_loom.wires(components)
+    usual = usual_wires.wires(components)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     values = {
         f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
     }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | spelt
-    standard_loom.check_sources(components, usual, tables)
+    usual_wires.check_sources(components, usual, tables)
     for name in components:
-        sources |= standard_loom.gathered(name, components, ChainMap(tables, sources))
+        sources |= usual_wires.gathered(name, components, ChainMap(tables, sources))
     taken = {str(each) for each in (*sources.values(), *spelt.values())}
-    sources |= standard_loom.fed_back(components, taken)
-    sources |= standard_loom.fed_along(components, sources | spelt)
+    sources |= usual_wires.fed_back(components, taken)
+    sources |= usual_wires.fed_along(components, sources | spelt)
     for sink, source in spelt.items():
         if source is False:
             if sources.pop(sink, None) is None:

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from ...errors import LoomfmuError
-from ...physics.rotor_laws.shed_cam import SPLINE_CAM
-from ...traces import Signals
-from .arguments import Name, Quantity, argument
-from .claim import AT_MOST, ONE, PERCENT, POWER, Claim
-from .judging import Question, needs_shaft
-from .lifted import Wired
+from ..cosim.claims.arguments import Name, Quantity, argument
+from ..cosim.claims.claim import AT_MOST, ONE, PERCENT, POWER, Claim, Wired
+from ..cosim.claims.judging import Question, needs_shaft
+from ..errors import LoomfmuError
+from ..physics.rotor_laws.shed_cam import SPLINE_CAM
+from ..traces import Signals
 
 BOOKS = tuple(  # of the shaft, in the order in which energy_rule.h takes them
     f"shaft.{each}"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from loomfmu import LoomfmuError, evaluate, judge, prepare
-from loomfmu.cosim.claims.lifted import lift_of
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.standard_loom import pattern
+from loomfmu.loom.lifted import lift_of
+from loomfmu.loom.standard_loom import pattern
 from loomfmu.traces import Channel, Recording
 
 LOOM = """

@@ -5,12 +5,12 @@ What lifts the warp is judged: the carrier where a frame has a damper. The note 
 
 from collections.abc import Callable, Sequence
 
-from ...errors import LoomfmuError
-from ...traces import Signals
-from .arguments import Angles, Name, Quantity, angles_text, argument
-from .claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim
-from .judging import Question, needs_shaft
-from .lifted import Wired, check_lifted_by, dampers_of, lift_of, lifts
+from ..cosim.claims.arguments import Angles, Name, Quantity, angles_text, argument
+from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Wired
+from ..cosim.claims.judging import Question, needs_shaft
+from ..errors import LoomfmuError
+from ..traces import Signals
+from .lifted import check_lifted_by, dampers_of, lift_of, lifts
 
 TOLERANCE = 0.015  # of the stroke: within it a frame dwells, unless the claim says otherwise
 SHARE = Quantity("1", between=(0.0, 0.5), of="the stroke")

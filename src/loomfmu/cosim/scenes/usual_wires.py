@@ -1,64 +1,15 @@
-"""The loom that a scene need not spell out: its instances, their components and their wiring."""
+"""The wires that a scene need not spell out: by the declarations of its instances."""
 
 import re
 from collections.abc import Collection, Container, Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
 from ...components import COMPONENTS
-from ...components.shaft_driven import ShaftDriven
-from ...components.terminals import SHAFT
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, suggestion
 from ...variables import Component, Terminal, Variable, arrays_of, variables_of
-from ..claims.lifted import PICKS_IN_A_WORD, WORDS
-from . import weave as weaves
-
-COMPONENT_OF = {
-    "shaft": "MainShaft",
-    "weft": "WeftInsertion",
-    "belt": "BeltMonitor",
-    "belt_motion": "BeltDynamics",
-    "yarn": "WeftTension",
-    "transfer": "WeftTransfer",
-    "dobby": "DobbyDrive",
-    "heald": "HealdFrame",
-    "damper": "HealdDamper",
-    "warp": "WarpTension",
-    "play": "HealdPlay",
-    "reed": "ReedBeatUp",
-    "lock": "PatternLock",
-    "wrap": "BeltWrap",
-    "roller": "DetachingRoller",
-}
-
-# kind of terminal -> the instances whose outputs it carries, the first one that the scene has; # is the
-# number of the instance that follows it. Where a frame has a damper, what it lifts hangs on the carrier.
-SOURCES = {
-    "shaft": ("shaft",),
-    "head": ("weft_#", "weft"),
-    "rotor": ("dobby",),
-    "frame": ("damper_#", "heald_#"),
-}
-
-# input of a mechanism on the shaft -> output of the shaft that it follows
-FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
+from ..standard import standard
 
 ALL = "*."  # in the place of an instance: the output of that name of every instance that has it
-
-FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself
-
-FRAME_FITTINGS = {"warps": "warp", "dampers": "damper", "play": "play"}  # one for each frame
-LOOM_FITTINGS = {"yarn": "yarn", "reed": "reed", "locks": "lock"}  # one for the loom
-RAPIER_FITTINGS = {"belt_motion": "belt_motion"}  # one for each rapier
-FITTINGS = (*FRAME_FITTINGS, *LOOM_FITTINGS, *RAPIER_FITTINGS)
-# what a mechanism is fitted to, by the number that both have
-FITTED_TO = {
-    **dict.fromkeys(FRAME_FITTINGS.values(), "heald"),
-    "belt": "weft",
-    "belt_motion": "weft",
-    "weft": "belt",
-}
-LOOM_KEYS = ("machine", "head", "taker_head", "both_rapiers", "weave", *FITTINGS)
 
 
 def stem(instance: str) -> str:
@@ -78,82 +29,6 @@ def members(key: str, given: Iterable[str]) -> list[str]:
     return [name for name in given if stem(name) == key]
 
 
-def loom(table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
-    """Instances of a standard loom, each with the keys that a scene would give it.
-
-    `machine` and `head` name published ones, `weave` is one string of pegs for each frame
-    (`"10/01"` or a list) or the name of a WIF file. `both_rapiers` adds the taker, whose head is `head`
-    unless there is a `taker_head`, and the transfer. `dampers` hangs each frame's carrier on springs,
-    `warps` loads it with its threads, `play` adds the blows of its healds. `yarn`, `reed`, `locks` and
-    `belt_motion` add the weft, beat-up, pattern locks and the deflection of the belt.
-    """
-    for key in table:
-        if key not in LOOM_KEYS:
-            raise LoomfmuError(f"loom.{key} is unknown{suggestion(key, LOOM_KEYS)}")
-    frames = weaves.parse(table["weave"], directory).pegs if "weave" in table else ()
-    instances: dict[str, dict[str, Any]] = {"shaft": {}, **_rapiers(table)}
-    if frames:
-        instances["dobby"] = {}
-    for number, pegs in enumerate(frames, start=1):
-        instances[f"heald_{number}"] = {"pattern": pegs}
-    for key, name in FRAME_FITTINGS.items():
-        if _wanted(table, key):
-            instances |= {f"{name}_{number}": {} for number in range(1, len(frames) + 1)}
-    for key, name in LOOM_FITTINGS.items():
-        if _wanted(table, key):
-            instances[name] = {}
-    for key, name in RAPIER_FITTINGS.items():
-        if _wanted(table, key):
-            instances |= {each.replace("weft", name): {} for each in ("weft", "weft_2") if each in instances}
-    return instances
-
-
-def _rapiers(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """The rapier that brings the weft and, with `both_rapiers`, the one that takes it, and their transfer."""
-    machine = {key: table[key] for key in ("machine",) if key in table}
-    giver = machine | {key: table[key] for key in ("head",) if key in table}
-    rapiers: dict[str, dict[str, Any]] = {"weft": giver, "belt": giver}
-    taker = giver | ({"head": table["taker_head"]} if "taker_head" in table else {})
-    if _wanted(table, "both_rapiers"):
-        return rapiers | {"weft_2": taker, "belt_2": taker | {"taker": True}, "transfer": machine}
-    if "taker_head" in table:
-        raise LoomfmuError("loom.taker_head needs the second rapier: set loom.both_rapiers = true")
-    return rapiers
-
-
-def resolve(tables: dict[str, Any], directory: Path) -> dict[str, str]:
-    """Put the pegs of a WIF file in the place of its name; the texts of such files, as they were read."""
-    table = tables.get("loom")
-    if not isinstance(table, dict) or not weaves.is_wif(table.get("weave")):
-        return {}
-    given = table["weave"]
-    path = directory / given
-    text = weaves.wif_text(path)
-    tables["loom"] = table | {"weave": list(weaves.of_wif(text, path).pegs)}
-    return {given: text}
-
-
-def _wanted(table: dict[str, Any], key: str) -> bool:
-    wanted = table.get(key, False)
-    if not isinstance(wanted, bool):
-        raise LoomfmuError(f"loom.{key} = {shown(wanted)} must be true or false")
-    return wanted
-
-
-def pattern(pegs: Any, where: str) -> dict[str, int]:
-    """Parameters of a heald frame for a string of pegs, the first pick first: 1 raised, 0 lowered.
-
-    >>> pattern("10", "heald_1.pattern")["pattern_1"]
-    1
-    """
-    pegs = weaves.check_pegs(pegs, where)
-    values = {"pattern_length": len(pegs)}
-    for number, word in enumerate(WORDS):
-        part = pegs[number * PICKS_IN_A_WORD : (number + 1) * PICKS_IN_A_WORD]
-        values[word] = int(part[::-1] or "0", 2)
-    return values
-
-
 def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     """Return the usual wires to inputs such as `belt.travel`, by the declarations of all instances.
 
@@ -161,7 +36,7 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
     """
     offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
     for name, component in components.items():
-        for end in _terminals(component, "output"):
+        for end in terminals(component, "output"):
             offered.setdefault((end.kind, len(end.variables)), {})[name] = end.variables
     found: dict[str, str] = {}
     for name, component in components.items():
@@ -169,10 +44,10 @@ def wires(components: Mapping[str, type[Component]]) -> dict[str, str]:
         for v in variables_of(component):
             if v.causality == "input" and v.source and not v.source_for and not v.source.startswith(ALL):
                 found[f"{name}.{v.name}"] = v.source.replace("_#", number)
-        for terminal in _terminals(component, "input"):
+        for terminal in terminals(component, "input"):
             offering = offered.get((terminal.name, len(terminal.variables)), {})
-            if terminal.name in SOURCES:
-                usual = [each.replace("_#", number) for each in SOURCES[terminal.name]]
+            if terminal.name in standard().SOURCES:
+                usual = [each.replace("_#", number) for each in standard().SOURCES[terminal.name]]
                 owner = next((each for each in usual if each in offering and each != name), usual[-1])
                 # another vendor's FMU in its place has outputs of the same names
                 outputs = offering.get(owner, ()) if owner in components else _usual(terminal, owner)
@@ -220,9 +95,9 @@ def _owners(sink: str, source: str) -> tuple[str, str]:
 
 def _renamed(name: str, owner: str, components: Mapping[str, type[Component]]) -> list[str]:
     """Return the instances that may replace an absent one of the standard loom, under other names."""
-    wanted = COMPONENT_OF.get(stem(owner))
+    wanted = standard().COMPONENT_OF.get(stem(owner))
     found = (each for each, component in components.items() if component.__name__ == wanted)
-    return [each for each in found if each != name and stem(each) not in COMPONENT_OF]
+    return [each for each in found if each != name and stem(each) not in standard().COMPONENT_OF]
 
 
 def fed_back(components: Mapping[str, type[Component]], taken: Collection[str]) -> dict[str, str]:
@@ -337,53 +212,11 @@ def gathered(
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
     """The outputs that a terminal is wired to in a standard loom."""
-    feeding = COMPONENTS[COMPONENT_OF[stem(owner)]]
-    return next(each.variables for each in _terminals(feeding, "output") if each.kind == terminal.name)
+    feeding = COMPONENTS[standard().COMPONENT_OF[stem(owner)]]
+    return next(each.variables for each in terminals(feeding, "output") if each.kind == terminal.name)
 
 
-def _terminals(component: type[Component], causality: str) -> list[Terminal]:
+def terminals(component: type[Component], causality: str) -> list[Terminal]:
     """The terminals of a component whose variables are its inputs, or its outputs."""
     names = {v.name for v in variables_of(component) if v.causality == causality}
     return [terminal for terminal in component.terminals if terminal.variables[0] in names]
-
-
-def shaft_inputs(component: type[Component] | None, inputs: Collection[str]) -> tuple[str, ...]:
-    """The inputs by which a mechanism follows a shaft; none where it follows none.
-
-    Of an FMU whose component is not known here its inputs tell.
-    """
-    if component is None:
-        return tuple(FOLLOWED) if set(FOLLOWED) <= set(inputs) else ()
-    return next((t.variables for t in _terminals(component, "input") if t.name == SHAFT.name), ())
-
-
-def follows(component: type[Component] | None, values: Mapping[str, Any]) -> bool:
-    """Return whether a mechanism follows a shaft, and could turn by itself instead."""
-    return issubclass(component or ShaftDriven, ShaftDriven) and values.get(FOLLOWING) is True
-
-
-def turning(speed: float, start_angle: float) -> dict[str, float | bool]:
-    """The parameters of a mechanism that turns by itself as a shaft of constant speed would."""
-    return {FOLLOWING: False, "speed": speed, "start_angle": start_angle}
-
-
-def motions(component: type[Component]) -> list[tuple[str, ...]]:
-    """The groups of inputs by which a mechanism follows another one than a shaft."""
-    ends = _terminals(component, "input")
-    return [each.variables for each in ends if each.name in SOURCES and each.name != SHAFT.name]
-
-
-def turns_alone(component: type[Component]) -> bool:
-    """Return whether a mechanism has a speed of its own and no way to follow a shaft."""
-    turning = any(v.causality == "parameter" and v.unit == "rad/s" for v in variables_of(component))
-    return turning and not turns_others(component) and not shaft_inputs(component, ())
-
-
-def shafts() -> list[str]:
-    """The components that turn others: those whose outputs are a shaft."""
-    return [name for name, each in COMPONENTS.items() if turns_others(each)]
-
-
-def turns_others(component: type[Component]) -> bool:
-    """Return whether the outputs of a component are a shaft that others follow."""
-    return any(terminal.name == SHAFT.name for terminal in _terminals(component, "output"))

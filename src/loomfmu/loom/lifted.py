@@ -1,33 +1,20 @@
 """The lift of the warp of a heald frame: that of its sprung carrier, or of the frame itself."""
 
 import math
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Mapping
 from contextlib import suppress
 from itertools import chain
-from typing import Any, Protocol
+from typing import Any
 
-from ...errors import LoomfmuError, listed, shown
-from ...traces import Signals
-from ...upstream import sources_of, upstream
+from ..cosim.claims.claim import Wired
+from ..errors import LoomfmuError, listed, shown
+from ..traces import Signals
+from ..upstream import sources_of, upstream
 
 LENGTH = "pattern_length"  # of the pattern of a heald frame
 WORDS = [f"pattern_{number}" for number in range(1, 9)]  # parameters of a heald frame: picks, as bits
 PICKS_IN_A_WORD = 16
 FRAME = "frame"  # as a claim's `lifted_by`: the frame, although it has a damper
-
-
-class Wired(Protocol):
-    """The signals of a run, its wires, from input to output, and its FMUs; those of a scene, too."""
-
-    @property
-    def wires(self) -> Mapping[str, str]: ...
-
-    @property
-    def fmus(self) -> Mapping[str, str]: ...
-
-    def __contains__(self, signal: object) -> bool: ...
-
-    def __iter__(self) -> Iterator[str]: ...
 
 
 def check_lifted_by(lifted_by: str, dampers: Container[str]) -> None:

@@ -1,9 +1,9 @@
 """Claims on extremes that a component itself finds on its continuous curve, and keeps."""
 
-from ...traces import Signals
-from .arguments import Name, Quantity, argument
-from .claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim
-from .judging import Question
+from ..cosim.claims.arguments import Name, Quantity, argument
+from ..cosim.claims.claim import AT_MOST, FORCE, LANDINGS, LENGTH, NOTHING, VELOCITY, Claim
+from ..cosim.claims.judging import Question
+from ..traces import Signals
 
 AS_IT_IS, NEGATIVE, MAGNITUDE = range(3)  # how the extreme of what a latch follows is its lowest value
 

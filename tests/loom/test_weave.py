@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from loomfmu.cosim.scenes import weave
 from loomfmu.errors import LoomfmuError
+from loomfmu.loom import weave
 
-WEAVES = Path(__file__).parents[3] / "sims" / "weaves"
+WEAVES = Path(__file__).parents[2] / "sims" / "weaves"
 
 HEAD = (
     "[WIF]\nVersion=1.1\n[WEAVING]\nRising Shed={rising}\nShafts={shafts}\nTreadles=2\n"

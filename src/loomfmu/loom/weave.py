@@ -8,8 +8,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import LoomfmuError, shown
-from ...files import source
+from ..errors import LoomfmuError, shown
+from ..files import source
 
 MOST_FRAMES = 20  # of the KRU-20 dobby
 MOST_PICKS = 128  # that a heald frame's pattern holds

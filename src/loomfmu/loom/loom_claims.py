@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from ...errors import LoomfmuError
-from ...traces import Signals
-from ...traces.verdict import SHED_OPENING
-from .arguments import Edges, Flag, Name, Names, Quantity, Window, argument
-from .claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
-from .judging import Form, Question, needs_shaft
-from .lifted import Wired, check_lifted_by, frames_of, lift_of
+from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
+from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Wired
+from ..cosim.claims.judging import Form, Question, needs_shaft
+from ..errors import LoomfmuError
+from ..traces import Signals
+from ..traces.verdict import SHED_OPENING
+from .lifted import check_lifted_by, frames_of, lift_of
 
 
 class _InShed(Claim, kind=False):
