@@ -207,7 +207,8 @@ class Component:
     """The base class of every component: declared variables, `initialize` and `step`.
 
     The methods of a component and the functions they call keep to the Python that also translates to
-    C: floats, ints and bools, if, while and for-range, `math`, tuples for several results.
+    C: floats, ints, bools, lists of fixed length and records, if, while and for-range, `math`, tuples for
+    several results.
     """
 
     problems: ClassVar[tuple[Problem, ...]] = ()

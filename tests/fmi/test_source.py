@@ -28,6 +28,35 @@ def waved(x: float) -> float:
     return GAIN * doubled(sin(pi * x))
 
 
+SHARES = (0.25, 0.75)
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A stroke."""
+
+    force: float
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Chime:
+    """Several strokes."""
+
+    forces: list[float]
+    last: Stroke
+
+
+def stroke(x: float) -> float:
+    """One stroke."""
+    return x * x
+
+
+def loudness(chime: Chime) -> Stroke:
+    """All together, as one."""
+    return Stroke(chime.forces[0] + chime.forces[1], chime.last.time)
+
+
 @dataclass(slots=True)
 class Bell(Component):
     """A bell that only tests know."""
@@ -107,6 +136,64 @@ def test_what_is_no_number_cannot_be_carried():
 
     with pytest.raises(SourceError, match="uses TABLE, which is neither a function"):
         flatten(Tabled)
+
+
+def test_records_and_tables_are_carried():
+    @dataclass(slots=True)
+    class Chimes(Bell):
+        def step(self, time: float, step_size: float) -> int:
+            strokes = [stroke(SHARES[n] * time) for n in range(len(SHARES))]
+            self.sound = loudness(Chime(strokes, Stroke(time, step_size))).force
+            return 0
+
+    assert "SHARES = (0.25, 0.75)" in flatten(Chimes)
+    chimes, flat = Chimes(), run(flatten(Chimes))["Chimes"]()
+    for each in (chimes, flat):
+        each.step(0.5, 0.25)
+    assert flat.sound == chimes.sound != 0.0
+
+
+@dataclass
+class Changing:
+    """Not frozen."""
+
+    force: float
+
+
+@dataclass(frozen=True)
+class WithDefault:
+    """With a default."""
+
+    force: float = 1.0
+
+
+@dataclass(frozen=True)
+class WithMethod:
+    """With a method."""
+
+    force: float
+
+    def doubled(self) -> float:
+        return 2.0 * self.force
+
+
+@dataclass(frozen=True)
+class Derived(Stroke):
+    """With a base."""
+
+    more: float
+
+
+@pytest.mark.parametrize("record", [Changing, WithDefault, WithMethod, Derived])
+def test_a_record_is_a_frozen_dataclass_of_fields_alone(record):
+    class Struck(Bell):
+        def hit(self, given) -> float:
+            return 1.0
+
+        hit.__annotations__["given"] = record
+
+    with pytest.raises(SourceError, match=f"{record.__name__} is not a frozen dataclass with fields alone"):
+        flatten(Struck)
 
 
 def test_modules_cannot_be_carried():

@@ -63,8 +63,8 @@ class Arithmetic(Component):
 
 
 @dataclass(slots=True)
-class UsesList(Component):
-    """A list."""
+class UsesDictionary(Component):
+    """A dictionary."""
 
     value: float = output("1", "A value")
 
@@ -74,7 +74,7 @@ class UsesList(Component):
 
     def step(self, time: float, step_size: float) -> int:
         """Step."""
-        values = [time, step_size]
+        values = {0: time}
         self.value = values[0]
         return 0
 
@@ -105,6 +105,112 @@ class Arrays(Component):
         self.mean = shared(self.mean[-1] + self.weight[2], self.bits[0])
         self.mean = self.mean[1], self.mean[0]
         self.total = weighted(time, *self.weight, *self.mean)
+        return 0
+
+
+WEIGHTS = (0.5, 0.25, 2.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place and how it moves."""
+
+    at: list[float]
+    rate: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Two:
+    """A record within a record."""
+
+    first: Place
+    register: list[bool]
+
+
+def inner(a: list[float], b: list[float]) -> float:
+    """Sum of products."""
+    total = 0.0
+    for n in range(len(a)):
+        total = total + a[n] * b[n]
+    return total
+
+
+def advance(q: list[float], by: float) -> int:
+    """Write the elements of an argument, from the last to the first."""
+    for n in range(len(q) - 1, -1, -1):
+        q[n] += by * n
+    return len(q)
+
+
+def passed_on(q: list[float], by: float) -> None:
+    """Pass an argument on to be written."""
+    advance(q, by)
+
+
+def placed(two: Two, time: float) -> tuple[Place, list[float]]:
+    """A record and an array as results."""
+    place = two.first
+    further = [place.at[n] + time * place.rate for n in range(len(place.at))]
+    further[-1] = 1.0 if two.register[1] else 2.0
+    return Place(at=list(further), rate=inner(place.at, place.at), steps=place.steps + 1), further
+
+
+def moved(time: float) -> tuple[Place, list[float]]:
+    """What another function returns, as it is."""
+    place = Place([time, 2.0 * time, 0.5, WEIGHTS[0]], 0.25, 3)
+    return placed(Two(place, [time > 0.0, time > 1.0]), time)
+
+
+def shifted(q: list[float]) -> list[float]:
+    """Every other element, from the second on."""
+    return [q[n + 1] for n in range(0, 4, 2)]
+
+
+@dataclass(slots=True)
+class Vectors(Component):
+    """Arrays and records: as locals, arguments, results and state."""
+
+    place: int = parameter("1", 1, "Which element is written")
+    held: tuple[float, ...] = array(state("1", "A place", start=start) for start in (0.1, 0.2, 0.3, 0.4))
+    written: tuple[float, ...] = array(output("1", "An element") for _ in range(2))
+    count: int = output("1", "A count", start=0, variability="discrete")
+    flags: tuple[bool, ...] = array(state("1", "A flag", start=False) for _ in range(3))
+    total: float = output("1", "A sum")
+
+    def initialize(self, time: float) -> int:
+        """Start."""
+        return self.step(time, 0.0)
+
+    def drawn(self, q: list[float], flags: list[bool]) -> list[float]:
+        """A method with arrays."""
+        flags[0] = not flags[0]
+        self.count = self.count + 1
+        return [self.total + q[2 - n] for n in range(3)]
+
+    def step(self, time: float, step_size: float) -> int:
+        """Step."""
+        q = list(self.held)
+        counted = advance(q, step_size)
+        passed_on(q, time)
+        copy = list(q)
+        q[0] = -1.0
+        self.total = inner(q, copy) + inner(list(WEIGHTS), q) + len(WEIGHTS) * counted
+        place, further = moved(time)
+        flags = list(self.flags)
+        d1, d2, d3 = self.drawn(further, flags)
+        for number in range(3):
+            q = [d1, d2, d3, time + number]
+            self.total += inner(place.at, q) + place.rate * place.steps
+            flags[number] = flags[number] or q[number] > 0.5
+        first, last = shifted(q)
+        written = [0.0] * 2
+        written[self.place] = first
+        written[-1 - self.place] += last
+        written[number - 2] += inner(written, written)
+        self.flags = flags
+        self.held = [0.5 * copy[n] + 1e-3 * q[n] for n in range(4)]
+        self.written = written
         return 0
 
 

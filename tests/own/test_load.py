@@ -114,7 +114,7 @@ MISTAKES = {
         '    terminals: ClassVar = (SHAFT.of("pitch"),)\n    pitch',
         "line 14: terminals: shaft: it has 3 members",
     ),
-    "what does not translate": ("self.pitch * time", "[time][0]", r"line 25\).*is not an array"),
+    "what does not translate": ("self.pitch * time", "{0: time}[0]", r"line 25\).*Dict is not in the subset"),
     "hidden state": ("self.rate = self.pitch", "self.kept = time", "kept"),
     "a module in a method": ("self.pitch * time", "Path", r"line 25\).*`self.sound = Path`"),
     "a syntax error": ("return 0", "return 0 0", "line 21: invalid syntax"),

@@ -1,15 +1,17 @@
 """A component as one self-contained module: the text that runs in an FMU and that translates to C.
 
-The component's methods, the physics functions they call and the constants those use are written one
-after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
+The component's methods, the physics functions they call and the constants and records those use are written
+one after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
 """
 
 import inspect
 import math
 import textwrap
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
-from types import FunctionType
-from typing import Any
+from types import CodeType, FunctionType
+from typing import Any, get_args
 
 from ..errors import LoomfmuError
 from ..variables import Component, Variable, arrays_of, variables_of
@@ -34,18 +36,27 @@ def flatten(component: type[Component]) -> str:
     return _flattened[component]
 
 
+@dataclass
+class _Used:
+    """What methods use, directly or through others, by name; what is used first comes first."""
+
+    functions: dict[str, FunctionType] = field(default_factory=dict)
+    records: dict[str, type] = field(default_factory=dict)
+    constants: dict[str, Any] = field(default_factory=dict)
+    from_math: set[str] = field(default_factory=set)
+
+
 def _text(component: type[Component]) -> str:
     methods = _methods(component)
-    functions: dict[str, FunctionType] = {}
-    constants: dict[str, float | int] = {}
-    from_math: set[str] = set()
+    used = _Used()
     for method in methods.values():
-        _collect(method, functions, constants, from_math)
+        _collect(method, used)
     parts = [HEADER.format(name=component.__name__)]
-    if from_math:
-        parts.append(f"from math import {', '.join(sorted(from_math))}\n")
-    parts.append("\n".join(f"{name} = {value!r}" for name, value in constants.items()))
-    parts += [inspect.getsource(function) for function in functions.values()]
+    if used.from_math:
+        parts.append(f"from math import {', '.join(sorted(used.from_math))}\n")
+    parts.append("\n".join(f"{name} = {value!r}" for name, value in used.constants.items()))
+    parts += [_record(record) for record in used.records.values()]
+    parts += [inspect.getsource(function) for function in used.functions.values()]
     parts.append(_class(component, methods))
     return "\n\n".join(part for part in parts if part)
 
@@ -60,33 +71,81 @@ def _methods(component: type[Component]) -> dict[str, FunctionType]:
     return found
 
 
-def _collect(
-    function: FunctionType,
-    functions: dict[str, FunctionType],
-    constants: dict[str, float | int],
-    from_math: set[str],
-) -> None:
-    """Add what a function uses: math, constants, and the functions it calls, those first."""
-    for name in function.__code__.co_names:
-        used: Any = function.__globals__.get(name)
-        if used is None or getattr(used, "__module__", None) == "builtins":
+def _collect(function: FunctionType, used: _Used) -> None:
+    """Add what a function uses: math, constants, records, and the functions it calls, those first."""
+    for record in _annotated(inspect.get_annotations(function, eval_str=True).values()):
+        _add_record(record, used, function)
+    for name in _names(function.__code__):
+        value: Any = function.__globals__.get(name)
+        if value is None or getattr(value, "__module__", None) == "builtins":
             continue  # an attribute or a builtin
-        if getattr(math, name, None) is used:
-            from_math.add(name)
-        elif isinstance(used, FunctionType):
-            known = functions.get(name)
-            if known is None:
-                _collect(used, functions, constants, from_math)
-                functions[name] = used
-            elif known is not used:
+        if getattr(math, name, None) is value:
+            used.from_math.add(name)
+        elif isinstance(value, FunctionType):
+            if name not in used.functions:
+                _collect(value, used)
+                used.functions[name] = value
+            elif used.functions[name] is not value:
                 raise SourceError(f"{_place(function)}: two functions are called {name}")
-        elif isinstance(used, int | float):
-            constants[name] = used
+        elif isinstance(value, int | float) or _is_table(value):
+            used.constants[name] = value
+        elif is_dataclass(value) and isinstance(value, type):
+            _add_record(value, used, function)
         else:
             raise SourceError(
                 f"{_place(function)}: {function.__name__} uses {name}, which is neither a function of the"
-                " physics, a number nor of math"
+                " physics, a number, several as a tuple, a frozen dataclass nor of math"
             )
+
+
+def _names(code: CodeType) -> list[str]:
+    """The global names and attributes that a function uses, comprehensions included."""
+    inner = [each for each in code.co_consts if isinstance(each, CodeType)]
+    return [*code.co_names, *(name for each in inner for name in _names(each))]
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, tuple) and bool(value) and all(isinstance(each, int | float) for each in value)
+
+
+def _annotated(annotations: Iterable[Any]) -> Iterator[type]:
+    """The records that annotations name."""
+    for each in annotations:
+        yield from _annotated(get_args(each))
+        if isinstance(each, type) and is_dataclass(each):
+            yield each
+
+
+def _add_record(record: type, used: _Used, function: FunctionType) -> None:
+    """Add a record, after those that are its fields."""
+    name = record.__name__
+    if used.records.get(name, record) is not record:
+        raise SourceError(f"{_place(function)}: two records are called {name}")
+    kinds = inspect.get_annotations(record, eval_str=True)
+    own = {each for each in vars(record) if not each.startswith("__")}
+    frozen = record.__dataclass_params__.frozen  # type: ignore[attr-defined]
+    if (
+        not frozen
+        or record.__bases__ != (object,)
+        or own - (set(kinds) if "__slots__" in vars(record) else set())
+    ):
+        raise SourceError(
+            f"{_place(function)}: {name} is not a frozen dataclass with fields alone, no defaults, no methods"
+        )
+    for field_record in _annotated(kinds.values()):
+        _add_record(field_record, used, function)
+    used.records[name] = record
+
+
+def _record(record: type) -> str:
+    """A record as a plain class, which a live FMU makes in a third of the time."""
+    kinds = inspect.get_annotations(record, eval_str=True)
+    given = ", ".join(
+        f"{name}: {inspect.formatannotation(kind).rpartition('.')[2]}" for name, kind in kinds.items()
+    )
+    lines = [f"class {record.__name__}:", f'    """{record.__doc__}"""', ""]
+    lines += [f"    __slots__ = {tuple(kinds)!r}", "", f"    def __init__(self, {given}) -> None:"]
+    return "\n".join([*lines, *(f"        self.{name} = {name}" for name in kinds)]) + "\n"
 
 
 def _place(function: FunctionType) -> str:
@@ -125,6 +184,7 @@ def functions(component: type[Component]) -> dict[str, FunctionType]:
     """The methods of a component and the functions of physics that they use."""
     methods = _methods(component)
     found = dict(methods)
+    used = _Used()
     for method in methods.values():
-        _collect(method, found, {}, set())
-    return found
+        _collect(method, used)
+    return found | used.functions

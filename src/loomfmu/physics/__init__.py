@@ -1,1 +1,1 @@
-"""The mechanisms' mathematics: pure functions of floats that also translate to C."""
+"""The mechanisms' mathematics: pure functions of numbers, lists and records that also translate to C."""

@@ -5,12 +5,15 @@ Python's `float` is `double` here, its `int` is `int64_t`.
 
 import ast
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 REAL, WHOLE, TRUTH = "double", "int64_t", "bool"
 TYPES = {"float": REAL, "int": WHOLE, "bool": TRUTH}
 NAMES = {c: python for python, c in TYPES.items()}
-Results = tuple[str, ...]  # types of what a function returns: none, one or several
+ARRAYS = {
+    f"list[{python}]": c for python, c in TYPES.items()
+}  # as annotations call them, with their elements
 
 # C's levels of binding, loosest first
 TERNARY, OR, AND, BITS, EQUAL, ORDER, SHIFT, SUM, PRODUCT, UNARY, ATOM = range(11)
@@ -25,37 +28,137 @@ class Untranslatable(Exception):
 
 
 @dataclass(frozen=True)
+class Array:
+    """The type of an array. In C it is a struct, so that it is assigned and returned as a number is."""
+
+    component: str
+    element: str
+    size: int
+
+    def __str__(self) -> str:
+        return f"struct {self.component}_{NAMES[self.element]}_{self.size}"
+
+
+@dataclass(frozen=True)
+class Record:
+    """The type of a record: its name and those of its fields, with their types."""
+
+    component: str
+    name: str
+    fields: tuple[tuple[str, "Kind"], ...]
+
+    def __str__(self) -> str:
+        return f"struct {self.component}_{self.name}{sizes(kind for _name, kind in self.fields)}"
+
+
+Kind = str | Array | Record
+Results = tuple[Kind, ...]  # types of what a function returns: none, one or several
+
+
+@dataclass(frozen=True)
 class Code:
     """An expression in C: text, type, how tightly it binds, and its value if it is a plain number."""
 
     text: str
-    type: str
+    type: Kind
     level: int = ATOM
     number: float | int | None = None
 
 
 @dataclass(frozen=True)
-class Signature:
-    """A function as C calls it: its name, the types of its arguments and of its results."""
+class Declared:
+    """A function as it is annotated: arrays get their sizes, and records theirs, where it is called."""
 
+    function: ast.FunctionDef
     name: str
     arguments: tuple[str, ...]
+    results: tuple[str, ...]
+    method: bool
+    written: frozenset[int] = frozenset()  # the arguments whose elements it writes
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A function as C calls it, with the types of its arguments and of its results."""
+
+    name: str
+    arguments: tuple[Kind, ...]
     results: Results
-    method: bool = False
 
 
 @dataclass
 class Scope:
     """What the names of a function mean: its locals, the component's variables, functions and constants."""
 
-    functions: dict[str, Signature]
-    methods: dict[str, Signature]
+    component: str
+    functions: dict[str, Declared]
+    methods: dict[str, Declared]
+    records: dict[str, dict[str, str]]  # the fields of each, with their annotations
     variables: dict[str, str]  # of the component, as C calls them, with their types
     arrays: dict[str, tuple[str, ...]]  # of the component, with the names of their elements
     constants: dict[str, float | int]
+    tables: dict[str, tuple[float | int, ...]]  # constants that are several numbers
     from_math: frozenset[str]
     changes: dict[str, frozenset[str]]  # the variables that each method changes, those that it calls included
-    locals: dict[str, str] = field(default_factory=dict)
+    structs: dict[str, str] = field(
+        default_factory=dict
+    )  # declarations of structs and tables, in their order
+    locals: dict[str, Kind] = field(default_factory=dict)
+    # translates a function for arguments of these types, unless it is already
+    translated: Callable[[Declared, tuple[Kind, ...]], Signature] = lambda declared, kinds: Signature(
+        "", (), ()
+    )
+    lent: frozenset[str] = frozenset()  # arguments that are pointers
+    renamed: dict[str, str] = field(default_factory=dict)  # the variable of a comprehension
+    spans: dict[str, tuple[int, int]] = field(
+        default_factory=dict
+    )  # first and last value of a loop's variable
+
+    def array(self, element: str, size: int) -> Array:
+        """The type of an array, declared in C."""
+        kind = Array(self.component, element, size)
+        self.structs[str(kind)] = f"{kind} {{ {element} at[{size}]; }};"
+        return kind
+
+    def record(self, name: str, kinds: Iterable[Kind]) -> Record:
+        """The type of a record with fields of these types, declared in C."""
+        kind = Record(self.component, name, tuple(zip(self.records[name], kinds, strict=True)))
+        members = " ".join(f"{each} {c_name(field)};" for field, each in kind.fields)
+        self.structs[str(kind)] = f"{kind} {{ {members} }};"
+        return kind
+
+    def returned(self, results: Results) -> str:
+        """The C type of what a function returns; several values come in a struct, declared in C."""
+        if len(results) < 2:
+            return str(results[0]) if results else "void"
+        name = f"struct {self.component}_{''.join(map(_short, results))}"
+        members = " ".join(f"{kind} value_{place};" for place, kind in enumerate(results))
+        self.structs[name] = f"{name} {{ {members} }};"
+        return name
+
+
+def sizes(kinds: Iterable[Kind]) -> str:
+    """What tells types apart that are annotated alike: the sizes of their arrays."""
+    found = ""
+    for kind in kinds:
+        if isinstance(kind, Array):
+            found += f"_{kind.size}"
+        elif isinstance(kind, Record):
+            found += sizes(each for _name, each in kind.fields)
+    return found
+
+
+def shown(kind: Kind) -> str:
+    """A type as messages call it."""
+    if isinstance(kind, Array):
+        return f"list[{NAMES[kind.element]}] of {kind.size}"
+    return kind.name if isinstance(kind, Record) else NAMES[kind]
+
+
+def _short(kind: Kind) -> str:
+    if isinstance(kind, Array):
+        return f"{NAMES[kind.element][0]}{kind.size}"
+    return f"{kind.name}{sizes([kind])}" if isinstance(kind, Record) else NAMES[kind][0]
 
 
 def literal(value: float | int | bool) -> Code:
@@ -77,7 +180,7 @@ def within(code: Code, level: int) -> str:
     return code.text if code.level >= level else f"({code.text})"
 
 
-def widened(code: Code, kind: str, node: ast.AST) -> Code:
+def widened(code: Code, kind: Kind, node: ast.AST) -> Code:
     """An expression as another type: what Python takes for equal, and nothing else."""
     if code.type == kind:
         return code
@@ -85,50 +188,45 @@ def widened(code: Code, kind: str, node: ast.AST) -> Code:
         return literal(float(code.number))
     if (code.type, kind) in ((WHOLE, REAL), (TRUTH, REAL), (TRUTH, WHOLE)):
         return Code(f"({kind}){within(code, ATOM)}", kind, UNARY)
-    raise Untranslatable(node, f"{ast.unparse(node)} is {NAMES[code.type]} where {NAMES[kind]} is needed")
+    raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)} where {shown(kind)} is needed")
 
 
-def signature(function: ast.FunctionDef, name: str, method: bool) -> Signature:
-    """How C calls a function. Raises Untranslatable for what C has no counterpart of."""
+def declared(function: ast.FunctionDef, name: str, method: bool, records: Iterable[str]) -> Declared:
+    """A function as it is annotated. Raises Untranslatable for what C has no counterpart of."""
     given = function.args
     if function.decorator_list:
         raise Untranslatable(function, "a decorator is not in the subset")
     if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs or given.defaults:
         raise Untranslatable(function, "only plain arguments are in the subset")
-    arguments = given.args[1:] if method else given.args
-    return Signature(
-        name, tuple(_type(each.annotation, function) for each in arguments), _results(function), method
-    )
+    known = {**TYPES, **{each: each for each in (*ARRAYS, *records)}}
+    arguments = tuple(_type(each.annotation, known, function) for each in given.args[int(method) :])
+    return Declared(function, name, arguments, _results(function, known), method)
 
 
-def _type(annotation: ast.expr | None, function: ast.FunctionDef) -> str:
+def _type(annotation: ast.expr | None, known: dict[str, str], function: ast.FunctionDef) -> str:
     name = ast.unparse(annotation) if annotation is not None else "no type"
-    if name not in TYPES:
-        raise Untranslatable(annotation or function, f"{name} is not float, int or bool")
-    return TYPES[name]
+    if name not in known:
+        raise Untranslatable(
+            annotation or function, f"{name} is not float, int or bool, nor a list of them or a record"
+        )
+    return known[name]
 
 
-def _results(function: ast.FunctionDef) -> Results:
+def _results(function: ast.FunctionDef, known: dict[str, str]) -> tuple[str, ...]:
     given = function.returns
     if isinstance(given, ast.Constant) and given.value is None:
         return ()
     if isinstance(given, ast.Subscript) and ast.unparse(given.value) == "tuple":
         several = given.slice.elts if isinstance(given.slice, ast.Tuple) else [given.slice]
-        return tuple(_type(each, function) for each in several)
-    return (_type(given, function),)
+        return tuple(_type(each, known, function) for each in several)
+    return (_type(given, known, function),)
 
 
-def result_type(results: Results, component: str) -> str:
-    """The C type of what a function returns; several values come in a struct."""
-    if len(results) < 2:
-        return results[0] if results else "void"
-    return f"struct {component}_{''.join(NAMES[kind][0] for kind in results)}"
-
-
-def result_struct(results: Results, component: str) -> str:
-    """The declaration of a struct of several values."""
-    members = " ".join(f"{kind} value_{place};" for place, kind in enumerate(results))
-    return f"{result_type(results, component)} {{ {members} }};"
+def fits(kind: Kind, annotated: str) -> bool:
+    """Whether a type is what an annotation of `Declared` says."""
+    if isinstance(kind, Array):
+        return ARRAYS.get(annotated) == kind.element
+    return annotated == (kind.name if isinstance(kind, Record) else kind)
 
 
 def comment(text: str, indent: str) -> list[str]:

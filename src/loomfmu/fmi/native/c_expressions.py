@@ -24,16 +24,13 @@ from .c_code import (
     UNARY,
     WHOLE,
     Code,
-    Results,
-    Scope,
-    Signature,
     Untranslatable,
-    c_name,
     literal,
-    of_self,
+    shown,
     widened,
     within,
 )
+from .c_values import Values
 
 ARITHMETIC: dict[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", SUM),
@@ -94,73 +91,15 @@ WHOLE_FUNCTIONS = ("floor", "ceil", "trunc")
 TRUTH_FUNCTIONS = ("isfinite", "isinf", "isnan")
 
 
-class Expressions:
+class Expressions(Values):
     """Translates the expressions of one function."""
-
-    def __init__(self, scope: Scope):
-        self.scope = scope
-
-    def of(self, node: ast.expr) -> Code:
-        """An expression in C. Raises Untranslatable for one that has no counterpart."""
-        method = getattr(self, f"_{type(node).__name__.lower()}", None)
-        if method is None:
-            raise Untranslatable(node, f"{type(node).__name__} is not in the subset")
-        found: Code = method(node)
-        return found
-
-    def as_type(self, node: ast.expr, kind: str) -> Code:
-        """An expression as a type."""
-        return widened(self.of(node), kind, node)
 
     def condition(self, node: ast.expr) -> Code:
         """An expression that is true or false."""
         code = self.of(node)
         if code.type != TRUTH:
-            raise Untranslatable(node, f"{ast.unparse(node)} is {NAMES[code.type]}, not a condition")
+            raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)}, not a condition")
         return code
-
-    def call(self, node: ast.Call) -> tuple[str, Results]:
-        """A call of one of our functions or methods: its text and the types of its results."""
-        signature = self._signature(node)
-        values = [each for given in node.args for each in self.spread(given)]
-        if len(values) != len(signature.arguments):
-            raise Untranslatable(node, f"{ast.unparse(node.func)} takes {len(signature.arguments)} arguments")
-        pairs = zip(values, signature.arguments, strict=True)
-        arguments = ["self"] * signature.method + [self.as_type(given, kind).text for given, kind in pairs]
-        return f"{signature.name}({', '.join(arguments)})", signature.results
-
-    def spread(self, given: ast.expr) -> list[ast.expr]:
-        """An argument, or the elements of the array that `*` makes several of."""
-        return self.elements(given.value) if isinstance(given, ast.Starred) else [given]
-
-    def elements(self, array: ast.expr) -> list[ast.expr]:
-        """The elements of an array of the component."""
-        if of_self(array) not in self.scope.arrays:
-            raise Untranslatable(array, f"{ast.unparse(array)} is not an array of the component")
-        itself = ast.Name("self", ast.Load())
-        return [
-            ast.copy_location(ast.Attribute(itself, name, ast.Load()), array)
-            for name in self.scope.arrays[of_self(array)]
-        ]
-
-    def is_ours(self, node: ast.AST) -> bool:
-        """Whether an expression calls one of our functions or methods."""
-        if not isinstance(node, ast.Call):
-            return False
-        called = node.func
-        return isinstance(called, ast.Attribute) or (
-            isinstance(called, ast.Name) and called.id in self.scope.functions
-        )
-
-    def _signature(self, node: ast.Call) -> Signature:
-        if node.keywords:
-            raise Untranslatable(node, "an argument is given by its name")
-        if isinstance(node.func, ast.Name):
-            return self.scope.functions[node.func.id]
-        attribute = of_self(node.func)
-        if attribute not in self.scope.methods:
-            raise Untranslatable(node, f"{ast.unparse(node.func)} is not a method of the component")
-        return self.scope.methods[attribute]
 
     # ---- one method for each kind of node
 
@@ -168,34 +107,6 @@ class Expressions:
         if not isinstance(node.value, bool | int | float):
             raise Untranslatable(node, f"{node.value!r} is not a number")
         return literal(node.value)
-
-    def _name(self, node: ast.Name) -> Code:
-        if node.id in self.scope.locals:
-            return Code(c_name(node.id), self.scope.locals[node.id])
-        if node.id in self.scope.constants:
-            return literal(self.scope.constants[node.id])
-        raise Untranslatable(node, f"{node.id} has no value here")
-
-    def _attribute(self, node: ast.Attribute) -> Code:
-        name = of_self(node)
-        if name in self.scope.arrays:
-            raise Untranslatable(
-                node, f"self.{name} is an array: read self.{name}[index] or pass *self.{name}"
-            )
-        if name not in self.scope.variables:
-            raise Untranslatable(node, f"{ast.unparse(node)} is not a variable of the component")
-        return Code(f"self->{c_name(name)}", self.scope.variables[name])
-
-    def _subscript(self, node: ast.Subscript) -> Code:
-        """An element of an array; C, too, counts a negative index from the end and never reads beside it."""
-        elements = [self.of(each) for each in self.elements(node.value)]
-        index, kind = self.as_type(node.slice, WHOLE), elements[0].type
-        if index.number is None:
-            name = f"self->{c_name(of_self(node.value))}"
-            return Code(f"python_item_{NAMES[kind]}({name}, {len(elements)}, {index.text})", kind)
-        if not -len(elements) <= index.number < len(elements):
-            raise Untranslatable(node, f"{ast.unparse(node.value)} has {len(elements)} elements")
-        return elements[int(index.number)]
 
     def _unaryop(self, node: ast.UnaryOp) -> Code:
         if isinstance(node.op, ast.Not):
@@ -210,8 +121,10 @@ class Expressions:
         return Code(f"-{within(operand, ATOM)}", operand.type, UNARY)
 
     def _binop(self, node: ast.BinOp) -> Code:
-        left, right = self.of(node.left), self.of(node.right)
         operation = type(node.op)
+        if operation is ast.Mult and isinstance(node.left, ast.List):
+            return self.repeated(node)
+        left, right = self.of(node.left), self.of(node.right)
         if operation in BITWISE:
             return self._bits(node)
         if operation is ast.Pow:
@@ -275,10 +188,14 @@ class Expressions:
                 raise Untranslatable(node, f"{ast.unparse(node.func)} returns {len(results)} values, not one")
             return Code(text, results[0])
         name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if name in self.scope.records:
+            return self.built(node, name)
         if node.keywords:
             raise Untranslatable(node, "an argument is given by its name")
         if name in ("float", "int") and len(node.args) == 1:
             return self._converted(node.args[0], TYPES[name])
+        if name in ("list", "len") and len(node.args) == 1:
+            return self.copied(node.args[0]) if name == "list" else self.length(node.args[0])
         if name not in self.scope.from_math:
             raise Untranslatable(node, f"{name} is neither of math nor a function of the physics")
         arguments = ", ".join(self._real(given) for given in node.args)

@@ -4,54 +4,66 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from .c_assignments import Assignments, running
 from .c_code import (
     NAMES,
-    TYPES,
-    Results,
+    WHOLE,
+    Array,
+    Code,
+    Declared,
+    Kind,
     Scope,
     Signature,
     Untranslatable,
     c_name,
     comment,
+    fits,
     of_self,
-    result_type,
+    shown,
+    sizes,
     widened,
 )
-from .c_expressions import Expressions
 
 
-class FunctionWriter:
-    """Writes one function in C.
+class FunctionWriter(Assignments):
+    """Writes one function in C, for arguments of these types.
 
     `comments` has the comments of the source by their line.
     """
 
-    def __init__(
-        self,
-        function: ast.FunctionDef,
-        own: Signature,
-        scope: Scope,
-        component: str,
-        comments: Mapping[int, str],
-    ):
-        self.function, self.own, self.component = function, own, component
-        arguments = [each.arg for each in function.args.args][int(own.method) :]
-        self.arguments = dict(zip(arguments, own.arguments, strict=True))
-        self.scope = replace(scope, locals=dict(self.arguments))
-        self.expressions = Expressions(self.scope)
+    def __init__(self, own: Declared, kinds: tuple[Kind, ...], scope: Scope, comments: Mapping[int, str]):
+        self.function, self.own = own.function, own
+        arguments = [each.arg for each in self.function.args.args][int(own.method) :]
+        self.arguments = dict(zip(arguments, kinds, strict=True))
+        lent = frozenset(name for name, kind in self.arguments.items() if not isinstance(kind, str))
+        own_scope = replace(scope, locals=dict(self.arguments), lent=lent, renamed={}, spans={})
+        super().__init__(own_scope, _names_read(self.function))
         self.comments = dict(comments)
-        self.read = _names_read(function)
-        self.blocks = 0
+        # those of arrays and records are known from the first return on
+        self.results: list[Kind | None] = [each if each in NAMES else None for each in own.results]
+        self.name = own.name + sizes(kinds)
+        self.text = self._definition()
+
+    @property
+    def signature(self) -> Signature:
+        """How C calls it. Raises Untranslatable if it never returns what it declares."""
+        results = tuple(kind for kind in self.results if kind is not None)
+        if len(results) < len(self.results):
+            raise Untranslatable(self.function, "a function without the return that is declared")
+        return Signature(self.name, tuple(self.arguments.values()), results)
 
     @property
     def prototype(self) -> str:
         """The function's head."""
-        given = [f"struct {self.component} *self"] * self.own.method
-        given += [f"{kind} {c_name(name)}" for name, kind in self.arguments.items()]
-        kind = result_type(self.own.results, self.component)
-        return f"static {kind} {self.own.name}({', '.join(given) or 'void'})"
+        given = [f"struct {self.scope.component} *self"] * self.own.method
+        for place, (name, kind) in enumerate(self.arguments.items()):
+            pointer = "" if isinstance(kind, str) else "*"
+            constant = "const " if pointer and place not in self.own.written else ""
+            given.append(f"{constant}{kind} {pointer}{c_name(name)}")
+        kind = self.scope.returned(self.signature.results)
+        return f"static {kind} {self.name}({', '.join(given) or 'void'})"
 
-    def definition(self) -> str:
+    def _definition(self) -> str:
         """The function, with its docstring and comments. Raises Untranslatable."""
         body = self.function.body
         text = ast.get_docstring(self.function, clean=True)
@@ -73,14 +85,25 @@ class FunctionWriter:
             method = getattr(self, f"_{type(statement).__name__.lower()}", None)
             if method is None:
                 raise Untranslatable(statement, f"{type(statement).__name__} is not in the subset")
-            for part in ast.iter_child_nodes(statement):
-                if isinstance(part, ast.expr):
-                    self._check_order(part)
+            self._check_order(
+                [part for part in ast.iter_child_nodes(statement) if isinstance(part, ast.expr)]
+            )
             yield from method(statement, indent)
 
-    def _check_order(self, expression: ast.expr) -> None:
-        """Refuse an expression whose parts C may evaluate in an order in which its value differs."""
-        attributes = [node for node in ast.walk(expression) if isinstance(node, ast.Attribute)]
+    def _check_order(self, parts: list[ast.expr]) -> None:
+        """Refuse a statement whose parts C may evaluate in an order in which its value differs."""
+        nodes = [node for part in parts for node in ast.walk(part)]
+        names = [node.id for node in nodes if isinstance(node, ast.Name)]
+        for node in nodes:
+            if isinstance(node, ast.Call) and self.expressions.is_ours(node):
+                for written in self._written(node):
+                    if names.count(written) > 1:
+                        raise Untranslatable(
+                            node,
+                            f"{ast.unparse(node.func)}() changes {written}, which the rest of this line uses:"
+                            " write two statements",
+                        )
+        attributes = [node for node in nodes if isinstance(node, ast.Attribute)]
         used = [of_self(node) for node in attributes if isinstance(node.ctx, ast.Load)]
         for method in used:
             changed = self.scope.changes.get(method, frozenset())
@@ -89,8 +112,15 @@ class FunctionWriter:
             ]
             if changed and (others or used.count(method) > 1):
                 raise Untranslatable(
-                    expression, f"{method}() changes what the rest of this line uses: write two statements"
+                    parts[0], f"{method}() changes what the rest of this line uses: write two statements"
                 )
+
+    def _written(self, node: ast.Call) -> list[str]:
+        """The arrays that a call writes to."""
+        places = self.expressions.declared(node).written
+        return [
+            arg.id for place, arg in enumerate(node.args) if place in places and isinstance(arg, ast.Name)
+        ]
 
     def _pass(self, _node: ast.Pass, _indent: str) -> Iterator[str]:
         yield from ()
@@ -110,106 +140,58 @@ class FunctionWriter:
         yield f"{indent}{'(void)' if results else ''}{text};"
 
     def _return(self, node: ast.Return, indent: str) -> Iterator[str]:
-        results = self.own.results
         if node.value is None:
-            if results:
+            if self.results:
                 raise Untranslatable(node, "a return without the value that is declared")
             yield f"{indent}return;"
-        elif len(results) == 1:
-            yield f"{indent}return {self.expressions.as_type(node.value, results[0]).text};"
+        elif len(self.results) < 2:
+            yield from self._given([node.value], indent)
         elif isinstance(node.value, ast.Tuple):
-            if len(node.value.elts) != len(results):
-                raise Untranslatable(node, f"{len(node.value.elts)} values where {len(results)} are declared")
-            values = (
-                self.expressions.as_type(value, kind).text
-                for value, kind in zip(node.value.elts, results, strict=True)
-            )
-            yield f"{indent}return ({result_type(results, self.component)}){{{', '.join(values)}}};"
+            yield from self._given(node.value.elts, indent)
         else:
-            yield f"{indent}return {self._several(node.value, results)};"
+            yield f"{indent}return {self._several(node.value)};"
 
-    def _several(self, node: ast.expr, wanted: Results) -> str:
-        """A call that returns several values, of these types."""
-        if not isinstance(node, ast.Call) or not self.expressions.is_ours(node):
-            raise Untranslatable(node, f"{ast.unparse(node)} is not {len(wanted)} values")
-        text, results = self.expressions.call(node)
-        if results != wanted:
-            raise Untranslatable(node, f"{ast.unparse(node.func)} returns other types than are needed here")
-        return text
-
-    def _annassign(self, node: ast.AnnAssign, indent: str) -> Iterator[str]:
-        kind = TYPES.get(ast.unparse(node.annotation))
-        if kind is None or not isinstance(node.target, ast.Name) or node.value is None:
-            raise Untranslatable(node, "an annotation is float, int or bool, of a name that gets a value")
-        self.scope.locals.setdefault(node.target.id, kind)
-        yield from self._assigned(node.target, node.value, indent)
-
-    def _augassign(self, node: ast.AugAssign, indent: str) -> Iterator[str]:
-        before = ast.copy_location(ast.parse(ast.unparse(node.target), mode="eval").body, node)
-        value = ast.copy_location(ast.BinOp(before, node.op, node.value), node)
-        yield from self._assigned(node.target, value, indent)
-
-    def _assign(self, node: ast.Assign, indent: str) -> Iterator[str]:
-        if len(node.targets) > 1:
-            raise Untranslatable(node, "an assignment to several names")
-        (target,) = node.targets
-        if of_self(target) in self.scope.arrays:
-            yield from self._unpacked(self.expressions.elements(target), node.value, indent)
-        elif isinstance(target, ast.Tuple):
-            yield from self._unpacked(target.elts, node.value, indent)
-        else:
-            yield from self._assigned(target, node.value, indent)
-
-    def _assigned(self, target: ast.expr, value: ast.expr, indent: str) -> Iterator[str]:
-        code = self.expressions.of(value)
-        place = self._place(target, code.type)
-        text = widened(code, place[1], value).text if place[1] else code.text
-        yield f"{indent}{place[0]} = {text};" if place[0] else f"{indent}(void)({text});"
-
-    def _place(self, target: ast.expr, kind: str) -> tuple[str, str]:
-        """Where a value goes, and the type it has there; nothing for a local that nothing reads."""
-        if isinstance(target, ast.Attribute):
-            code = self.expressions.of(target)
-            return code.text, code.type
-        if not isinstance(target, ast.Name):
-            raise Untranslatable(target, f"{ast.unparse(target)} cannot be assigned to")
-        if target.id not in self.read:
-            return "", ""
-        known = self.scope.locals.setdefault(target.id, kind)
-        if NAMES[kind] != NAMES[known] and (NAMES[known], NAMES[kind]) != ("float", "int"):
-            raise Untranslatable(target, f"{target.id} is {NAMES[known]} and becomes {NAMES[kind]}")
-        return c_name(target.id), known
-
-    def _unpacked(self, targets: list[ast.expr], value: ast.expr, indent: str) -> Iterator[str]:
-        """Several values, all of them computed before the first is put in its place."""
-        inner = f"{indent}    "
-        if isinstance(value, ast.Tuple):
-            codes = [self.expressions.of(each) for each in value.elts]
-            kinds = tuple(code.type for code in codes)
-            lines = [
-                f"{inner}const {kind} value_{place} = {code.text};"
-                for place, (kind, code) in enumerate(zip(kinds, codes, strict=True))
-            ]
-            prefix = ""
-        else:
-            if not isinstance(value, ast.Call) or not self.expressions.is_ours(value):
-                raise Untranslatable(value, f"{ast.unparse(value)} is not several values")
-            text, kinds = self.expressions.call(value)
-            self.blocks += 1
-            prefix = f"found_{self.blocks}."
-            lines = [f"{inner}const {result_type(kinds, self.component)} {prefix[:-1]} = {text};"]
-        if len(kinds) != len(targets):
-            raise Untranslatable(value, f"{len(kinds)} values for {len(targets)} names")
-        yield f"{indent}{{"
+    def _given(self, nodes: list[ast.expr], indent: str) -> Iterator[str]:
+        """A return of these values."""
+        if len(nodes) != len(self.results):
+            raise Untranslatable(nodes[0], f"{len(nodes)} values where {len(self.results)} are declared")
+        lines: list[str] = []
+        values = []
+        for place, node in enumerate(nodes):
+            mine = isinstance(node, ast.Name) and node.id not in self.arguments
+            code = self.expressions.any_of(node) if mine else self._made(node, indent, lines)
+            values.append(self._result(place, code, node))
+            if isinstance(code.type, Array) and ast.dump(node) in map(ast.dump, nodes[:place]):
+                raise Untranslatable(node, f"{ast.unparse(node)} is returned twice: copy it")
         yield from lines
-        for number, (place, kind) in enumerate(zip(targets, kinds, strict=True)):
-            name, wanted = self._place(place, kind)
-            given = f"{prefix}value_{number}"
-            if name:
-                yield f"{inner}{name} = {'' if wanted == kind else f'({wanted})'}{given};"
-            elif not prefix:
-                yield f"{inner}(void){given};"
-        yield f"{indent}}}"
+        several = f"({self.scope.returned(self.signature.results)}){{{', '.join(values)}}}"
+        yield f"{indent}return {values[0] if len(values) == 1 else several};"
+
+    def _result(self, place: int, code: Code, node: ast.expr) -> str:
+        """One of the values that are returned, of the type that is declared."""
+        wanted, annotated = self.results[place], self.own.results[place]
+        if wanted is None:
+            if not fits(code.type, annotated):
+                raise Untranslatable(node, f"{ast.unparse(node)} is {shown(code.type)}, not {annotated}")
+            wanted = self.results[place] = code.type
+        return widened(code, wanted, node).text
+
+    def _several(self, node: ast.expr) -> str:
+        """A call that returns several values, of the types that are declared."""
+        wanted = len(self.results)
+        if not isinstance(node, ast.Call) or not self.expressions.is_ours(node):
+            raise Untranslatable(node, f"{ast.unparse(node)} is not {wanted} values")
+        text, results = self.expressions.call(node)
+        if len(results) != wanted:
+            raise Untranslatable(node, f"{ast.unparse(node.func)} returns other types than are needed here")
+        for place, kind in enumerate(results):
+            if self.results[place] is None and fits(kind, self.own.results[place]):
+                self.results[place] = kind
+            if self.results[place] != kind:
+                raise Untranslatable(
+                    node, f"{ast.unparse(node.func)} returns other types than are needed here"
+                )
+        return text
 
     def _if(self, node: ast.If, indent: str, word: str = "if") -> Iterator[str]:
         yield f"{indent}{word} ({self.expressions.condition(node.test).text}) {{"
@@ -231,37 +213,33 @@ class FunctionWriter:
 
     def _for(self, node: ast.For, indent: str) -> Iterator[str]:
         """A loop over range(): computed once are its bounds, and its variable keeps its last value."""
-        called = node.iter
-        if not isinstance(called, ast.Call) or ast.unparse(called.func) != "range" or called.keywords:
-            raise Untranslatable(node, "a for that does not run over range()")
+        first, end, step = self._range(node.iter)
         if node.orelse or not isinstance(node.target, ast.Name):
             raise Untranslatable(node, "an else of a loop" if node.orelse else "a for over several names")
-        bounds = [self.expressions.as_type(each, "int64_t").text for each in called.args[:2]]
-        first, end = ("0", bounds[0]) if len(bounds) == 1 else bounds
-        step = _step(called)
-        name = c_name(node.target.id)
-        self.scope.locals.setdefault(node.target.id, "int64_t")
-        used = node.target.id in self.read
-        if not used:
-            del self.scope.locals[node.target.id]
+        name = node.target.id
+        used = name in self.read
+        if used:
+            self._place(node.target, WHOLE)
+        numbers = self._numbers(node.iter)
+        if numbers and not _set_in(node.body, name):
+            self.scope.spans[name] = min(numbers), max(numbers)
         self.blocks += 1
         at, stop = f"at_{self.blocks}", f"end_{self.blocks}"
-        yield (
-            f"{indent}for (int64_t {at} = {first}, {stop} = {end}; {at} {'<' if step > 0 else '>'} {stop};"
-            f" {at} += {step}) {{"
-        )
+        bounds = f"int64_t {at} = {first.text}, {stop} = {end.text}"
+        yield f"{indent}for ({bounds}; {running(at, step, stop)}) {{"
         if used:
-            yield f"{indent}    {name} = {at};"
+            yield f"{indent}    {c_name(name)} = {at};"
         yield from self._block(node.body, f"{indent}    ")
         yield f"{indent}}}"
+        self.scope.spans.pop(name, None)
 
 
-def _step(called: ast.Call) -> int:
-    """The step of a range(), which has to be known: its sign tells where the loop ends."""
-    step = ast.literal_eval(called.args[2]) if len(called.args) == 3 else 1
-    if not isinstance(step, int) or step == 0:
-        raise Untranslatable(called, "the step of a range() is a whole number other than 0")
-    return step
+def _set_in(body: list[ast.stmt], name: str) -> bool:
+    """Whether statements set a name."""
+    nodes = (node for statement in body for node in ast.walk(statement))
+    return any(
+        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store) for node in nodes
+    )
 
 
 def _names_read(function: ast.FunctionDef) -> set[str]:

@@ -12,22 +12,13 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from threading import Lock
+from typing import Any
 
 from ...errors import LoomfmuError
 from ...variables import Component, Variable, arrays_of, variables_of
 from .. import source
-from .c_code import (
-    TYPES,
-    Scope,
-    Signature,
-    Untranslatable,
-    c_name,
-    comment,
-    literal,
-    result_struct,
-    signature,
-)
-from .c_functions import FunctionWriter
+from .c_code import TYPES, Scope, Untranslatable, c_name, comment, literal
+from .c_program import Program
 
 ENTRIES = ("initialize", "step")  # what the shell calls
 INCLUDES = '#include "component.h"\n#include "python_arithmetic.h"\n'
@@ -96,73 +87,44 @@ def _translated(component: type[Component]) -> Translation:
 
 
 def _code(component: type[Component], tree: ast.Module, comments: dict[int, str]) -> str:
-    name = component.__name__
-    functions, methods = _functions(component, tree)
-    _refuse_recursion(functions | {f"self.{method}": node for method, node in methods.items()})
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    own = classes.pop(component.__name__)
+    arrays = arrays_of(component)  # properties in Python, members in C
+    methods = {name: node for name, node in _functions(own.body).items() if name not in arrays}
+    constants = _constants(tree)
     scope = Scope(
-        functions=_signatures(functions, f"{name}_", False),
-        methods=_signatures(methods, f"{name}__", True),
+        component=component.__name__,
+        functions={},
+        methods={},
+        records={name: _fields(node) for name, node in classes.items()},
         variables={variable.member: TYPES[variable.type.__name__] for variable in variables_of(component)},
-        arrays={name: tuple(each.member for each in same) for name, same in arrays_of(component).items()},
-        constants=_constants(tree),
+        arrays={name: tuple(each.member for each in same) for name, same in arrays.items()},
+        constants={name: value for name, value in constants.items() if not isinstance(value, tuple)},
+        tables={name: value for name, value in constants.items() if isinstance(value, tuple)},
         from_math=frozenset(_imported(tree)),
         changes={method: frozenset(_changed(method, methods, set())) for method in methods},
     )
-    writers = [
-        FunctionWriter(function, own, scope, name, _within(comments, function))
-        for function, own in _reached(functions, methods, scope)
-    ]
-    several = {writer.own.results: None for writer in writers if len(writer.own.results) > 1}
-    structs = "\n".join(result_struct(results, name) for results in several)
-    prototypes = "\n".join(f"{writer.prototype};" for writer in writers)
-    definitions = "\n".join([_start(component), *(writer.definition() for writer in writers)])
-    return "\n\n".join(part for part in (structs, prototypes, definitions) if part)
+    structs, prototypes, definitions = Program(scope, _functions(tree.body), methods, comments).text(*ENTRIES)
+    return "\n\n".join(part for part in (structs, prototypes, f"{_start(component)}\n{definitions}") if part)
 
 
-def _refuse_recursion(functions: dict[str, ast.FunctionDef]) -> None:
-    """Refuse functions that call themselves, near or far: a native FMU would crash where Python stops."""
-    called = {
-        name: [(node, ast.unparse(node.func)) for node in ast.walk(function) if isinstance(node, ast.Call)]
-        for name, function in functions.items()
+def _functions(body: list[ast.stmt]) -> dict[str, ast.FunctionDef]:
+    """The functions of a module, or the methods of a class."""
+    return {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
+
+
+def _fields(record: ast.ClassDef) -> dict[str, str]:
+    """The fields of a record, with their types or the names of these."""
+    arguments = _functions(record.body)["__init__"].args.args[1:]
+    annotations = {each.arg: ast.unparse(each.annotation) for each in arguments if each.annotation}
+    return {name: TYPES.get(annotation, annotation) for name, annotation in annotations.items()}
+
+
+def _constants(tree: ast.Module) -> dict[str, Any]:
+    """What the module names: numbers, and tuples of numbers."""
+    found: dict[str, Any] = {
+        name: getattr(math, name) for name in _imported(tree) if isinstance(getattr(math, name), float)
     }
-    finished: set[str] = set()
-
-    def follow(name: str, callers: tuple[str, ...]) -> None:
-        for node, callee in called[name]:
-            if callee in (*callers, name):
-                raise Untranslatable(node, f"{callee} calls itself, and recursion does not translate")
-            if callee in called and callee not in finished:
-                follow(callee, (*callers, name))
-        finished.add(name)
-
-    for name in functions:
-        if name not in finished:
-            follow(name, ())
-
-
-def _functions(
-    component: type[Component], tree: ast.Module
-) -> tuple[dict[str, ast.FunctionDef], dict[str, ast.FunctionDef]]:
-    """The functions of a flattened module, and the methods of its class."""
-    (own,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
-    functions, methods = (
-        {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
-        for body in (tree.body, own.body)
-    )
-    arrays = arrays_of(component)  # properties in Python, members in C
-    return functions, {name: node for name, node in methods.items() if name not in arrays}
-
-
-def _signatures(functions: dict[str, ast.FunctionDef], prefix: str, method: bool) -> dict[str, Signature]:
-    return {
-        name: signature(function, prefix + name, method)
-        for name, function in functions.items()
-        if name != "__init__"
-    }
-
-
-def _constants(tree: ast.Module) -> dict[str, float | int]:
-    found = {name: getattr(math, name) for name in _imported(tree) if isinstance(getattr(math, name), float)}
     for node in tree.body:
         if isinstance(node, ast.Assign):
             found |= {ast.unparse(target): ast.literal_eval(node.value) for target in node.targets}
@@ -183,26 +145,6 @@ def _changed(method: str, methods: dict[str, ast.FunctionDef], seen: set[str]) -
     return found.union(*(_changed(name, methods, seen) for name in called))
 
 
-def _reached(
-    functions: dict[str, ast.FunctionDef], methods: dict[str, ast.FunctionDef], scope: Scope
-) -> list[tuple[ast.FunctionDef, Signature]]:
-    """The functions and methods that the entries lead to, in the order of the module."""
-    bodies = {("", name): body for name, body in functions.items()}
-    bodies |= {("self.", name): body for name, body in methods.items()}
-    waiting = [("self.", name) for name in ENTRIES]
-    reached: set[tuple[str, str]] = set()
-    while waiting:
-        key = waiting.pop()
-        if key in bodies and key not in reached:
-            reached.add(key)
-            calls = (node.func for node in ast.walk(bodies[key]) if isinstance(node, ast.Call))
-            for called in map(ast.unparse, calls):
-                waiting.append(("self." if called.startswith("self.") else "", called.removeprefix("self.")))
-    signatures = {("", name): own for name, own in scope.functions.items()}
-    signatures |= {("self.", name): own for name, own in scope.methods.items()}
-    return [(bodies[key], signatures[key]) for key in bodies if key in reached]
-
-
 def _comments(text: str) -> dict[int, str]:
     """Comments that stand on a line of their own, by its number."""
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
@@ -210,12 +152,6 @@ def _comments(text: str) -> dict[int, str]:
         token.start[0]: token.string.lstrip("# ")
         for token in tokens
         if token.type == tokenize.COMMENT and token.line.lstrip().startswith("#")
-    }
-
-
-def _within(comments: dict[int, str], function: ast.FunctionDef) -> dict[int, str]:
-    return {
-        line: text for line, text in comments.items() if function.lineno < line <= (function.end_lineno or 0)
     }
 
 

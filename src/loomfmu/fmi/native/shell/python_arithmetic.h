@@ -72,12 +72,24 @@ static inline double python_floor_division_float(double value, double divisor)
 }
 
 /* An element of an array, a negative index counted from its end. Where Python raises nothing is read: NaN, which
- * is refused in an output, the largest integer or false stands for it. */
+ * is refused in an output, the largest integer or false stands for it; where an element cannot be written, for all. */
 #define PYTHON_ITEM(name, type, absent) \
     static inline type python_item_##name(const type *array, int64_t count, int64_t index) \
     { \
         const int64_t place = index < 0 ? index + count : index; \
         return place >= 0 && place < count ? array[place] : absent; \
+    } \
+    static inline void python_put_##name(type *array, int64_t count, int64_t index, type value) \
+    { \
+        const int64_t place = index < 0 ? index + count : index; \
+        int64_t each; \
+        if (place >= 0 && place < count) { \
+            array[place] = value; \
+            return; \
+        } \
+        for (each = 0; each < count; each++) { \
+            array[each] = absent; \
+        } \
     }
 PYTHON_ITEM(float, double, NAN)
 PYTHON_ITEM(int, int64_t, PYTHON_LARGEST)
