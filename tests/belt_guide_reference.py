@@ -4,6 +4,7 @@ import math
 from functools import cache
 
 import numpy as np
+from belt_loom import ends
 from scipy.optimize import brentq
 
 from loomfmu.components.belt_dynamics import BeltDynamics
@@ -62,9 +63,9 @@ def bent(turn: float, clearance: float, guide: float, length: float) -> float:
     belt.yarn_tension = belt.bending_stiffness * (turn / length) ** 2
     for n in range(RELAXING):
         belt.step(n * 5e-4, 5e-4)
-    at_guide, at_head = belt.ends(length, 0.0)[2:4]
-    shape = end_shape(at_guide, at_head, *belt.mode)
-    from_line = [shape_at(x, *shape, at_guide, at_head)[0] for x in PLACES.tolist()]
+    (at_guide, at_head), _rates = ends(belt, length)
+    shape = end_shape(at_guide, at_head, list(belt.mode))
+    from_line = [shape_at(x, shape, at_guide, at_head)[0] for x in PLACES.tolist()]
     return float(np.abs(np.array(from_line) - 0.5 * clearance * belt.guide_contact * PLACES).max())
 
 

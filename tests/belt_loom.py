@@ -8,6 +8,8 @@ import numpy as np
 from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.machines import parameters
 from loomfmu.physics.belt_ends import end_shape
+from loomfmu.physics.belt_motion import ends_at
+from loomfmu.physics.belt_moving import instant
 
 RPM = pi / 30.0
 MACHINE = "WL680-3600"
@@ -52,12 +54,12 @@ X = np.linspace(1.0, 0.0, 201)  # of BeltDynamics, from the head; the finite ele
 def shape(modes, ends, x=X):
     """Deflection by modes and by the end shapes at guide and head."""
     guide, head = ends
-    sines = np.sin(np.outer(pi * x, np.arange(1, 7))) @ np.array(end_shape(guide, head, *modes))
+    sines = np.sin(np.outer(pi * x, np.arange(1, 7))) @ np.array(end_shape(guide, head, modes))
     return sines + guide * (x**3 - x) + head * ((1.0 - x) ** 3 - (1.0 - x))
 
 
 def ends(belt, length, speed=0.0):
     """Amplitudes of the end shapes at guide and head, and their rates."""
-    belt.try_modes()
-    _d, _k, guide, head, guide_rate, head_rate, *_rest = belt.ends(length, speed)
-    return (guide, head), (guide_rate, head_rate)
+    at = instant(belt.given(), length, speed, 0.0, 0.0)
+    found = ends_at(belt.given(), at, belt.guide_contact, list(belt.mode), list(belt.mode_rate))
+    return (found.guide, found.head), (found.guide_rate, found.head_rate)

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from loomfmu.physics.belt_bending import bent_belt
-from loomfmu.physics.belt_ends import end_amplitudes, end_motion, end_shape
-from loomfmu.physics.belt_modes import bow_forces
-from loomfmu.physics.belt_motion import accelerations, energy_and_powers
+from loomfmu.physics.belt_ends import end_shape
+from loomfmu.physics.belt_modes import Bow
+from loomfmu.physics.belt_motion import accelerations, ends_at, energy_and_powers
+from loomfmu.physics.belt_moving import Belt, instant
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
 X, Y, W = 0.5 * (1.0 + NODES), 0.5 * (1.0 - NODES), 0.5 * WEIGHTS
@@ -31,21 +32,30 @@ def buckled(clamped):
     return sines if clamped == 1 else np.where(n % 2, sines, -sines)
 
 
-def bow(length):
-    """Amplitudes of the end shapes of an unloaded belt, and their rates by its length."""
-    return end_amplitudes(1, BOW, BOW_LENGTH, length, True)
-
-
-def free_turn(clamped, length):
-    """Slope of a clamped guide times the length, and its rate by it."""
-    return (1e-3 * (length + 0.4), 1e-3) if clamped % 2 else (0.0, 0.0)
+def belt(clamped, **given):
+    """A belt with clamped ends, 1 at the guide, 2 at the head, 3 both, and its contact in the guide."""
+    by_default = {
+        "head_mass": 0.1,
+        "mass": 0.05,
+        "damping": 0.4,
+        "stiffness": 0.39,
+        "bow": Bow(1, BOW, BOW_LENGTH),
+        "offset": 2e-4,
+        "guide_length": 1.0,
+        "clearance": 1e-3,
+        "leaning": True,
+        "guided": clamped >= 2,
+        "modes": 6,
+    }
+    return Belt(**{**by_default, **given}), clamped % 2
 
 
 def integrals(clamped, modes, length):
     """Bending energy over the stiffness without the end shapes' own to the second order, and shortening."""
-    turn = free_turn(clamped, length)
-    guide, head = end_motion(*modes, *modes, 0.0, 0.0, clamped, *turn, *bow(length))[2:4]
-    a = np.array(end_shape(guide, head, *modes)) * NUMBERS * pi
+    given, contact = belt(clamped)
+    ends = ends_at(given, instant(given, length, 0.0, 0.0, 0.0), contact, list(modes), list(modes))
+    guide, head = ends.guide, ends.head
+    a = np.array(end_shape(guide, head, list(modes))) * NUMBERS * pi
     slope = a @ np.cos(pi * np.outer(NUMBERS, X)) + guide * (3.0 * X**2 - 1.0) - head * (3.0 * Y**2 - 1.0)
     bend = 6.0 * (guide * X + head * Y) - (a * NUMBERS * pi) @ np.sin(pi * np.outer(NUMBERS, X))
     slope, bend = slope / length, bend / length**2
@@ -62,10 +72,10 @@ def difference(function, step):
 def test_bending_and_shortening_and_their_rates_are_those_of_the_shape(clamped):
     modes = buckled(clamped)
     speeds = modes * np.array([30.0, -20.0, 40.0, 10.0, -60.0, 20.0])
-    state = end_motion(
-        *modes, *speeds, VELOCITY, ACCELERATION, clamped, *free_turn(clamped, LENGTH), *bow(LENGTH)
-    )
-    found = np.array(bent_belt(*modes, *speeds, LENGTH, VELOCITY, ACCELERATION, clamped, *state[2:]))
+    given, contact = belt(clamped)
+    at = instant(given, LENGTH, VELOCITY, ACCELERATION, 0.0)
+    ends = ends_at(given, at, contact, list(modes), list(speeds))
+    found = bent_belt(at, ends, list(modes), list(speeds))
 
     def later(time):
         length = LENGTH + time * VELOCITY + 0.5 * time**2 * ACCELERATION
@@ -78,12 +88,13 @@ def test_bending_and_shortening_and_their_rates_are_those_of_the_shape(clamped):
     tiny = 2e-5
     second = (later(tiny) - 2.0 * later(0.0) + later(-tiny))[1] / tiny**2
     within = 6e-3 if clamped else 3e-4  # of 12 panels, whose sum is exact but for what the end shapes add
-    assert found[[16, 12]] == pytest.approx(integrals(clamped, modes, LENGTH), rel=within)
-    assert -found[:6] == pytest.approx(energies, abs=within * np.abs(energies).max())
-    assert found[6:12] == pytest.approx(shortenings, abs=within * np.abs(shortenings).max())
-    assert found[13] == pytest.approx(difference(later, tiny)[1], rel=within)
-    assert found[14] == pytest.approx(second, rel=within)
-    assert found[[17, 15]] == pytest.approx(by_length, rel=within)
+    energy, shortening = integrals(clamped, modes, LENGTH)
+    assert (found.energy, found.shortening) == pytest.approx((energy, shortening), rel=within)
+    assert -np.array(found.moments) == pytest.approx(energies, abs=within * np.abs(energies).max())
+    assert found.pulls == pytest.approx(shortenings, abs=within * np.abs(shortenings).max())
+    assert found.rate == pytest.approx(difference(later, tiny)[1], rel=within)
+    assert found.second == pytest.approx(second, rel=within)
+    assert (found.energy_by_length, found.by_length) == pytest.approx(tuple(by_length), rel=within)
 
 
 @settings(max_examples=60, deadline=None)
@@ -100,55 +111,17 @@ def test_the_energy_changes_by_the_powers(clamped, shape, swing, size, velocity,
     """To rounding, however coarse the sums over panels are: all forces come of one energy."""
     modes = LENGTH * size * np.array(shape) / NUMBERS**2
     speeds = modes * np.array(swing)
-    turn, by_length = free_turn(clamped, LENGTH)
-    tension, belt_mass, damping, stiffness, offset = 3.0, 0.05, 0.4, 0.39, 2e-4
+    given, contact = belt(clamped, head_mass=head_mass)
 
     def energy(time, load=0.0):
         length = LENGTH + time * velocity + 0.5 * time**2 * acceleration
-        return energy_and_powers(
-            *(modes + time * speeds + 0.5 * time**2 * found),
-            *(speeds + time * found),
-            *found,
-            length,
-            velocity + time * acceleration,
-            acceleration,
-            tension,
-            head_mass,
-            belt_mass,
-            damping,
-            stiffness,
-            1,
-            BOW,
-            BOW_LENGTH,
-            offset,
-            True,
-            clamped,
-            turn + by_length * (length - LENGTH),
-            by_length,
-            load,
-        )
+        at = instant(given, length, velocity + time * acceleration, acceleration, 3.0)
+        place = list(modes + time * speeds + 0.5 * time**2 * found)
+        return energy_and_powers(given, at, contact, place, list(speeds + time * found), list(found), load)
 
-    b = stiffness * np.array(bow_forces(1, BOW, BOW_LENGTH, LENGTH)[:6])
-    *found, load = accelerations(
-        *modes,
-        *speeds,
-        LENGTH,
-        velocity,
-        acceleration,
-        tension,
-        head_mass,
-        belt_mass,
-        damping,
-        stiffness,
-        offset,
-        clamped,
-        turn,
-        by_length,
-        6,
-        *b,
-        *bow(LENGTH),
-    )
-    found = np.array(found)
+    at = instant(given, LENGTH, velocity, acceleration, 3.0)
+    rates, load = accelerations(given, at, contact, list(modes), list(speeds))
+    found = np.array(rates)
     fastest = 1e3 + np.abs(swing).max() + np.sqrt(np.abs(found).max() / (np.abs(modes).max() + 1e-9))
     step = 1e-3 / fastest
     growth = (

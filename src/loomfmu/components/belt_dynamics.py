@@ -4,24 +4,42 @@ from dataclasses import dataclass
 from math import fabs, sqrt
 
 from ..physics.belt import LARGEST_BEND
-from ..physics.belt_bending import LEAST_SQUARE
+from ..physics.belt_bending import LEAST_SQUARE, bent_belt
 from ..physics.belt_ends import buckling, end_shape
+from ..physics.belt_guide import before_switch, has_play, leans_on, next_contact, switched
+from ..physics.belt_modes import Bow
+from ..physics.belt_motion import accelerations, ends_at, energy_at
+from ..physics.belt_moving import (
+    Belt,
+    Instant,
+    Path,
+    crossing,
+    instant,
+    instant_at,
+    length_at,
+    may_clamp,
+    motion_at,
+    pushed,
+    stands,
+)
+from ..physics.belt_rest import rest, rests
 from ..physics.belt_shape import shape_at, shape_extremes
+from ..physics.belt_steps import advance, fits, foresee, pieces, stages_of, suited, worked
 from ..physics.numerics.extremes import highest_so_far
-from ..physics.numerics.motion import met
-from .belt_guide import CALIBRATED, GUIDED, SHORTEST_SHARE
-from .belt_rest import BeltRest
+from ..physics.numerics.gauss import at_stage
+from ..physics.numerics.motion import joined, joined_value, met
+from .belt_dynamics_variables import BeltDynamicsVariables
 
+CALIBRATED = 1  # guide: pinned, with a stiffness that makes up for it
+GUIDED = 2  # head: it cannot turn
 JUMP = 1e-6  # m, that a standing head may be off
 MOST_SWEEPS = 10000  # over the stages of the integration in one step; both strokes of a loom need fewer
 MOST_HALVINGS = 13
+SHORTEST_SHARE = 5e-3  # of an integration step: it goes that far at least, however contact comes and goes
 BALANCED = 2.5e-10  # of the energy: what an integration step may leave unexplained, if it can be halved
 UNBALANCED = 1e-6  # of the energy: a step that leaves more, however short, cannot be followed
 EASY = 1e-3  # of that: then the next step may be twice as long
 LEAST_ENERGY = 1e-15  # J: below, rounding and not the step is at fault
-GROWTH = 0.05  # of the free length in a step of the integration
-MOST_STEPS = 50  # of the integration in one step, before they are halved
-LARGEST_STEP = 5e-4  # s, of the integration
 STEEPEST = sqrt(1.0 - 2.0 * LEAST_SQUARE)  # sine of the slope at which the belt counts as folded: 72 degrees
 MOST_WAVES = 5.0  # half waves of its own bow that a free belt may have: six modes cannot follow more
 LEFT = 2.5e-4  # of the largest deflection: what six modes and the integration leave under the push
@@ -32,7 +50,7 @@ SHORTEST_STEP = 1e-100  # [s]: nothing moves in less, whose square is no number 
 
 
 @dataclass(slots=True)
-class BeltDynamics(BeltRest):
+class BeltDynamics(BeltDynamicsVariables):
     """Rapier belt in motion: a beam of growing length that moves through the guide and pushes the head.
 
     Between two samples of the inputs the head moves on the quintic that joins them; six modes are integrated
@@ -41,12 +59,9 @@ class BeltDynamics(BeltRest):
 
     def initialize(self, time: float) -> int:
         """Let the belt rest in equilibrium and forget all extremes and work."""
-        if self.has_play() and self.guide_clearance >= self.guide_length:
+        if self.guide_end != CALIBRATED and self.guide_clearance >= self.guide_length:
             return 3
-        self.outside = False
-        self.held = False
         self.folded = False
-        self.lost = False
         self.followed = True
         self.too_long = False
         self.largest_deflection = 0.0
@@ -58,12 +73,13 @@ class BeltDynamics(BeltRest):
         self.energy_through = 0.0
         self.energy_residual = 0.0
         self.sampled_step = 0.0
-        self.forget()
+        self.go_in()
         self.remember()
-        self.lay_path(0.0)
-        if self.path[0] > self.shortest_length:
-            self.come_out(0.0)
-        return self.show()
+        belt = self.given()
+        path = self.path(0.0)
+        if path.joined[0] > self.shortest_length:
+            self.come_out(belt, path, 0.0)
+        return self.show(belt, path)
 
     def step(self, time: float, step_size: float) -> int:
         """Move the belt from the last sample of its inputs to this one: out of its guide, on, back into it.
@@ -74,28 +90,81 @@ class BeltDynamics(BeltRest):
             return 0
         since = step_size if self.inputs_at_step_end else self.sampled_step
         self.sampled_step = step_size
-        jumped = self.jumps(since)
-        self.lay_path(since)
-        ends_outside = self.length_at(1.0) > self.shortest_length
+        belt = self.given()
+        path = self.path(since)
+        ends_outside = length_at(path, 1.0) > self.shortest_length
         share = 0.0
         given_up = False
-        if jumped:
+        if self.jumps(since):
             self.go_in()
             share = 1.0
         if not self.outside and ends_outside:
-            if share == 0.0 and self.length_at(0.0) < self.shortest_length:
-                share = self.crossing()
-            self.come_out(share)
+            if share == 0.0 and length_at(path, 0.0) < self.shortest_length:
+                share = crossing(path, self.shortest_length)
+            self.come_out(belt, path, share)
         if self.outside and ends_outside:
-            self.move(share, 1.0)
+            self.move(belt, path, share, 1.0)
         elif self.outside:
-            if self.length_at(0.0) > self.shortest_length:
-                self.move(0.0, self.crossing())
+            if length_at(path, 0.0) > self.shortest_length:
+                self.move(belt, path, 0.0, crossing(path, self.shortest_length))
             given_up = self.lost
             self.go_in()
         self.remember()
-        shown = self.show()
+        shown = self.show(belt, path)
         return 2 if given_up else shown
+
+    def given(self) -> Belt:
+        """The belt as it is now."""
+        factor = self.length_factor if self.guide_end == CALIBRATED else 1.0
+        return Belt(
+            self.head_mass,
+            self.belt_mass,
+            2.0 * self.belt_mass * self.damping,
+            self.bending_stiffness / (factor * factor),
+            Bow(self.bow_of, self.bow, self.bow_length),
+            self.guide_offset,
+            self.guide_length,
+            self.guide_clearance,
+            self.guide_end != CALIBRATED,
+            self.head_end == GUIDED,
+            self.modes,
+        )
+
+    def path(self, duration: float) -> Path:
+        """The path over a time, from the last sample of the inputs to this one."""
+        guide = self.idle_travel + self.head_length
+        square = duration * duration
+        place = [self.travel - guide, 0.0, 0.0, 0.0, 0.0, 0.0]
+        tension = self.yarn_tension
+        if duration > 0.0:
+            rate = duration * self.sampled_velocity
+            a0, a1, a2, a3 = joined(
+                self.sampled_travel,
+                rate,
+                square * self.sampled_acceleration,
+                self.travel,
+                duration * self.velocity,
+                square * self.acceleration,
+            )
+            place = [self.sampled_travel - guide, rate, a0, a1, a2, a3]
+            tension = self.sampled_tension
+        return Path(
+            list(place),
+            duration,
+            self.velocity,
+            self.acceleration,
+            tension,
+            self.yarn_tension,
+            self.taker,
+            0.5 * self.shortest_length,
+        )
+
+    def remember(self) -> None:
+        """Keep the present inputs as the last sample."""
+        self.sampled_travel = self.travel
+        self.sampled_velocity = self.velocity
+        self.sampled_acceleration = self.acceleration
+        self.sampled_tension = self.yarn_tension
 
     def jumps(self, since: float) -> bool:
         """Whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
@@ -104,96 +173,122 @@ class BeltDynamics(BeltRest):
         change = self.travel - self.sampled_travel - 0.5 * since * (self.sampled_velocity + self.velocity)
         return fabs(change) > since * (0.5 * rates + since * seconds) + JUMP
 
-    def crossing(self) -> float:
-        """Share of the step at which the free length passes the shortest one."""
-        low = 0.0
-        high = 1.0
-        starts_outside = self.length_at(0.0) > self.shortest_length
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            if (self.length_at(middle) > self.shortest_length) == starts_outside:
-                low = middle
-            else:
-                high = middle
-        return high
-
     def go_in(self) -> None:
         """Put the belt back into its guide, straight."""
         self.outside = False
         self.held = False
         self.lost = False
-        self.forget()
-
-    def come_out(self, share: float) -> None:
-        """Put the belt where it comes out in equilibrium under its load, or without it if there is none."""
-        self.outside = True
-        self.held = False
-        self.lost = False
-        length = self.length_at(share)
-        self.rest(length, self.velocity_at(share), self.acceleration_at(share), self.tension_at(share))
-        if not self.at_rest:
-            self.rest(length, 0.0, 0.0, 0.0)
-        self.look(share)
-        if not self.at_rest:
-            self.lose()
-            return
-        if not self.steepness < STEEPEST:
-            self.fold(share)
-            return
-        self.take_extremes(share, 0.0)
-
-    def hold(self) -> None:
-        """Stop the belt until it is back in its guide."""
+        self.mode = [0.0] * 6
+        self.deflection = 0.0
+        self.deflection_place = 0.0
+        self.bending_strain = 0.0
+        self.shortening = 0.0
+        self.steepness = 0.0
         self.settle()
+
+    def settle(self) -> None:
+        """Stop the motion of the modes, let go the guide, and forget the last integration step."""
+        self.mode_rate = [0.0] * 6
+        self.gauss = [0.0] * 18
+        self.gauss_step = 0.0
+        self.halvings = 0
         self.deflection_rate = 0.0
         self.growth_rate = 0.0
         self.guide_contact = 0
         self.guide_moment = 0.0
         self.energy = 0.0
-        self.held = True
+
+    def come_out(self, belt: Belt, path: Path, share: float) -> None:
+        """Put the belt where it comes out in equilibrium under its load, or without it if there is none."""
+        self.go_in()
+        self.outside = True
+        length, velocity, acceleration, tension = motion_at(path, share)
+        q = [0.0] * 6
+        v = [0.0] * 6
+        at_rest, contact = rest(belt, length, velocity, acceleration, tension, q, v)
+        if not at_rest:
+            q = [0.0] * 6
+            v = [0.0] * 6
+            at_rest, contact = rest(belt, length, 0.0, 0.0, 0.0, q, v)
+        self.mode = q
+        self.mode_rate = v
+        self.guide_contact = contact
+        at = instant(belt, length, velocity, acceleration, tension)
+        before, before_rate = self.look(belt, at, q, v)
+        if not at_rest:
+            self.lose()
+        elif not self.steepness < STEEPEST:
+            self.fold(belt, at)
+        else:
+            self.take_extremes(belt, at, 0.0, before, before_rate, 0.0)
 
     def lose(self) -> None:
         """Hold the belt where its motion could last be followed: what it does from there on is unknown."""
-        self.hold()
+        self.settle()
+        self.held = True
         self.lost = True
         self.followed = False
 
-    def fold(self, share: float) -> None:
+    def fold(self, belt: Belt, at: Instant) -> None:
         """Hold the belt as it folded: it counts as bent as far as a belt of its length can be."""
-        self.hold()
+        self.settle()
+        self.held = True
         self.folded = True
-        self.deflection = LARGEST_BEND * self.length_at(share)
+        self.deflection = LARGEST_BEND * at.length
         if self.deflection > self.largest_deflection:
             self.largest_deflection = self.deflection
-        if self.pushed_at(share) > 0.0 and self.deflection > self.largest_at_risk:
+        load = pushed(belt, at.length, at.acceleration, at.tension)
+        if load > 0.0 and self.deflection > self.largest_at_risk:
             self.largest_at_risk = self.deflection
 
-    def move(self, start: float, end: float) -> None:
+    def move(self, belt: Belt, path: Path, start: float, end: float) -> None:
         """Integrate over a part of the step, in equal steps; one that does not settle is halved."""
-        if self.held or self.path_step <= 0.0 or self.rests(start):
+        if self.held or path.duration <= 0.0:
             return
-        self.push_before = self.pushed_at(start)
-        size = (end - start) / self.pieces((end - start) * self.path_step)
-        self.set_out(start)
+        q = list(self.mode)
+        v = list(self.mode_rate)
+        a = list(self.gauss)
+        at = instant_at(belt, path, start)
+        if stands(path) and rests(belt, at, self.guide_contact, q, v):
+            return
+        self.guide_contact = leans_on(belt, at, q, v)
+        self.touch(belt, at, q, v)
+        self.energy = energy_at(belt, at, self.guide_contact, q, v)
+        load = pushed(belt, at.length, at.acceleration, at.tension)
+        loads = [0.0] * 3
+        size = (end - start) / pieces((end - start) * path.duration)
         share = start
         halvings = self.halvings if self.halvings < MOST_HALVINGS else MOST_HALVINGS
         reach = 1.0
-        while end - share > 1e-12 and halvings <= MOST_HALVINGS and self.sweeps < MOST_SWEEPS:
-            taken = self.suited(share, end, size) / 2.0**halvings
+        sweeps = 0
+        while end - share > 1e-12 and halvings <= MOST_HALVINGS and sweeps < MOST_SWEEPS:
+            taken = suited(path, share, end, size) / 2.0**halvings
             taken = taken if taken < reach else reach
             taken = taken if taken < end - share - 1e-12 else end - share
-            if not self.advance(share, taken):
+            sweeps = sweeps + 1
+            if not fits(path, share, taken):
                 halvings = halvings + 1
                 continue
-            before = self.before_switch(share, taken)
+            stages = stages_of(belt, path, share, taken)
+            longer = stages.duration / self.gauss_step if self.gauss_step > 0.0 else 0.0
+            self.gauss_step = 0.0
+            a = foresee(belt, at, self.guide_contact, longer, q, v, a)
+            settled, swept = advance(belt, stages, self.guide_contact, q, v, a, loads)
+            sweeps = sweeps + swept
+            if not settled:
+                halvings = halvings + 1
+                continue
+            next_q, next_v = at_stage(3, stages.duration, q, v, a)
+            after = instant_at(belt, path, share + taken)
+            before = before_switch(belt, self.guide_contact, stages.duration, at, q, v, after, next_q, next_v)
             shortest = SHORTEST_SHARE * size
             if before < 1.0 and taken > shortest:
                 reach = before * taken if before * taken > shortest else shortest
                 continue
-            self.account(share, taken)
-            energy = self.energy_at(share + taken)
-            missing = energy - self.energy - self.step_push - self.step_guide + self.step_loss
-            error = fabs(missing) / (fabs(energy) + fabs(self.energy) + self.step_through + LEAST_ENERGY)
+            work = worked(belt, stages, self.guide_contact, q, v, a, loads)
+            energy = energy_at(belt, after, self.guide_contact, next_q, next_v)
+            missing = energy - self.energy - work[0] - work[1] + work[2]
+            error = fabs(missing) / (fabs(energy) + fabs(self.energy) + work[3] + LEAST_ENERGY)
             if error > BALANCED and halvings < MOST_HALVINGS:
                 halvings = halvings + 1
                 continue
@@ -203,133 +298,104 @@ class BeltDynamics(BeltRest):
                 halvings = halvings - 1
             share = share + taken
             reach = 1.0
-            self.go_on()
-            self.gauss_step = taken * self.path_step
-            self.sums()
-            self.energy = energy
+            at = after
+            q = list(next_q)
+            v = list(next_v)
+            self.gauss_step = stages.duration
+            self.push_work = self.push_work + work[0]
+            self.guide_work = self.guide_work + work[1]
+            self.lost_work = self.lost_work + work[2]
+            self.energy_through = self.energy_through + work[3]
             self.energy_residual = self.energy_residual + missing
-            self.lean_or_leave(share)
-            self.look(share)
-            self.take_extremes(share, taken * self.path_step)
+            self.energy = energy
+            contact = self.guide_contact
+            self.touch(belt, at, q, v)
+            if self.guide_contact != contact:  # what that takes counts as work there
+                self.energy = energy_at(belt, at, self.guide_contact, q, v)
+                self.guide_work = self.guide_work + self.energy - energy
+                self.energy_through = self.energy_through + fabs(self.energy - energy)
+            self.mode = q
+            self.mode_rate = v
+            last, last_rate = self.look(belt, at, q, v)
+            load = self.take_extremes(belt, at, stages.duration, last, last_rate, load)
             if not self.steepness < STEEPEST:
-                self.fold(share)
+                self.fold(belt, at)
                 return
+        self.gauss = a
         self.halvings = halvings
         if end - share > 1e-12:
             self.lose()
 
-    def lean_or_leave(self, share: float) -> None:
-        """See to the contact in the guide, and count as work there what a change of it takes."""
-        contact = self.guide_contact
-        self.note_gap(share)
-        if self.guide_contact == contact:
+    def touch(self, belt: Belt, at: Instant, q: list[float], v: list[float]) -> None:
+        """Begin or end contact in the guide where it is about to."""
+        if not has_play(belt):
             return
-        before = self.energy
-        self.energy = self.energy_at(share)
-        self.guide_work = self.guide_work + self.energy - before
-        self.energy_through = self.energy_through + fabs(self.energy - before)
+        then = next_contact(belt, at, self.guide_contact, q, v)
+        if then == self.guide_contact:
+            return
+        rates = switched(belt, at, self.guide_contact, then, q, v)
+        for n in range(6):
+            v[n] = rates[n]
+        self.guide_contact = then
+        self.gauss_step = 0.0
 
-    def pieces(self, duration: float) -> int:
-        """Number of equal steps of the integration over a time."""
-        if not duration > LARGEST_STEP:
-            return 1
-        if duration < MOST_STEPS * LARGEST_STEP:
-            return 1 + int(duration / LARGEST_STEP * (1.0 - 1e-9))
-        return MOST_STEPS
+    def look(self, belt: Belt, at: Instant, q: list[float], v: list[float]) -> tuple[float, float]:
+        """Find where the belt is farthest from its line, how steep and bent it is; the deflection before."""
+        before = self.deflection
+        before_rate = self.deflection_rate
+        ends = ends_at(belt, at, self.guide_contact, q, v)
+        shape = end_shape(ends.guide, ends.head, q)
+        place, farthest, steepest, bend = shape_extremes(at.length, shape, ends.guide, ends.head)
+        shape = end_shape(ends.guide_rate, ends.head_rate, v)
+        rate, _first, _twice = shape_at(place, shape, ends.guide_rate, ends.head_rate)
+        self.deflection = fabs(farthest)
+        self.deflection_rate = rate if farthest >= 0.0 else -rate
+        self.deflection_place = (1.0 - place) * at.length
+        self.steepness = steepest
+        self.bending_strain = 0.5 * self.thickness * bend
+        return before, before_rate
 
-    def set_out(self, share: float) -> None:
-        """Make ready for the integration from a share of the step on."""
-        self.sweeps = 0
-        self.try_modes()
-        self.sums()
-        self.lean(self.length_at(share))
-        self.note_gap(share)
-        self.energy = self.energy_at(share)
+    def take_extremes(
+        self, belt: Belt, at: Instant, duration: float, last: float, last_rate: float, load_before: float
+    ) -> float:
+        """Bring the largest deflections up to an instant, on the cubic from the last look; the load now.
+
+        What is too long for its modes does not count.
+        """
+        load = pushed(belt, at.length, at.acceleration, at.tension)
+        if not self.follows(at.length):
+            self.too_long = True
+            return load
+        value = self.deflection
+        rate = self.deflection_rate
+        self.largest_deflection = highest_so_far(
+            self.largest_deflection, duration, last, last_rate, value, rate
+        )
+        part = 1.0
+        if load <= 0.0 and load_before > 0.0:
+            part = load_before / (load_before - load)
+            value, rate = met(part, duration, last, last_rate, value, rate)
+        if load > 0.0 or load_before > 0.0:
+            self.largest_at_risk = highest_so_far(
+                self.largest_at_risk, part * duration, last, last_rate, value, rate
+            )
+        return load
 
     def follows(self, length: float) -> bool:
         """Whether six modes can follow the bow of a belt of that free length."""
         return self.bow_of != 1 or length <= MOST_WAVES * self.bow_length
 
-    def suited(self, share: float, end: float, size: float) -> float:
-        """Share of the step over which the free length changes by a twentieth, or a given smaller one."""
-        length = self.length_at(share)
-        ahead = share + size if share + size < end else end
-        change = fabs(self.length_at(ahead) - length)
-        if self.length_at(ahead) < length:
-            length = self.length_at(ahead)
-        if change <= GROWTH * length or length < 0.5 * self.shortest_length:
-            return size
-        return size * GROWTH * length / change
-
-    def look(self, share: float) -> None:
-        """Find where the belt is farthest from its line, and how steep and bent it is."""
-        length = self.length_at(share)
-        velocity = self.velocity_at(share)
-        self.try_modes()
-        (_d, _k, guide, head, guide_rate, head_rate, _by_length, _head_by_length, _second, _head_second) = (
-            self.ends(length, velocity)
-        )
-        a1, a2, a3, a4, a5, a6 = end_shape(guide, head, *self.mode)
-        place, farthest, steepest, bend = shape_extremes(length, a1, a2, a3, a4, a5, a6, guide, head)
-        a1, a2, a3, a4, a5, a6 = end_shape(guide_rate, head_rate, *self.mode_rate)
-        rate, _first, _twice = shape_at(place, a1, a2, a3, a4, a5, a6, guide_rate, head_rate)
-        self.last_deflection = self.deflection
-        self.last_rate = self.deflection_rate
-        self.deflection = fabs(farthest)
-        self.deflection_rate = rate if farthest >= 0.0 else -rate
-        self.deflection_place = (1.0 - place) * length
-        self.steepness = steepest
-        self.bending_strain = 0.5 * self.thickness * bend
-
-    def take_extremes(self, share: float, duration: float) -> None:
-        """Bring the largest deflections up to a share of the step, on the cubic from the last look.
-
-        What is too long for its modes does not count.
-        """
-        if not self.follows(self.length_at(share)):
-            self.too_long = True
-            self.push_before = self.pushed_at(share)
-            return
-        self.largest_deflection = highest_so_far(
-            self.largest_deflection,
-            duration,
-            self.last_deflection,
-            self.last_rate,
-            self.deflection,
-            self.deflection_rate,
-        )
-        pushed = self.pushed_at(share)
-        value = self.deflection
-        rate = self.deflection_rate
-        part = 1.0
-        if pushed <= 0.0 and self.push_before > 0.0:
-            part = self.push_before / (self.push_before - pushed)
-            value, rate = met(
-                part, duration, self.last_deflection, self.last_rate, self.deflection, self.deflection_rate
-            )
-        if pushed > 0.0 or self.push_before > 0.0:
-            self.largest_at_risk = highest_so_far(
-                self.largest_at_risk, part * duration, self.last_deflection, self.last_rate, value, rate
-            )
-        self.push_before = pushed
-
-    def show(self) -> int:
+    def show(self, belt: Belt, path: Path) -> int:
         """Outputs at the end of the step."""
-        self.free_length, _second = self.joined_at(1.0)
-        self.compression = self.head_mass * self.acceleration_at(1.0) + self.tension_at(1.0)
+        start, rate, a0, a1, a2, a3 = path.joined
+        self.free_length, _second = joined_value(start, rate, a0, a1, a2, a3, 1.0)
+        length, velocity, acceleration, tension = motion_at(path, 1.0)
+        self.compression = self.head_mass * acceleration + tension
         if self.outside and not self.held:
-            self.try_modes()
-            self.found_a = self.rates_at(1.0)
-            turn, wave = buckling(self.clamped())
-            critical = turn / self.free_length
-            own = 0.5 * self.belt_mass * self.acceleration_at(1.0) * self.free_length
-            excess = self.compression + own - self.stiffness * critical * critical
-            self.growth_rate = (
-                wave / self.free_length * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
-            )
-            self.show_ends()
+            at = instant(belt, length, velocity, acceleration, tension)
+            self.show_motion(belt, at)
         self.deflection_known = not self.lost and (not self.outside or self.follows(self.free_length))
-        self.deflection_error = self.left() * self.largest_deflection
+        self.deflection_error = self.left(may_clamp(belt)) * self.largest_deflection
         self.margin_error = self.deflection_error / self.allowed_deflection
         self.margin = 1.0 - self.deflection / self.allowed_deflection
         self.lowest_margin = 1.0 - self.largest_deflection / self.allowed_deflection
@@ -337,51 +403,28 @@ class BeltDynamics(BeltRest):
             return 2 if self.lost else 1
         return 0
 
-    def left(self) -> float:
+    def show_motion(self, belt: Belt, at: Instant) -> None:
+        """Load, growth and shortening of the belt, and the moment of its guide."""
+        q = list(self.mode)
+        v = list(self.mode_rate)
+        _rates, self.compression = accelerations(belt, at, self.guide_contact, q, v)
+        ends = ends_at(belt, at, self.guide_contact, q, v)
+        bending = bent_belt(at, ends, q, v)
+        length = at.length
+        turn, wave = buckling(ends.clamped)
+        critical = turn / length
+        own = 0.5 * self.belt_mass * at.acceleration * length
+        excess = self.compression + own - belt.stiffness * critical * critical
+        self.growth_rate = wave / length * sqrt(excess / self.belt_mass) if excess > 0.0 else 0.0
+        self.shortening = bending.shortening
+        moment = 6.0 * ends.guide_excess / (length * length * length) - bending.force
+        self.guide_moment = length * (belt.stiffness * moment - self.compression * bending.pull)
+
+    def left(self, may_clamp: bool) -> float:
         """Share of the largest deflection by which deflections may be off with any steps."""
         if self.modes < 6:
             return UNKNOWN_LEFT
         if self.guide_end != CALIBRATED and self.head_end == GUIDED:
             return MOST_LEFT
         pushed_out = self.compression > 0.0 and self.velocity > 0.0
-        return LEFT if pushed_out and not self.may_clamp() else MORE_LEFT
-
-    def show_ends(self) -> None:
-        """Shortening of the belt, and the moment by which its guide keeps it from turning."""
-        length = self.free_length
-        (
-            d,
-            _k,
-            _guide,
-            _head,
-            _guide_rate,
-            _head_rate,
-            _guide_by_length,
-            _head_by_length,
-            _guide_second,
-            _head_second,
-        ) = self.ends(length, 0.0)
-        (
-            _f1,
-            _f2,
-            _f3,
-            _f4,
-            _f5,
-            _f6,
-            _g1,
-            _g2,
-            _g3,
-            _g4,
-            _g5,
-            _g6,
-            self.shortening,
-            _rate,
-            _second,
-            _by_length,
-            _energy,
-            _growth,
-            force,
-            pull,
-        ) = self.bend(length, 0.0)
-        bending = self.stiffness * (6.0 * d / (length * length * length) - force)
-        self.guide_moment = length * (bending - self.compression * pull)
+        return LEFT if pushed_out and not may_clamp else MORE_LEFT

@@ -1,11 +1,12 @@
 """What BeltDynamics is given, shows and keeps: its declarations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
 from ..arrays import array
-from ..declarations import at_step_end, auxiliary, input_, output, parameter, state
+from ..declarations import at_step_end, input_, output, parameter, state
 from ..variables import Component, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .terminals import HEAD
@@ -330,81 +331,19 @@ class BeltDynamicsVariables(Component):
     outside: bool = state("1", "The free length is above the shortest one", start=False)
     held: bool = state("1", "The belt is held until it is back in its guide", start=False)
     lost: bool = state("1", "It is held because its motion could not be followed", start=False)
-    mode: tuple[float, ...] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
-    mode_rate: tuple[float, ...] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
+    mode: Sequence[float] = array(state("m", f"Amplitude of the {each} mode") for each in NUMBERS)
+    mode_rate: Sequence[float] = array(state("m/s", f"Rate of the {each} mode") for each in NUMBERS)
     sampled_travel: float = state("m", "Travel at the last sample of the inputs")
     sampled_velocity: float = state("m/s", "Velocity at the last sample")
     sampled_acceleration: float = state("m/s2", "Acceleration at the last sample")
     sampled_tension: float = state("N", "Weft tension at the last sample")
     sampled_step: float = state("s", "Duration of the last step")
-    path: tuple[float, ...] = array(
-        state("m", f"Free length over the step, {each} coefficient") for each in NUMBERS
-    )
-    path_step: float = state("s", "Duration of the step")
-    start_tension: float = state("N", "Weft tension at the start of the step")
-    stiffness: float = state("N.m2", "Bending stiffness: EI, or EI / mu^2 if guide_end is calibrated")
-    gauss_a: tuple[float, ...] = array(
-        state("m/s2", f"Acceleration of the {each} mode, first stage") for each in NUMBERS
-    )
-    gauss_b: tuple[float, ...] = array(
-        state("m/s2", f"Acceleration of the {each} mode, second stage") for each in NUMBERS
-    )
-    gauss_c: tuple[float, ...] = array(
-        state("m/s2", f"Acceleration of the {each} mode, third stage") for each in NUMBERS
+    gauss: Sequence[float] = array(
+        state("m/s2", f"Acceleration of the {each} mode, {stage} stage of the last integration step")
+        for stage in NUMBERS[:3]
+        for each in NUMBERS
     )
     gauss_step: float = state(
         "s", "Duration of the integration step of these accelerations, 0 if there was none"
     )
     halvings: int = state("1", "How often the integration step is halved", start=0)
-    found_a: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode found at the first stage") for each in NUMBERS
-    )
-    found_b: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode found at the second stage") for each in NUMBERS
-    )
-    found_c: tuple[float, ...] = array(
-        auxiliary("m/s2", f"Acceleration of the {each} mode found at the third stage") for each in NUMBERS
-    )
-    bow_a: tuple[float, ...] = array(
-        auxiliary("N", f"Moment of the bow on the {each} mode, first stage") for each in NUMBERS
-    )
-    end_a: tuple[float, ...] = array(
-        auxiliary("m", f"End shapes of the bow and their rates by the relative length, first stage, {each}")
-        for each in NUMBERS
-    )
-    bow_b: tuple[float, ...] = array(
-        auxiliary("N", f"Moment of the bow on the {each} mode, second stage") for each in NUMBERS
-    )
-    end_b: tuple[float, ...] = array(
-        auxiliary("m", f"End shapes of the bow and their rates by the relative length, second stage, {each}")
-        for each in NUMBERS
-    )
-    bow_c: tuple[float, ...] = array(
-        auxiliary("N", f"Moment of the bow on the {each} mode, third stage") for each in NUMBERS
-    )
-    end_c: tuple[float, ...] = array(
-        auxiliary("m", f"End shapes of the bow and their rates by the relative length, third stage, {each}")
-        for each in NUMBERS
-    )
-    load_a: float = auxiliary("N", "Compression at the head at the first stage")
-    load_b: float = auxiliary("N", "Compression at the head at the second stage")
-    load_c: float = auxiliary("N", "Compression at the head at the third stage")
-    trial: tuple[float, ...] = array(
-        auxiliary("m", f"Amplitude of the {each} mode at a stage") for each in NUMBERS
-    )
-    trial_rate: tuple[float, ...] = array(
-        auxiliary("m/s", f"Rate of the {each} mode at a stage") for each in NUMBERS
-    )
-    step_push: float = auxiliary("J", "Work of the compression in the last step of the integration")
-    step_guide: float = auxiliary("J", "Work at the guide in the last step of the integration")
-    step_loss: float = auxiliary("J", "Work lost in the last step of the integration")
-    step_through: float = auxiliary("J", "Sum of all work in the last step of the integration")
-    sweeps: int = auxiliary("1", "Sweeps over the stages of the integration in the last step", start=0)
-    at_rest: bool = auxiliary("1", "An equilibrium was found where the belt came out", start=False)
-    mode_sum: float = auxiliary("m", "Sum of the sizes of all modes")
-    rate_sum: float = auxiliary("m/s", "Sum of the sizes of the rates of all modes")
-    push_before: float = auxiliary("N", "Compression after the last step of the integration")
-    last_deflection: float = auxiliary("m", "Deflection before the last step of the integration")
-    last_rate: float = auxiliary("m/s", "Its rate before the last step of the integration")
-    last_slope: float = auxiliary("m", "Slope at the guide before the last step, times the free length")
-    last_slope_rate: float = auxiliary("m/s", "Rate of that slope before the last step of the integration")

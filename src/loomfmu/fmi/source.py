@@ -4,6 +4,7 @@ The component's methods, the physics functions they call and the constants and r
 one after the other, with an `__init__` that lists the declared fields. The module imports `math` alone.
 """
 
+import dis
 import inspect
 import math
 import textwrap
@@ -99,9 +100,10 @@ def _collect(function: FunctionType, used: _Used) -> None:
 
 
 def _names(code: CodeType) -> list[str]:
-    """The global names and attributes that a function uses, comprehensions included."""
+    """The global names that a function uses, comprehensions included."""
     inner = [each for each in code.co_consts if isinstance(each, CodeType)]
-    return [*code.co_names, *(name for each in inner for name in _names(each))]
+    names = [each.argval for each in dis.get_instructions(code) if each.opname == "LOAD_GLOBAL"]
+    return [*dict.fromkeys(names), *(name for each in inner for name in _names(each))]
 
 
 def _is_table(value: Any) -> bool:

@@ -4,124 +4,161 @@ What is of second order in the slope is exact; the rest is summed over equal pan
 order for products of the modes up to the 23rd.
 """
 
+from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
-from .belt_ends import CROSS, SQUARE, end_shape, moment_forces, turned_by
-from .belt_modes import dot, harmonics
+from .belt_ends import CROSS, SQUARE, Ends, end_shape, moment_forces, turned_by
+from .belt_modes import dot, harmonics, summed
+from .belt_moving import Instant
 
 PANELS = 12  # of the belt, between the places where its bending is summed
-COSINE = cos(pi / 12.0)
-SINE = sin(pi / 12.0)
 LEAST_SQUARE = 0.05  # of the cosine of the slope: beyond 77 degrees the belt counts as folded
 
 
-def bent_belt(
-    q1: float,
-    q2: float,
-    q3: float,
-    q4: float,
-    q5: float,
-    q6: float,
-    v1: float,
-    v2: float,
-    v3: float,
-    v4: float,
-    v5: float,
-    v6: float,
-    length: float,
-    velocity: float,
-    acceleration: float,
-    clamped: int,
-    guide: float,
-    head: float,
-    guide_rate: float,
-    head_rate: float,
-    guide_by_length: float,
-    head_by_length: float,
-    guide_second: float,
-    head_second: float,
-) -> tuple[
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-]:
+def _harmonics() -> tuple[float, ...]:
+    """Cosines, then sines, of 1 to 6 times the angle of each place from the head to the middle."""
+    cosine, sine = cos(pi / PANELS), sin(pi / PANELS)
+    c1, s1 = 1.0, 0.0
+    found: tuple[float, ...] = ()
+    for _ in range(PANELS // 2 + 1):
+        several = harmonics(c1, s1)
+        found += (c1, *several[:5], s1, *several[5:])
+        c1, s1 = c1 * cosine - s1 * sine, s1 * cosine + c1 * sine
+    return found
+
+
+HARMONICS = _harmonics()
+
+
+@dataclass(frozen=True)
+class Bending:
+    """Bending and shortening of a belt.
+
+    Bending moment on each mode over the stiffness, negative rate of the energy by q_n [1/m2]; rate of the
+    shortening by q_n [1]; the shortening [m], its rate [m/s], its second rate without that by q_n'' [m/s2],
+    its rate by L [1]; bending energy over the stiffness [1/m], its rate by L [1/m2]; force and pull as the
+    first two, by the slope at a clamped guide times L.
+    """
+
+    moments: list[float]
+    pulls: list[float]
+    shortening: float
+    rate: float
+    second: float
+    by_length: float
+    energy: float
+    energy_by_length: float
+    force: float
+    pull: float
+
+
+@dataclass(frozen=True)
+class Places:
+    """Sums over the places of a belt of what its bending and shortening have beyond the second order.
+
+    By the parts of the slope: by `cos(n pi x)`, and by the end shapes at guide and head.
+    """
+
+    forces: list[float]
+    guide_force: float
+    head_force: float
+    pulls: list[float]
+    guide_pull: float
+    head_pull: float
+    shortening: float
+    rate: float
+    second: float
+    by_length: float
+    energy: float
+    energy_by_length: float
+
+
+def bent_belt(at: Instant, ends: Ends, q: list[float], v: list[float]) -> Bending:
     """Bending and shortening of an inextensible belt with the sine of its slope `u_X`.
 
     With s = u_X and c = sqrt(1 - s^2): curvature u_XX / c, shortening 1 - c. What is of second order in s is
     exact, in bending that of the modes alone: see `end_bending`. The rest is summed over places.
 
     Args:
-        q1 .. q6: modes [m]
-        v1 .. v6: their rates [m/s]
-        length, velocity, acceleration: L and its rates [m, m/s, m/s2]
-        clamped: which ends are clamped
-        guide .. head_second: amplitudes of the end shapes E and H, and their rates, of `end_motion`
-
-    Returns:
-        1 to 6: bending moment on each mode over the stiffness, negative rate of the energy by q_n [1/m2]
-        7 to 12: rate of the shortening by q_n [1]
-        13 to 15: shortening [m], its rate [m/s], its second rate without that by q_n'' [m/s2]
-        16: rate of the shortening by L [1]
-        17, 18: bending energy over the stiffness [1/m], its rate by L [1/m2]
-        19, 20: as 1 and 7, by the slope at a clamped guide times L
+        at, ends: an instant of the belt, and its end shapes then
+        q, v: modes and their rates [m, m/s]
     """
+    length = at.length
     over = 1.0 / length
     wave = pi * over
-    a1, a2, a3, a4, a5, a6 = end_shape(guide, head, q1, q2, q3, q4, q5, q6)
-    a1, a2, a3, a4, a5, a6 = numbered(wave, a1, a2, a3, a4, a5, a6)
-    k1, k2, k3, k4, k5, k6 = numbered(-wave, a1, a2, a3, a4, a5, a6)
-    b1, b2, b3, b4, b5, b6 = end_shape(guide_rate, head_rate, v1, v2, v3, v4, v5, v6)
-    b1, b2, b3, b4, b5, b6 = numbered(wave, b1, b2, b3, b4, b5, b6)
-    drift = velocity * over
-    growth = acceleration * over
-    c1 = 1.0
-    s1 = 0.0
-    f1 = 0.0
-    f2 = 0.0
-    f3 = 0.0
-    f4 = 0.0
-    f5 = 0.0
-    f6 = 0.0
-    g1 = 0.0
-    g2 = 0.0
-    g3 = 0.0
-    g4 = 0.0
-    g5 = 0.0
-    g6 = 0.0
-    guide_force = 0.0
-    head_force = 0.0
-    guide_pull = 0.0
-    head_pull = 0.0
-    shortening = 0.0
-    rate = 0.0
-    second = 0.0
-    by_length = 0.0
-    energy = 0.0
-    energy_by_length = 0.0
+    drift = at.velocity * over
+    growth = at.acceleration * over
+    share = 1.0 / PANELS
+    places = bent_places(over, drift, growth, ends, q, v)
+    guide_pull = share * places.guide_pull + over * (SQUARE * ends.guide + CROSS * ends.head)
+    head_pull = share * places.head_pull + over * (SQUARE * ends.head + CROSS * ends.guide)
+    f, guide_force, head_force, force = by_modes(
+        ends.clamped, -share, -share * places.guide_force, -share * places.head_force, places.forces
+    )
+    g, guide_pull, head_pull, pull = by_modes(ends.clamped, share, guide_pull, head_pull, places.pulls)
+    # what is of second order in the slope
+    stretch, working, spinning = end_shortening(wave / pi, ends)
+    p = [0.5 * pi * (n + 1) * ((n + 1) * wave * q[n]) for n in range(6)]
+    r = [(n + 1) * wave * ((n + 1) * -wave * p[n]) for n in range(6)]
+    w = [(n + 1) * pi * v[n] for n in range(6)]
+    stretch = stretch + 0.5 * dot(p, q)
+    working = working + dot(p, v)
+    spinning = spinning + 0.5 * wave / pi * dot(w, w)
+    bent = -0.5 * dot(r, q)
+    return Bending(
+        summed(1.0, r, f),
+        summed(1.0, p, g),
+        stretch + length * share * places.shortening,
+        working - drift * stretch + share * (length * places.rate + at.velocity * places.shortening),
+        spinning
+        - 2.0 * drift * working
+        + (2.0 * drift * drift - growth) * stretch
+        + share
+        * (length * places.second + 2.0 * at.velocity * places.rate + at.acceleration * places.shortening)
+        + guide_pull * ends.guide_second
+        + head_pull * ends.head_second,
+        share * places.by_length
+        - over * stretch
+        + guide_pull * ends.guide_by_length
+        + head_pull * ends.head_by_length,
+        bent + length * share * places.energy,
+        share * places.energy_by_length
+        - 3.0 * over * bent
+        - guide_force * ends.guide_by_length
+        - head_force * ends.head_by_length,
+        force,
+        pull,
+    )
+
+
+def bent_places(
+    over: float, drift: float, growth: float, ends: Ends, q: list[float], v: list[float]
+) -> Places:
+    """Sum over the places of the belt, see `bent_belt`, with 1 / L, V / L and A / L."""
+    wave = pi * over
+    guide = ends.guide
+    head = ends.head
+    guide_rate = ends.guide_rate
+    head_rate = ends.head_rate
+    shape = end_shape(guide, head, q)
+    a1, a2, a3, a4, a5, a6 = numbered(wave, shape)
+    k1, k2, k3, k4, k5, k6 = numbered(-wave, [a1, a2, a3, a4, a5, a6])
+    shape = end_shape(guide_rate, head_rate, v)
+    b1, b2, b3, b4, b5, b6 = numbered(wave, shape)
+    f1, f2, f3, f4, f5, f6 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    g1, g2, g3, g4, g5, g6 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    guide_force, head_force, guide_pull, head_pull = 0.0, 0.0, 0.0, 0.0
+    shortening, rate, second, by_length, energy, energy_by_length = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(PANELS // 2 + 1):
         x = pair * (1.0 / PANELS)
         y = 1.0 - x
         by_x = 3.0 * x * x - 1.0
         by_y = 3.0 * y * y - 1.0
         # x and its mirror image y have the same harmonics but for the signs of the even ones
-        c2, c3, c4, c5, c6, s2, s3, s4, s5, s6 = harmonics(c1, s1)
+        c1, c2, c3 = HARMONICS[12 * pair], HARMONICS[12 * pair + 1], HARMONICS[12 * pair + 2]
+        c4, c5, c6 = HARMONICS[12 * pair + 3], HARMONICS[12 * pair + 4], HARMONICS[12 * pair + 5]
+        s1, s2, s3 = HARMONICS[12 * pair + 6], HARMONICS[12 * pair + 7], HARMONICS[12 * pair + 8]
+        s4, s5, s6 = HARMONICS[12 * pair + 9], HARMONICS[12 * pair + 10], HARMONICS[12 * pair + 11]
         odd = a1 * c1 + a3 * c3 + a5 * c5
         even = a2 * c2 + a4 * c4 + a6 * c6
         slope = even + odd + over * (guide * by_x - head * by_y)
@@ -167,121 +204,19 @@ def bent_belt(
         g4 = g4 + even * c4
         g5 = g5 + odd * c5
         g6 = g6 + even * c6
-        c1, s1 = c1 * COSINE - s1 * SINE, s1 * COSINE + c1 * SINE
-    share = 1.0 / PANELS
-    guide_pull = share * guide_pull + over * (SQUARE * guide + CROSS * head)
-    head_pull = share * head_pull + over * (SQUARE * head + CROSS * guide)
-    f1, f2, f3, f4, f5, f6, guide_force, head_force, turned_force = by_modes(
-        clamped, -share, -share * guide_force, -share * head_force, f1, f2, f3, f4, f5, f6
-    )
-    g1, g2, g3, g4, g5, g6, guide_pull, head_pull, turned_pull = by_modes(
-        clamped, share, guide_pull, head_pull, g1, g2, g3, g4, g5, g6
-    )
-    r1, r2, r3, r4, r5, r6, p1, p2, p3, p4, p5, p6, stretch, working, spinning, bent = slightly_bent(
-        wave, q1, q2, q3, q4, q5, q6, v1, v2, v3, v4, v5, v6, guide, head, guide_rate, head_rate
-    )
-    return (
-        r1 + f1,
-        r2 + f2,
-        r3 + f3,
-        r4 + f4,
-        r5 + f5,
-        r6 + f6,
-        p1 + g1,
-        p2 + g2,
-        p3 + g3,
-        p4 + g4,
-        p5 + g5,
-        p6 + g6,
-        stretch + length * share * shortening,
-        working - drift * stretch + share * (length * rate + velocity * shortening),
-        spinning
-        - 2.0 * drift * working
-        + (2.0 * drift * drift - growth) * stretch
-        + share * (length * second + 2.0 * velocity * rate + acceleration * shortening)
-        + guide_pull * guide_second
-        + head_pull * head_second,
-        share * by_length - over * stretch + guide_pull * guide_by_length + head_pull * head_by_length,
-        bent + length * share * energy,
-        share * energy_by_length
-        - 3.0 * over * bent
-        - guide_force * guide_by_length
-        - head_force * head_by_length,
-        turned_force,
-        turned_pull,
-    )
-
-
-def slightly_bent(
-    wave: float,
-    q1: float,
-    q2: float,
-    q3: float,
-    q4: float,
-    q5: float,
-    q6: float,
-    v1: float,
-    v2: float,
-    v3: float,
-    v4: float,
-    v5: float,
-    v6: float,
-    guide: float,
-    head: float,
-    guide_rate: float,
-    head_rate: float,
-) -> tuple[
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-    float,
-]:
-    """Bending by the modes and shortening to the second order of the slope, and rates while L stays.
-
-    Args:
-        wave: pi / L [1/m]
-        q1 .. head_rate: as for `bent_belt`
-
-    Returns:
-        1 to 12: as of `bent_belt`, but for what the end shapes add to the shortening
-        13 to 15: shortening [m], its rate [m/s], its second rate without those of the modes' rates [m/s2]
-        16: bending energy over the stiffness [1/m]
-    """
-    n1, n2, n3, n4, n5, n6 = numbered(wave, q1, q2, q3, q4, q5, q6)
-    p1, p2, p3, p4, p5, p6 = numbered(0.5 * pi, n1, n2, n3, n4, n5, n6)
-    r1, r2, r3, r4, r5, r6 = numbered(-wave, p1, p2, p3, p4, p5, p6)
-    r1, r2, r3, r4, r5, r6 = numbered(wave, r1, r2, r3, r4, r5, r6)
-    w1, w2, w3, w4, w5, w6 = numbered(pi, v1, v2, v3, v4, v5, v6)
-    stretch, working, spinning = end_shortening(wave / pi, guide, head, guide_rate, head_rate)
-    return (
-        r1,
-        r2,
-        r3,
-        r4,
-        r5,
-        r6,
-        p1,
-        p2,
-        p3,
-        p4,
-        p5,
-        p6,
-        stretch + 0.5 * dot(p1, p2, p3, p4, p5, p6, q1, q2, q3, q4, q5, q6),
-        working + dot(p1, p2, p3, p4, p5, p6, v1, v2, v3, v4, v5, v6),
-        spinning + 0.5 * wave / pi * dot(w1, w2, w3, w4, w5, w6, w1, w2, w3, w4, w5, w6),
-        -0.5 * dot(r1, r2, r3, r4, r5, r6, q1, q2, q3, q4, q5, q6),
+    return Places(
+        [f1, f2, f3, f4, f5, f6],
+        guide_force,
+        head_force,
+        [g1, g2, g3, g4, g5, g6],
+        guide_pull,
+        head_pull,
+        shortening,
+        rate,
+        second,
+        by_length,
+        energy,
+        energy_by_length,
     )
 
 
@@ -319,87 +254,60 @@ def bent_place(
     )
 
 
-def numbered(
-    share: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
+def numbered(share: float, a: list[float]) -> list[float]:
     """Modes times a factor and their numbers.
 
-    >>> numbered(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
-    (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    >>> numbered(1.0, [1.0] * 6)
+    [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     """
-    return (
-        share * a1,
-        2.0 * share * a2,
-        3.0 * share * a3,
-        4.0 * share * a4,
-        5.0 * share * a5,
-        6.0 * share * a6,
-    )
+    return [(n + 1) * share * a[n] for n in range(6)]
 
 
 def by_modes(
-    clamped: int,
-    share: float,
-    guide: float,
-    head: float,
-    f1: float,
-    f2: float,
-    f3: float,
-    f4: float,
-    f5: float,
-    f6: float,
-) -> tuple[float, float, float, float, float, float, float, float, float]:
+    clamped: int, share: float, guide: float, head: float, f: list[float]
+) -> tuple[list[float], float, float, float]:
     """Rates by the modes and by the end shapes of what has known rates by the parts of the slope.
 
     Args:
         clamped: which ends are clamped, whose end shapes follow the modes
-        share: factor of f1 to f6
+        share: factor of f
         guide, head: rates by `3 x^2 - 1` and by `1 - 3 y^2`
-        f1 .. f6: rates by `cos(n pi x)`
+        f: rates by `cos(n pi x)`
 
     Returns:
-        rates by q1 to q6, by the end shapes at guide and head, by the slope at a clamped guide times L
+        rates by the modes, by the end shapes at guide and head, by the slope at a clamped guide times L
 
-    >>> [round(each, 12) for each in by_modes(0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)][5:]
-    [0.0, 1.215854203708, 1.215854203708, 0.0]
+    >>> [round(each, 12) for each in by_modes(0, 1.0, 0.0, 0.0, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0])[1:]]
+    [1.215854203708, 1.215854203708, 0.0]
     """
-    odd = 12.0 / (pi * pi) * (f1 + f3 / 9.0 + f5 / 25.0)
-    even = 12.0 / (pi * pi) * (f2 / 4.0 + f4 / 16.0 + f6 / 36.0)
+    odd = 12.0 / (pi * pi) * (f[0] + f[2] / 9.0 + f[4] / 25.0)
+    even = 12.0 / (pi * pi) * (f[1] / 4.0 + f[3] / 16.0 + f[5] / 36.0)
     guide = guide + share * (odd - even)
     head = head + share * (odd + even)
     by_guide, by_head = turned_by(clamped, guide, head)
-    m1, m2, m3, m4, m5, m6 = moment_forces(-by_guide, -by_head)
-    scale = share * pi
-    return (
-        m1 + scale * f1,
-        m2 + 2.0 * scale * f2,
-        m3 + 3.0 * scale * f3,
-        m4 + 4.0 * scale * f4,
-        m5 + 5.0 * scale * f5,
-        m6 + 6.0 * scale * f6,
-        guide,
-        head,
-        by_guide,
-    )
+    moments = moment_forces(-by_guide, -by_head)
+    direct = numbered(share * pi, f)
+    return summed(1.0, moments, direct), guide, head, by_guide
 
 
-def end_shortening(
-    over: float, guide: float, head: float, guide_rate: float, head_rate: float
-) -> tuple[float, float, float]:
+def end_shortening(over: float, ends: Ends) -> tuple[float, float, float]:
     """Shortening by the end shapes to the second order, and its rates while L and their own rates stay.
 
     Args:
         over: 1 / L [1/m]
-        guide, head, guide_rate, head_rate: amplitudes and their rates [m, m/s]
+        ends: amplitudes and their rates
 
     Returns:
         shortening [m], rate [m/s], second rate [m/s2]
     """
-    by_guide = over * (SQUARE * guide + CROSS * head)
-    by_head = over * (SQUARE * head + CROSS * guide)
-    second = SQUARE * (guide_rate * guide_rate + head_rate * head_rate) + 2.0 * CROSS * guide_rate * head_rate
+    by_guide = over * (SQUARE * ends.guide + CROSS * ends.head)
+    by_head = over * (SQUARE * ends.head + CROSS * ends.guide)
+    second = (
+        SQUARE * (ends.guide_rate * ends.guide_rate + ends.head_rate * ends.head_rate)
+        + 2.0 * CROSS * ends.guide_rate * ends.head_rate
+    )
     return (
-        0.5 * (by_guide * guide + by_head * head),
-        by_guide * guide_rate + by_head * head_rate,
+        0.5 * (by_guide * ends.guide + by_head * ends.head),
+        by_guide * ends.guide_rate + by_head * ends.head_rate,
         over * second,
     )

@@ -11,9 +11,10 @@ Its amplitude e is that of the unloaded belt's bow where an end turns freely. Wh
 whatever the load; the bending energy of what they exceed the bow by holds the modes.
 """
 
+from dataclasses import dataclass
 from math import cos, pi, sin
 
-from .belt_modes import bow_mode
+from .belt_modes import Bow, bow_mode
 
 # slope of psi at its own end; the opposite of that at the other one: 12 / pi^2 times sums over n up to 6
 OWN = 2.0 - 12.0 / (pi * pi) * (1.0 + 1.0 / 4.0 + 1.0 / 9.0 + 1.0 / 16.0 + 1.0 / 25.0 + 1.0 / 36.0)
@@ -23,32 +24,63 @@ SQUARE = 8.8675894457757e-4
 CROSS = 1.9587894996076e-4
 
 
-def end_amplitudes(
-    bow_of: int, bow: float, bow_length: float, length: float, may_clamp: bool
-) -> tuple[float, float, float, float, float, float]:
-    """Amplitudes of the end shapes at guide and head where both turn freely, and two rates by the length.
+@dataclass(frozen=True)
+class FreeEnds:
+    """Amplitudes of the end shapes at guide and head where both turn freely, and two rates by the length."""
 
-    By the belt's own bow (1): 0 for a bow of the span (2). At the guide `bow''(L) L^2 / 6`, by which it is
-    bent there as the belt is without load. Where an end may be clamped, the amplitudes of least bending
-    energy, which differ from this by 1 % and are close to 0 at the head: with `t = pi L / bow_length`
+    guide: float
+    head: float
+    guide_rate: float
+    head_rate: float
+    guide_second: float
+    head_second: float
 
-        OWN e + OTHER h = -bow (sin t - t cos t) - 2 L^3 sum (-1)^n b_n / (n pi)^3
-        OTHER e + OWN h = -bow (t - sin t) + 2 L^3 sum b_n / (n pi)^3
+
+@dataclass(frozen=True)
+class Ends:
+    """The end shapes E at the guide and H at the head, and how they follow the modes and the length.
+
+    Which ends are `clamped`; what E and H exceed those of the bow by [m]; E and H [m], their rates [m/s], by
+    the length [1], and their second rates without those by the modes' [m/s2].
+    """
+
+    clamped: int
+    guide_excess: float
+    head_excess: float
+    guide: float
+    head: float
+    guide_rate: float
+    head_rate: float
+    guide_by_length: float
+    head_by_length: float
+    guide_second: float
+    head_second: float
+
+
+def end_amplitudes(bow: Bow, length: float, may_clamp: bool) -> FreeEnds:
+    """The end shapes of an unloaded belt, by its own bow (1): none for a bow of the span (2).
+
+    At the guide `bow''(L) L^2 / 6`, by which it is bent there as the belt is without load. Where an end may
+    be clamped, the amplitudes of least bending energy, which differ from this by 1 % and are close to 0 at
+    the head: with `t = pi L / half_wave`
+
+        OWN e + OTHER h = -height (sin t - t cos t) - 2 L^3 sum (-1)^n b_n / (n pi)^3
+        OTHER e + OWN h = -height (t - sin t) + 2 L^3 sum b_n / (n pi)^3
 
     with b_n of `bow_mode`: what the modes leave of the slopes that the bow gives the ends.
 
-    >>> round(end_amplitudes(1, 1.0, 2.0, 1.0, False)[0], 12)
+    >>> round(end_amplitudes(Bow(1, 1.0, 2.0), 1.0, False).guide, 12)
     -0.411233516712
     """
-    if bow_of != 1:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    cosine = cos(pi * length / bow_length)
-    sine = sin(pi * length / bow_length)
-    wave = pi / bow_length
+    if bow.of != 1:
+        return FreeEnds(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    cosine = cos(pi * length / bow.half_wave)
+    sine = sin(pi * length / bow.half_wave)
+    wave = pi / bow.half_wave
     turn = wave * length
     if not may_clamp:
-        bend = -bow * wave * wave / 6.0
-        return (
+        bend = -bow.height * wave * wave / 6.0
+        return FreeEnds(
             bend * length * length * sine,
             0.0,
             bend * length * (2.0 * sine + turn * cosine),
@@ -56,38 +88,36 @@ def end_amplitudes(
             bend * ((2.0 - turn * turn) * sine + 4.0 * turn * cosine),
             0.0,
         )
-    odd, odd_rate, odd_second = by_cubes(1, bow, bow_length, length, cosine, sine)
-    even, even_rate, even_second = by_cubes(2, bow, bow_length, length, cosine, sine)
+    odd, odd_rate, odd_second = by_cubes(1, bow, length, cosine, sine)
+    even, even_rate, even_second = by_cubes(2, bow, length, cosine, sine)
     cube = length * length * length
     odd_second = cube * odd_second + 6.0 * length * (length * odd_rate + odd)
     even_second = cube * even_second + 6.0 * length * (length * even_rate + even)
     odd_rate = cube * odd_rate + 3.0 * length * length * odd
     even_rate = cube * even_rate + 3.0 * length * length * even
-    guide = bow * (turn * cosine - sine) + cube * (odd - even)
-    head = bow * (sine - turn) + cube * (odd + even)
-    guide_rate = odd_rate - even_rate - bow * wave * turn * sine
-    head_rate = odd_rate + even_rate - bow * wave * (1.0 - cosine)
-    guide_second = odd_second - even_second - bow * wave * wave * (sine + turn * cosine)
-    head_second = odd_second + even_second - bow * wave * wave * sine
+    guide = bow.height * (turn * cosine - sine) + cube * (odd - even)
+    head = bow.height * (sine - turn) + cube * (odd + even)
+    guide_rate = odd_rate - even_rate - bow.height * wave * turn * sine
+    head_rate = odd_rate + even_rate - bow.height * wave * (1.0 - cosine)
+    guide_second = odd_second - even_second - bow.height * wave * wave * (sine + turn * cosine)
+    head_second = odd_second + even_second - bow.height * wave * wave * sine
     e, h = turned_by(3, guide, head)
     e_rate, h_rate = turned_by(3, guide_rate, head_rate)
     e_second, h_second = turned_by(3, guide_second, head_second)
-    return e, h, e_rate, h_rate, e_second, h_second
+    return FreeEnds(e, h, e_rate, h_rate, e_second, h_second)
 
 
-def by_cubes(
-    first: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float, float]:
+def by_cubes(first: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:
     """Sum of `2 b_n / (n pi)^3` over odd n (first 1) or even n (2), and its two rates by the length.
 
-    >>> [round(each / pi, 12) for each in by_cubes(1, 1.0, 1.0, 1.0, -1.0, 0.0)][:1]
+    >>> [round(each / pi, 12) for each in by_cubes(1, Bow(1, 1.0, 1.0), 1.0, -1.0, 0.0)][:1]
     [1.0]
     """
     moments = 0.0
     rates = 0.0
     seconds = 0.0
     for number in range(first, 7, 2):
-        moment, rate, second = bow_mode(number, bow, bow_length, length, cosine, sine)
+        moment, rate, second = bow_mode(number, bow, length, cosine, sine)
         cube = number * number * number
         moments = moments + moment / cube
         rates = rates + rate / cube
@@ -96,26 +126,24 @@ def by_cubes(
     return share * moments, share * rates, share * seconds
 
 
-def end_shape(
-    guide: float, head: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
+def end_shape(guide: float, head: float, a: list[float]) -> list[float]:
     """Modes that together with `guide (x^3 - x) + head (y^3 - y)`, y = 1 - x, make modes and end shapes.
 
     The sines of `x^3 - x` are `12 (-1)^n / (n pi)^3`.
 
-    >>> round(end_shape(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)[0], 12)
+    >>> round(end_shape(1.0, 0.0, [0.0] * 6)[0], 12)
     0.387018413198
     """
     share = 12.0 * guide / (pi * pi * pi)
     more = 12.0 * head / (pi * pi * pi)
-    return (
-        a1 + share + more,
-        a2 - share / 8.0 + more / 8.0,
-        a3 + share / 27.0 + more / 27.0,
-        a4 - share / 64.0 + more / 64.0,
-        a5 + share / 125.0 + more / 125.0,
-        a6 - share / 216.0 + more / 216.0,
-    )
+    return [
+        a[0] + share + more,
+        a[1] - share / 8.0 + more / 8.0,
+        a[2] + share / 27.0 + more / 27.0,
+        a[3] - share / 64.0 + more / 64.0,
+        a[4] + share / 125.0 + more / 125.0,
+        a[5] - share / 216.0 + more / 216.0,
+    ]
 
 
 def buckling(clamped: int) -> tuple[float, float]:
@@ -134,33 +162,33 @@ def buckling(clamped: int) -> tuple[float, float]:
     return 4.493409457909064, 3.480579999634551
 
 
-def end_slopes(a1: float, a2: float, a3: float, a4: float, a5: float, a6: float) -> tuple[float, float]:
+def end_slopes(a: list[float]) -> tuple[float, float]:
     """Slopes of the modes by x at the guide, and at the head against x.
 
-    >>> end_slopes(1.0, 1.0, 0.0, 0.0, 0.0, 0.0) == (pi, -3.0 * pi)
+    >>> end_slopes([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]) == (pi, -3.0 * pi)
     True
     """
-    odd = pi * (a1 + 3.0 * a3 + 5.0 * a5)
-    even = pi * (2.0 * a2 + 4.0 * a4 + 6.0 * a6)
+    odd = pi * (a[0] + 3.0 * a[2] + 5.0 * a[4])
+    even = pi * (2.0 * a[1] + 4.0 * a[3] + 6.0 * a[5])
     return even - odd, -even - odd
 
 
-def moment_forces(guide: float, head: float) -> tuple[float, float, float, float, float, float]:
+def moment_forces(guide: float, head: float) -> list[float]:
     """Work of moments at both ends on the slopes of each mode there, see `end_slopes`.
 
-    >>> moment_forces(1.0, 0.0)[:2] == (-pi, 2.0 * pi)
+    >>> moment_forces(1.0, 0.0)[:2] == [-pi, 2.0 * pi]
     True
     """
     return at_ends(-guide - head, guide - head)
 
 
-def at_ends(odd: float, even: float) -> tuple[float, float, float, float, float, float]:
+def at_ends(odd: float, even: float) -> list[float]:
     """Slopes of all modes by x at their ends, `n pi`, times a factor for the odd ones and one for the even.
 
-    >>> at_ends(1.0, -1.0)[:2] == (pi, -2.0 * pi)
+    >>> at_ends(1.0, -1.0)[:2] == [pi, -2.0 * pi]
     True
     """
-    return pi * odd, 2.0 * pi * even, 3.0 * pi * odd, 4.0 * pi * even, 5.0 * pi * odd, 6.0 * pi * even
+    return [pi * odd, 2.0 * pi * even, 3.0 * pi * odd, 4.0 * pi * even, 5.0 * pi * odd, 6.0 * pi * even]
 
 
 def reactions(
@@ -206,30 +234,15 @@ def turned_by(clamped: int, guide: float, head: float) -> tuple[float, float]:
 
 
 def end_motion(
-    q1: float,
-    q2: float,
-    q3: float,
-    q4: float,
-    q5: float,
-    q6: float,
-    v1: float,
-    v2: float,
-    v3: float,
-    v4: float,
-    v5: float,
-    v6: float,
+    free: FreeEnds,
     velocity: float,
     acceleration: float,
     clamped: int,
     turn: float,
     turn_by_length: float,
-    e: float,
-    h: float,
-    e_by_length: float,
-    h_by_length: float,
-    e_second: float,
-    h_second: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    q: list[float],
+    v: list[float],
+) -> Ends:
     """Amplitudes of the end shapes at guide and head, and how they follow the modes and the length.
 
     The slope at a clamped guide is `turn / L`, at a clamped head 0. With e and h of the bow, and what the
@@ -239,68 +252,70 @@ def end_motion(
         -sum n pi q_n + OTHER E + OWN H = 0
 
     Args:
-        q1 .. v6: modes and their rates [m, m/s]
+        free: of `end_amplitudes`
         velocity, acceleration: rates V and A of the length [m/s, m/s2]
         clamped: which ends are clamped
         turn, turn_by_length: slope at the guide times L [m], and its rate by L [1]
-        e .. h_second: of `end_amplitudes` [m, 1, 1/m]
-
-    Returns:
-        1, 2: d, k [m]
-        3 to 6: E, H [m], their rates [m/s]
-        7, 8: rates of E and H by L [1]
-        9, 10: second rates of E and H without those by q_n'' [m/s2]
+        q, v: modes and their rates [m, m/s]
     """
     square = velocity * velocity
     if clamped == 0:
-        return (
+        return Ends(
+            0,
             0.0,
             0.0,
-            e,
-            h,
-            e_by_length * velocity,
-            h_by_length * velocity,
-            e_by_length,
-            h_by_length,
-            e_second * square + e_by_length * acceleration,
-            h_second * square + h_by_length * acceleration,
+            free.guide,
+            free.head,
+            free.guide_rate * velocity,
+            free.head_rate * velocity,
+            free.guide_rate,
+            free.head_rate,
+            free.guide_second * square + free.guide_rate * acceleration,
+            free.head_second * square + free.head_rate * acceleration,
         )
-    guide, head = end_slopes(q1, q2, q3, q4, q5, q6)
-    guide_rate, head_rate = end_slopes(v1, v2, v3, v4, v5, v6)
-    d, k = turned_by(clamped, turn - guide - OWN * e - OTHER * h, -head - OTHER * e - OWN * h)
-    guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
+    guide, head = end_slopes(q)
+    guide_rate, head_rate = end_slopes(v)
+    d, k = turned_by(
+        clamped,
+        turn - guide - OWN * free.guide - OTHER * free.head,
+        -head - OTHER * free.guide - OWN * free.head,
+    )
+    guide_growth, head_growth = turning(turn_by_length, free)
     d_rate, k_rate = turned_by(
         clamped, guide_growth * velocity - guide_rate, head_growth * velocity - head_rate
     )
     d_by_length, k_by_length = turned_by(clamped, guide_growth, head_growth)
     d_second, k_second = turned_by(
-        clamped, -OWN * e_second - OTHER * h_second, -OTHER * e_second - OWN * h_second
+        clamped,
+        -OWN * free.guide_second - OTHER * free.head_second,
+        -OTHER * free.guide_second - OWN * free.head_second,
     )
-    d_by_length = d_by_length + e_by_length
-    k_by_length = k_by_length + h_by_length
-    return (
+    d_by_length = d_by_length + free.guide_rate
+    k_by_length = k_by_length + free.head_rate
+    return Ends(
+        clamped,
         d,
         k,
-        e + d,
-        h + k,
-        e_by_length * velocity + d_rate,
-        h_by_length * velocity + k_rate,
+        free.guide + d,
+        free.head + k,
+        free.guide_rate * velocity + d_rate,
+        free.head_rate * velocity + k_rate,
         d_by_length,
         k_by_length,
-        (e_second + d_second) * square + d_by_length * acceleration,
-        (h_second + k_second) * square + k_by_length * acceleration,
+        (free.guide_second + d_second) * square + d_by_length * acceleration,
+        (free.head_second + k_second) * square + k_by_length * acceleration,
     )
 
 
-def turning(turn_by_length: float, e_by_length: float, h_by_length: float) -> tuple[float, float]:
+def turning(turn_by_length: float, free: FreeEnds) -> tuple[float, float]:
     """Rates by L of the slopes that the modes and what exceeds the bow make up for, see `end_motion`.
 
-    >>> turning(1.0, 0.0, 0.0)
+    >>> turning(1.0, FreeEnds(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     (1.0, 0.0)
     """
     return (
-        turn_by_length - OWN * e_by_length - OTHER * h_by_length,
-        0.0 - OTHER * e_by_length - OWN * h_by_length,
+        turn_by_length - OWN * free.guide_rate - OTHER * free.head_rate,
+        0.0 - OTHER * free.guide_rate - OWN * free.head_rate,
     )
 
 

@@ -1,23 +1,33 @@
 """Modes of a belt of growing length: what they integrate to, and the moment of its bow on them.
 
-With x from 0 at the head to 1 at the guide the deflection is the sum of `q_n sin(n pi x)`, n = 1 to 6. The
-sums below are exact. What the belt is at its ends, where a sine is straight, `belt_ends` has.
+With x from 0 at the head to 1 at the guide the deflection is the sum of `q_n sin(n pi x)`, n = 1 to 6: modes
+are lists of six numbers. The sums below are exact. What the belt is at its ends, where a sine is straight,
+`belt_ends` has.
 """
 
+from dataclasses import dataclass
 from math import cos, fabs, pi, sin
 
 
-def carried_along(
-    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
+@dataclass(frozen=True)
+class Bow:
+    """How a belt is crooked: the belt itself (1) or the span (2), by how much, and half a wave [m, m]."""
+
+    of: int
+    height: float
+    half_wave: float
+
+
+def carried_along(a: list[float]) -> list[float]:
     """Modes of `x a'(x)`, half of them: the sum over n of `a_n n pi int x sin(m pi x) cos(n pi x) dx`.
 
     Its terms are `-(-1)^(m + n) m n / (m^2 - n^2)`, and -1/4 for m = n.
 
-    >>> carried_along(0.0, 3.0, 0.0, 0.0, 0.0, 0.0)[:2]
-    (-2.0, -0.75)
+    >>> carried_along([0.0, 3.0, 0.0, 0.0, 0.0, 0.0])[:2]
+    [-2.0, -0.75]
     """
-    return (
+    a1, a2, a3, a4, a5, a6 = a
+    return [
         -a1 / 4.0 - a2 * 2.0 / 3.0 + a3 * 3.0 / 8.0 - a4 * 4.0 / 15.0 + a5 * 5.0 / 24.0 - a6 * 6.0 / 35.0,
         a1 * 2.0 / 3.0 - a2 / 4.0 - a3 * 6.0 / 5.0 + a4 * 2.0 / 3.0 - a5 * 10.0 / 21.0 + a6 * 3.0 / 8.0,
         -a1 * 3.0 / 8.0 + a2 * 6.0 / 5.0 - a3 / 4.0 - a4 * 12.0 / 7.0 + a5 * 15.0 / 16.0 - a6 * 2.0 / 3.0,
@@ -29,12 +39,10 @@ def carried_along(
         - a5 / 4.0
         - a6 * 30.0 / 11.0,
         a1 * 6.0 / 35.0 - a2 * 3.0 / 8.0 + a3 * 2.0 / 3.0 - a4 * 6.0 / 5.0 + a5 * 30.0 / 11.0 - a6 / 4.0,
-    )
+    ]
 
 
-def weighed(
-    first: float, even: float, square: float, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
+def weighed(first: float, even: float, square: float, a: list[float]) -> list[float]:
     """Sum over n of `a_n m n pi^2 int g cos(m pi x) cos(n pi x) dx` for a weight g = x or x^2.
 
     Its terms are `(-1)^(m + n) 2 m n (m^2 + n^2) / (m^2 - n^2)^2`; for x those of even m + n are absent.
@@ -43,12 +51,13 @@ def weighed(
         first: constant of the diagonal: 0 for x, 1/4 for x^2
         even: share of the terms with even m + n: 0 for x, 1 for x^2
         square: share of `m^2` in the diagonal: pi^2/4 for x, pi^2/6 for x^2
-        a1 .. a6: modes
+        a: modes
 
-    >>> weighed(0.25, 1.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0)[:2]
-    (-20.0, 2.25)
+    >>> weighed(0.25, 1.0, 0.0, [0.0, 9.0, 0.0, 0.0, 0.0, 0.0])[:2]
+    [-20.0, 2.25]
     """
-    return (
+    a1, a2, a3, a4, a5, a6 = a
+    return [
         a1 * (first + square)
         - a2 * 20.0 / 9.0
         + even * (a3 * 15.0 / 16.0 + a5 * 65.0 / 144.0)
@@ -79,90 +88,43 @@ def weighed(
         - a3 * 20.0 / 9.0
         - a5 * 3660.0 / 121.0
         + even * (a2 * 15.0 / 16.0 + a4 * 156.0 / 25.0),
-    )
+    ]
 
 
-def dot(
-    a1: float,
-    a2: float,
-    a3: float,
-    a4: float,
-    a5: float,
-    a6: float,
-    b1: float,
-    b2: float,
-    b3: float,
-    b4: float,
-    b5: float,
-    b6: float,
-) -> float:
+def dot(a: list[float], b: list[float]) -> float:
     """Sum of the products of two sets of modes.
 
-    >>> dot(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+    >>> dot([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [1.0] * 6)
     21.0
     """
-    return a1 * b1 + a2 * b2 + a3 * b3 + a4 * b4 + a5 * b5 + a6 * b6
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
 
 
-def summed(
-    by_a: float,
-    a1: float,
-    a2: float,
-    a3: float,
-    a4: float,
-    a5: float,
-    a6: float,
-    b1: float,
-    b2: float,
-    b3: float,
-    b4: float,
-    b5: float,
-    b6: float,
-) -> tuple[float, float, float, float, float, float]:
+def summed(by_a: float, a: list[float], b: list[float]) -> list[float]:
     """`by_a` times modes a, and modes b.
 
-    >>> summed(-1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    >>> summed(-1.0, [1.0] * 6, [1.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    [0.0, 0.0, 1.0, 2.0, 3.0, 4.0]
     """
-    return b1 + by_a * a1, b2 + by_a * a2, b3 + by_a * a3, b4 + by_a * a4, b5 + by_a * a5, b6 + by_a * a6
+    return [b[n] + by_a * a[n] for n in range(6)]
 
 
-def same(
-    a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
-    """The modes themselves, by which one array becomes a copy of another.
-
-    >>> same(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    """
-    return a1, a2, a3, a4, a5, a6
-
-
-def size(a1: float, a2: float, a3: float, a4: float, a5: float, a6: float) -> float:
+def size(a: list[float]) -> float:
     """Sum of the sizes of all modes.
 
-    >>> size(1.0, -2.0, 3.0, -4.0, 5.0, -6.0)
+    >>> size([1.0, -2.0, 3.0, -4.0, 5.0, -6.0])
     21.0
     """
-    return fabs(a1) + fabs(a2) + fabs(a3) + fabs(a4) + fabs(a5) + fabs(a6)
+    return fabs(a[0]) + fabs(a[1]) + fabs(a[2]) + fabs(a[3]) + fabs(a[4]) + fabs(a[5])
 
 
-def first_modes(
-    number: int, a1: float, a2: float, a3: float, a4: float, a5: float, a6: float
-) -> tuple[float, float, float, float, float, float]:
+def first_modes(number: int, a: list[float]) -> list[float]:
     """The first modes up to a number, 0 for the others.
 
-    >>> first_modes(2, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    (1.0, 2.0, 0.0, 0.0, 0.0, 0.0)
+    >>> first_modes(2, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    [1.0, 2.0, 0.0, 0.0, 0.0, 0.0]
     """
-    return (
-        a1,
-        a2 if number > 1 else 0.0,
-        a3 if number > 2 else 0.0,
-        a4 if number > 3 else 0.0,
-        a5 if number > 4 else 0.0,
-        a6 if number > 5 else 0.0,
-    )
+    return [a[n] if n < number else 0.0 for n in range(6)]
 
 
 def harmonics(
@@ -193,29 +155,27 @@ def harmonics(
     )
 
 
-def bow_mode(
-    number: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float, float]:
+def bow_mode(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float, float]:
     """Moment of the belt's own bow on a mode, over its bending stiffness, and its rates by the free length.
 
-    `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `bow sin(pi X / bow_length)` from the
+    `int bow'' (sin(n pi X / L))'' dX` for a belt that is crooked as `height sin(pi X / half_wave)` from the
     head on, and takes its bow along.
 
     Args:
         number: n of the mode
-        bow, bow_length: amplitude and half a wave of the belt's bow [m]
+        bow: of the belt
         length: L of the free part [m]
-        cosine, sine: of `pi L / bow_length`
+        cosine, sine: of `pi L / half_wave`
 
     Returns:
         moment [1/m2], its rate [1/m3], its second rate [1/m4]
 
     >>> from math import pi
-    >>> round(bow_mode(1, 1.0, 1.0, 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)
+    >>> round(bow_mode(1, Bow(1, 1.0, 1.0), 1.0, -1.0, 0.0)[0] - pi**4 / 2, 12)
     0.0
     """
     angle = number * pi
-    wave = pi / bow_length
+    wave = pi / bow.half_wave
     turned = wave * length
     beyond = turned - angle
     sign = 1.0 if number % 2 == 0 else -1.0
@@ -232,7 +192,7 @@ def bow_mode(
     part = share * sinc
     by_turn = share * slope - part / (turned + angle)
     twice = share * curve - 2.0 * by_turn / (turned + angle)
-    scale = bow * wave * wave * angle * angle / length
+    scale = bow.height * wave * wave * angle * angle / length
     return (
         scale * part,
         scale * (wave * by_turn - part / length),
@@ -240,38 +200,32 @@ def bow_mode(
     )
 
 
-def bow_at(
-    number: int, bow_of: int, bow: float, bow_length: float, length: float, cosine: float, sine: float
-) -> tuple[float, float]:
-    """As `bow_mode`, of the belt's own bow (1), or of one that spans the free part, `bow sin(pi x / L)` (2).
+def bow_at(number: int, bow: Bow, length: float, cosine: float, sine: float) -> tuple[float, float]:
+    """As `bow_mode`, of the belt's own bow (1), or of one of the span, `height sin(pi x / L)` (2).
 
-    >>> bow_at(2, 2, 1.0, 1.0, 1.0, -1.0, 0.0)
+    >>> bow_at(2, Bow(2, 1.0, 1.0), 1.0, -1.0, 0.0)
     (0.0, 0.0)
     """
-    if bow_of == 1:
-        moment, rate, _second = bow_mode(number, bow, bow_length, length, cosine, sine)
+    if bow.of == 1:
+        moment, rate, _second = bow_mode(number, bow, length, cosine, sine)
         return moment, rate
     if number > 1:
         return 0.0, 0.0
     square = pi * pi / length
-    moment = 0.5 * bow * square * square / length
+    moment = 0.5 * bow.height * square * square / length
     return moment, -3.0 * moment / length
 
 
-def bow_forces(
-    bow_of: int, bow: float, bow_length: float, length: float
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
+def bow_forces(bow: Bow, length: float) -> tuple[list[float], list[float]]:
     """Moments of the bow on all modes, and their rates by the free length; see `bow_mode`.
 
-    >>> bow_forces(2, 1.0, 1.0, 1.0)[0] == bow_at(1, 2, 1.0, 1.0, 1.0, -1.0, 0.0)[0]
+    >>> bow_forces(Bow(2, 1.0, 1.0), 1.0)[0][0] == bow_at(1, Bow(2, 1.0, 1.0), 1.0, -1.0, 0.0)[0]
     True
     """
-    cosine = cos(pi * length / bow_length)
-    sine = sin(pi * length / bow_length)
-    b1, d1 = bow_at(1, bow_of, bow, bow_length, length, cosine, sine)
-    b2, d2 = bow_at(2, bow_of, bow, bow_length, length, cosine, sine)
-    b3, d3 = bow_at(3, bow_of, bow, bow_length, length, cosine, sine)
-    b4, d4 = bow_at(4, bow_of, bow, bow_length, length, cosine, sine)
-    b5, d5 = bow_at(5, bow_of, bow, bow_length, length, cosine, sine)
-    b6, d6 = bow_at(6, bow_of, bow, bow_length, length, cosine, sine)
-    return b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6
+    cosine = cos(pi * length / bow.half_wave)
+    sine = sin(pi * length / bow.half_wave)
+    moments = [0.0] * 6
+    rates = [0.0] * 6
+    for n in range(6):
+        moments[n], rates[n] = bow_at(n + 1, bow, length, cosine, sine)
+    return moments, rates

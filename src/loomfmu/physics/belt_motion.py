@@ -16,69 +16,33 @@ from math import pi
 
 from .belt_bending import bent_belt
 from .belt_end_forces import end_coupling
-from .belt_ends import end_amplitudes, end_bending, end_motion, moment_forces, turning
-from .belt_modes import bow_forces, carried_along, dot, first_modes, summed, weighed
+from .belt_ends import Ends, end_bending, end_motion, moment_forces, turning
+from .belt_modes import carried_along, dot, first_modes, summed, weighed
+from .belt_moving import Belt, Instant
 
 
-def on_mode(
-    twice: float,
-    dragged: float,
-    pushed: float,
-    thrown: float,
-    slowed: float,
-    stiffness: float,
-    y: float,
-    x: float,
-    w: float,
-    z: float,
-    v: float,
-    bend: float,
-    bow: float,
-    end: float,
-) -> float:
-    """Force on a mode, without the compression; see `accelerations`."""
-    return twice * y + dragged * x + pushed * w + thrown * z - slowed * v + stiffness * bend + bow + end
+def free_turn(belt: Belt, length: float) -> float:
+    """Slope up to which the belt turns freely in its guide, counted from its line, times its length [m]."""
+    return (length / belt.guide_length + 0.5) * belt.clearance
+
+
+def ends_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]) -> Ends:
+    """The end shapes at an instant.
+
+    Args:
+        belt, at: the belt, and an instant of it
+        contact: side of its guide on which it leans, 1 or -1; 0 while it turns freely there
+        q, v: modes and their rates [m, m/s]
+    """
+    clamped = (1 if contact != 0 else 0) + (2 if belt.guided else 0)
+    turn = contact * free_turn(belt, at.length)
+    by_length = contact * belt.clearance / belt.guide_length
+    return end_motion(at.ends, at.velocity, at.acceleration, clamped, turn, by_length, q, v)
 
 
 def accelerations(
-    q1: float,
-    q2: float,
-    q3: float,
-    q4: float,
-    q5: float,
-    q6: float,
-    v1: float,
-    v2: float,
-    v3: float,
-    v4: float,
-    v5: float,
-    v6: float,
-    length: float,
-    velocity: float,
-    acceleration: float,
-    tension: float,
-    head_mass: float,
-    belt_mass: float,
-    damping: float,
-    stiffness: float,
-    offset: float,
-    clamped: int,
-    turn: float,
-    turn_by_length: float,
-    modes: int,
-    b1: float,
-    b2: float,
-    b3: float,
-    b4: float,
-    b5: float,
-    b6: float,
-    e: float,
-    h: float,
-    e_by_length: float,
-    h_by_length: float,
-    e_second: float,
-    h_second: float,
-) -> tuple[float, float, float, float, float, float, float]:
+    belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]
+) -> tuple[list[float], float]:
     """Second rates of the modes, and the compression P0 of the belt at the head.
 
         M q'' = 2 rho V G q' + [rho A (G + J) + rho V^2/L H] q - c (L q'/2 - V G q) + B (f + b) + e
@@ -90,192 +54,57 @@ def accelerations(
     head lags behind its drive.
 
     Args:
-        q1 .. v6: modes and their rates [m, m/s]
-        length, velocity, acceleration: L and its rates [m, m/s, m/s2]
-        tension: T, compression of the belt by the weft [N]
-        head_mass, belt_mass: m and rho [kg, kg/m]
-        damping: c [N s/m2]
-        stiffness: B [N m2]
-        offset: see `tilt_forces` [m]
-        clamped, turn, turn_by_length: see `end_motion`
-        modes: number of modes that move; the others stay as they are
-        b1 .. b6: moments of the bow on the modes, B b of `bow_forces` [N]
-        e .. h_second: of `end_amplitudes` [m, 1, 1/m]
+        belt .. v: as for `ends_at`
 
     Returns:
         second rates [m/s2], compression at the head [N]
     """
-    x1, x2, x3, x4, x5, x6 = carried_along(q1, q2, q3, q4, q5, q6)
-    y1, y2, y3, y4, y5, y6 = carried_along(v1, v2, v3, v4, v5, v6)
-    w1, w2, w3, w4, w5, w6 = weighed(0.0, 0.0, 0.25 * pi * pi, q1, q2, q3, q4, q5, q6)
-    z1, z2, z3, z4, z5, z6 = weighed(0.25, 1.0, pi * pi / 6.0, q1, q2, q3, q4, q5, q6)
-    twice = 2.0 * belt_mass * velocity
-    pushed = belt_mass * acceleration
-    dragged = pushed + damping * velocity
-    thrown = belt_mass * velocity * velocity / length
-    slowed = 0.5 * damping * length
-    half = 0.5 * belt_mass * length
-    (d, k, guide, head, guide_rate, head_rate, guide_by_length, head_by_length, guide_second, head_second) = (
-        end_motion(
-            q1,
-            q2,
-            q3,
-            q4,
-            q5,
-            q6,
-            v1,
-            v2,
-            v3,
-            v4,
-            v5,
-            v6,
-            velocity,
-            acceleration,
-            clamped,
-            turn,
-            turn_by_length,
-            e,
-            h,
-            e_by_length,
-            h_by_length,
-            e_second,
-            h_second,
-        )
-    )
-    (
-        f1,
-        f2,
-        f3,
-        f4,
-        f5,
-        f6,
-        g1,
-        g2,
-        g3,
-        g4,
-        g5,
-        g6,
-        _short,
-        _rate,
-        second,
-        _by_length,
-        _energy,
-        _growth,
-        _turned_force,
-        _turned_pull,
-    ) = bent_belt(
-        q1,
-        q2,
-        q3,
-        q4,
-        q5,
-        q6,
-        v1,
-        v2,
-        v3,
-        v4,
-        v5,
-        v6,
-        length,
-        velocity,
-        acceleration,
-        clamped,
-        guide,
-        head,
-        guide_rate,
-        head_rate,
-        guide_by_length,
-        head_by_length,
-        guide_second,
-        head_second,
-    )
-    c1, c2, c3, c4, c5, c6 = end_coupling(
-        q1,
-        q2,
-        q3,
-        q4,
-        q5,
-        q6,
-        v1,
-        v2,
-        v3,
-        v4,
-        v5,
-        v6,
-        velocity,
-        acceleration,
-        belt_mass,
-        damping,
-        thrown,
-        offset,
-        clamped,
-        guide,
-        head,
-        guide_rate,
-        head_rate,
-    )
+    length = at.length
+    stiffness = belt.stiffness
+    x = carried_along(q)
+    y = carried_along(v)
+    w = weighed(0.0, 0.0, 0.25 * pi * pi, q)
+    z = weighed(0.25, 1.0, pi * pi / 6.0, q)
+    b = list(at.moments)
+    twice = 2.0 * belt.mass * at.velocity
+    pushed = belt.mass * at.acceleration
+    dragged = pushed + belt.damping * at.velocity
+    thrown = belt.mass * at.velocity * at.velocity / length
+    slowed = 0.5 * belt.damping * length
+    half = 0.5 * belt.mass * length
+    ends = ends_at(belt, at, contact, q, v)
+    bending = bent_belt(at, ends, q, v)
+    f = list(bending.moments)
     moment = 6.0 * stiffness / (length * length * length)
-    m1, m2, m3, m4, m5, m6 = moment_forces(moment * d, moment * k)
-    e1, e2, e3, e4, e5, e6 = summed(1.0, m1, m2, m3, m4, m5, m6, c1, c2, c3, c4, c5, c6)
-    u1 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y1, x1, w1, z1, v1, f1, b1, e1) / half
-    u2 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y2, x2, w2, z2, v2, f2, b2, e2) / half
-    u3 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y3, x3, w3, z3, v3, f3, b3, e3) / half
-    u4 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y4, x4, w4, z4, v4, f4, b4, e4) / half
-    u5 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y5, x5, w5, z5, v5, f5, b5, e5) / half
-    u6 = on_mode(twice, dragged, pushed, thrown, slowed, stiffness, y6, x6, w6, z6, v6, f6, b6, e6) / half
-    u1, u2, u3, u4, u5, u6 = first_modes(modes, u1, u2, u3, u4, u5, u6)
-    g1, g2, g3, g4, g5, g6 = first_modes(modes, g1, g2, g3, g4, g5, g6)
-    along = dot(g1, g2, g3, g4, g5, g6, u1, u2, u3, u4, u5, u6)
-    square = dot(g1, g2, g3, g4, g5, g6, g1, g2, g3, g4, g5, g6)
-    load = (head_mass * (acceleration - second - along) + tension) / (1.0 + head_mass * square / half)
-    lift = load / half
-    return (
-        u1 + lift * g1,
-        u2 + lift * g2,
-        u3 + lift * g3,
-        u4 + lift * g4,
-        u5 + lift * g5,
-        u6 + lift * g6,
-        load,
+    coupled = end_coupling(belt, at, ends, thrown, q, v)
+    held = moment_forces(moment * ends.guide_excess, moment * ends.head_excess)
+    e = summed(1.0, held, coupled)
+    u = [
+        (
+            twice * y[n]
+            + dragged * x[n]
+            + pushed * w[n]
+            + thrown * z[n]
+            - slowed * v[n]
+            + stiffness * f[n]
+            + stiffness * b[n]
+            + e[n]
+        )
+        / half
+        for n in range(6)
+    ]
+    u = first_modes(belt.modes, u)
+    g = first_modes(belt.modes, bending.pulls)
+    along = dot(g, u)
+    square = dot(g, g)
+    load = (belt.head_mass * (at.acceleration - bending.second - along) + at.tension) / (
+        1.0 + belt.head_mass * square / half
     )
+    return summed(load / half, g, u), load
 
 
 def energy_and_powers(
-    q1: float,
-    q2: float,
-    q3: float,
-    q4: float,
-    q5: float,
-    q6: float,
-    v1: float,
-    v2: float,
-    v3: float,
-    v4: float,
-    v5: float,
-    v6: float,
-    a1: float,
-    a2: float,
-    a3: float,
-    a4: float,
-    a5: float,
-    a6: float,
-    length: float,
-    velocity: float,
-    acceleration: float,
-    tension: float,
-    head_mass: float,
-    belt_mass: float,
-    damping: float,
-    stiffness: float,
-    bow_of: int,
-    bow: float,
-    bow_length: float,
-    offset: float,
-    may_clamp: bool,
-    clamped: int,
-    turn: float,
-    turn_by_length: float,
-    load: float,
+    belt: Belt, at: Instant, contact: int, q: list[float], v: list[float], a: list[float], load: float
 ) -> tuple[float, float, float, float]:
     """Energy of the motion across the belt, and the powers that change it.
 
@@ -284,147 +113,44 @@ def energy_and_powers(
     puts in: `V [d/dt(dT/dV) - dT/dL + dU/dL - P0 dS/dL]`, and the inertia of the end shapes.
 
     Args:
-        q1 .. a6: modes and their rates [m, m/s, m/s2]
-        length .. stiffness, offset, clamped .. turn_by_length: as for `accelerations`
-        bow_of, bow, bow_length: see `bow_at`
-        may_clamp: see `end_amplitudes`
+        belt .. v: as for `ends_at`
+        a: second rates of the modes [m/s2]
         load: compression at the head P0 [N]
 
     Returns:
         energy [J], power of the compression, power at the guide, power lost by damping [W]
     """
-    x1, x2, x3, x4, x5, x6 = carried_along(q1, q2, q3, q4, q5, q6)
-    w1, w2, w3, w4, w5, w6 = weighed(0.0, 0.0, 0.25 * pi * pi, q1, q2, q3, q4, q5, q6)
-    z1, z2, z3, z4, z5, z6 = weighed(0.25, 1.0, pi * pi / 6.0, q1, q2, q3, q4, q5, q6)
-    b1, b2, b3, b4, b5, b6, d1, d2, d3, d4, d5, d6 = bow_forces(bow_of, bow, bow_length, length)
-    bowed = dot(b1, b2, b3, b4, b5, b6, q1, q2, q3, q4, q5, q6)
-    bowed_by_length = dot(d1, d2, d3, d4, d5, d6, q1, q2, q3, q4, q5, q6)
-    speeds = dot(v1, v2, v3, v4, v5, v6, v1, v2, v3, v4, v5, v6)
-    drift = dot(v1, v2, v3, v4, v5, v6, x1, x2, x3, x4, x5, x6)
-    spread = dot(q1, q2, q3, q4, q5, q6, z1, z2, z3, z4, z5, z6)
-    sweep = dot(v1, v2, v3, v4, v5, v6, z1, z2, z3, z4, z5, z6)
-    swing = dot(a1, a2, a3, a4, a5, a6, x1, x2, x3, x4, x5, x6)
-    weight = dot(v1, v2, v3, v4, v5, v6, w1, w2, w3, w4, w5, w6)
-    share = velocity / length
-    moving = 0.5 * length * (0.5 * speeds - 2.0 * share * drift + share * share * spread)
-    e, h, e_by_length, h_by_length, e_second, h_second = end_amplitudes(
-        bow_of, bow, bow_length, length, may_clamp
+    velocity = at.velocity
+    x = carried_along(q)
+    w = weighed(0.0, 0.0, 0.25 * pi * pi, q)
+    z = weighed(0.25, 1.0, pi * pi / 6.0, q)
+    bowed = dot(at.moments, q)
+    bowed_by_length = dot(at.by_length, q)
+    drift = dot(v, x)
+    spread = dot(q, z)
+    share = velocity / at.length
+    moving = 0.5 * at.length * (0.5 * dot(v, v) - 2.0 * share * drift + share * share * spread)
+    ends = ends_at(belt, at, contact, q, v)
+    bending = bent_belt(at, ends, q, v)
+    coupled = end_coupling(belt, at, ends, belt.mass * velocity * share, q, v)
+    guide_growth, head_growth = turning(contact * belt.clearance / belt.guide_length, at.ends)
+    end_energy, end_growth = end_bending(
+        at.length, belt.stiffness, guide_growth, head_growth, ends.guide_excess, ends.head_excess
     )
-    (
-        d,
-        k,
-        at_guide,
-        at_head,
-        guide_rate,
-        head_rate,
-        guide_by_length,
-        head_by_length,
-        guide_second,
-        head_second,
-    ) = end_motion(
-        q1,
-        q2,
-        q3,
-        q4,
-        q5,
-        q6,
-        v1,
-        v2,
-        v3,
-        v4,
-        v5,
-        v6,
-        velocity,
-        acceleration,
-        clamped,
-        turn,
-        turn_by_length,
-        e,
-        h,
-        e_by_length,
-        h_by_length,
-        e_second,
-        h_second,
-    )
-    (
-        _f1,
-        _f2,
-        _f3,
-        _f4,
-        _f5,
-        _f6,
-        _g1,
-        _g2,
-        _g3,
-        _g4,
-        _g5,
-        _g6,
-        _short,
-        rate,
-        _second,
-        by_length,
-        bent,
-        bent_by_length,
-        _turned_force,
-        _turned_pull,
-    ) = bent_belt(
-        q1,
-        q2,
-        q3,
-        q4,
-        q5,
-        q6,
-        v1,
-        v2,
-        v3,
-        v4,
-        v5,
-        v6,
-        length,
-        velocity,
-        acceleration,
-        clamped,
-        at_guide,
-        at_head,
-        guide_rate,
-        head_rate,
-        guide_by_length,
-        head_by_length,
-        guide_second,
-        head_second,
-    )
-    c1, c2, c3, c4, c5, c6 = end_coupling(
-        q1,
-        q2,
-        q3,
-        q4,
-        q5,
-        q6,
-        v1,
-        v2,
-        v3,
-        v4,
-        v5,
-        v6,
-        velocity,
-        acceleration,
-        belt_mass,
-        damping,
-        belt_mass * velocity * share,
-        offset,
-        clamped,
-        at_guide,
-        at_head,
-        guide_rate,
-        head_rate,
-    )
-    guide_growth, head_growth = turning(turn_by_length, e_by_length, h_by_length)
-    end_energy, end_growth = end_bending(length, stiffness, guide_growth, head_growth, d, k)
-    energy = belt_mass * moving + 0.5 * head_mass * rate * rate + stiffness * (bent - bowed) + end_energy
-    push = (head_mass * acceleration + tension) * rate + belt_mass * acceleration * weight
-    inertia = (acceleration / length - 0.5 * share * share) * spread + 2.0 * share * sweep - swing
-    elastic = stiffness * (bent_by_length - bowed_by_length) + end_growth
-    drag = damping * (share * spread - drift)
-    guide = velocity * (belt_mass * inertia + elastic - load * by_length + drag)
-    guide = guide + dot(v1, v2, v3, v4, v5, v6, c1, c2, c3, c4, c5, c6)
-    return energy, push, guide, 2.0 * damping * moving
+    rate = bending.rate
+    energy = belt.mass * moving + 0.5 * belt.head_mass * rate * rate
+    energy = energy + belt.stiffness * (bending.energy - bowed) + end_energy
+    push = (belt.head_mass * at.acceleration + at.tension) * rate + belt.mass * at.acceleration * dot(v, w)
+    inertia = (at.acceleration / at.length - 0.5 * share * share) * spread + 2.0 * share * dot(v, z)
+    inertia = inertia - dot(a, x)
+    elastic = belt.stiffness * (bending.energy_by_length - bowed_by_length) + end_growth
+    drag = belt.damping * (share * spread - drift)
+    guide = velocity * (belt.mass * inertia + elastic - load * bending.by_length + drag)
+    guide = guide + dot(v, coupled)
+    return energy, push, guide, 2.0 * belt.damping * moving
+
+
+def energy_at(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]) -> float:
+    """Energy of the motion across the belt [J], see `energy_and_powers`."""
+    energy, _push, _guide, _loss = energy_and_powers(belt, at, contact, q, v, [0.0] * 6, 0.0)
+    return energy

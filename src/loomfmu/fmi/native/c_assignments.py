@@ -171,8 +171,8 @@ class Assignments:
                 return [(f"{name}.value_{place}", kind) for place, kind in enumerate(kinds)]
             (kind,) = kinds or ("",)
         else:
-            local = isinstance(value, ast.Name) and value.id in self.scope.locals
-            code = self.expressions.any_of(value) if local else self._made(value, inner, lines)
+            named = isinstance(value, ast.Name | ast.Attribute)  # its elements get names, not the array
+            code = self.expressions.any_of(value) if named else self._made(value, inner, lines)
             kind = code.type
             lines.append(f"{inner}const {kind} {name} = {code.text};")
         if not isinstance(kind, Array):
