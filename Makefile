@@ -15,14 +15,17 @@ FIGURES := $(CURDIR)/tests/validation/tables/attack.csv
 VERDICTS := $(CURDIR)/tests/validation/tables/verdicts.csv
 VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 
-.PHONY: demo test coverage check stress attack verdicts bench docs site validation wheel pins clean
+.PHONY: demo test test-all coverage check stress attack verdicts bench docs site validation wheel pins clean
 
 demo: .venv/installed
 	$(BIN)/loomfmu run sims/wl680_3600.toml
 
 test: .venv/installed-for-tests check
 	$(BIN)/python -m pytest $(PARALLEL)
-	@echo "left out: the slow tests (make stress, pytest -m slow) and coverage (make coverage)"
+
+# all tests, with all of Hypothesis' examples: the slow ones, stress and the attack as well. Hours
+test-all: .venv/installed-for-tests check
+	$(BIN)/python -m pytest $(PARALLEL) --all
 
 # the lines that the tests of `make test` run; fewer than that share fails
 coverage: .venv/installed-for-tests
@@ -36,12 +39,12 @@ check: .venv/installed-for-tests
 
 # the stress tests and the attack, the long ones included
 stress: .venv/installed-for-tests
-	$(BIN)/python -m pytest tests/stress tests/attack -m "slow or not slow"
+	$(BIN)/python -m pytest tests/stress tests/attack --all
 
 # kills, hostile files from a generator and random calls, the long sets included; their figures go into the report
 attack: .venv/installed-for-tests
 	rm -f $(FIGURES)
-	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s -m "slow or not slow"
+	ATTACK_FIGURES=$(FIGURES) $(BIN)/python -m pytest tests/attack tests/native/test_hosts.py -s --all
 	$(VALIDATE)
 
 # verdicts on random scenes beside the truth by far finer steps; their figures go into the report. Half an hour

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sharing import made_by_gcc
 
 from loomfmu.components import BeltDynamics
 from loomfmu.fmi.native.builder import ARITHMETIC, SHELL
@@ -31,15 +32,21 @@ def library(component: type[Component], folder: Path, more: str = "") -> ctypes.
     shutil.copy(SHELL / "python_arithmetic.h", folder)
     (folder / "entries.c").write_text(ENTRIES.format(name=component.__name__) + more)
     call = ["gcc", "-shared", "-fPIC", "-std=c99", *ARITHMETIC, *WARNINGS]
-    run = subprocess.run(
-        [*call, "-o", "entries.so", "entries.c", "-lm"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 0, run.stderr
-    return ctypes.CDLL(str(folder / "entries.so"))
+
+    def make() -> bytes:
+        run = subprocess.run(
+            [*call, "-o", "entries.so", "entries.c", "-lm"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert run.returncode == 0, run.stderr
+        return (folder / "entries.so").read_bytes()
+
+    texts = [path.read_text() for path in sorted(folder.glob("*.[ch]"))]
+    (folder / "library.so").write_bytes(made_by_gcc("entries.so", [*call, *texts], make).read_bytes())
+    return ctypes.CDLL(str(folder / "library.so"))
 
 
 def compiled(component: type[Component], folder: Path) -> type[Any]:

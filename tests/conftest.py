@@ -1,5 +1,7 @@
 """What all tests share."""
 
+import random
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -8,7 +10,9 @@ import pytest
 from browser import chromium, opened
 from compiled import belt_in_c
 from hypothesis import settings
-from sharing import fmu_cache
+from sharing import KEPT, fmu_cache, native_fmus
+
+from loomfmu.fmi.native.platforms import compiler
 
 # fixtures are named here alone: one that is imported into two files would be made twice in a process
 __all__ = ["belt_in_c", "chromium", "fmu_cache", "opened"]
@@ -16,8 +20,26 @@ __all__ = ["belt_in_c", "chromium", "fmu_cache", "opened"]
 collect_ignore_glob = ["*conftest.py"]  # they hold no doctests, and pytest takes them for one module
 
 # the same examples every time, no database in the working directory, no hurry on a busy machine
-settings.register_profile("loomfmu", derandomize=True, database=None, deadline=None, max_examples=100)
-settings.load_profile("loomfmu")
+SAME = {"derandomize": True, "database": None, "deadline": None}
+settings.register_profile("quick", max_examples=25, **SAME)
+settings.register_profile("all", max_examples=100, **SAME)
+LEFT_OUT = "slow: run it with --all"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all", action="store_true", help="run the slow tests too, with all examples")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    settings.load_profile("all" if config.option.all else "quick")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Build each FMU once, on all cores, before several processes share the tests."""
+    if getattr(session.config.option, "numprocesses", None) and compiler():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("LOOMFMU_CACHE", str(KEPT))
+            native_fmus()
 
 
 # beside the tests that mirror the source: these cover what they run through, and tracing costs most of it
@@ -26,13 +48,41 @@ UNTRACED = [
 ]
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """What takes minutes runs on demand; what others cover, without the tracing of coverage."""
+def leave_cases_to_the_slow(items: list[pytest.Item]) -> None:
+    """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow."""
+    cases: dict[tuple[str, object], list[pytest.Item]] = {}
     for item in items:
-        if item.get_closest_marker("slow") and "slow" not in config.option.markexpr:
-            item.add_marker(pytest.mark.skip(reason="takes minutes: run it with -m slow"))
+        if few := item.get_closest_marker("few"):
+            given = item.callspec.params.get(few.kwargs.get("each"))
+            cases.setdefault((item.nodeid.split("[")[0], given), []).append(item)
+    for (name, _given), drawn in cases.items():
+        count = min(drawn[0].get_closest_marker("few").args[0], len(drawn))
+        kept = random.Random(name).sample(range(len(drawn)), count)
+        for number, item in enumerate(drawn):
+            if number not in kept:
+                item.add_marker(pytest.mark.slow)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out slow tests unless they are asked for, and trace no coverage in what other tests cover."""
+    leave_cases_to_the_slow(items)
+    for item in items:
+        if item.get_closest_marker("slow") and not config.option.all and "slow" not in config.option.markexpr:
+            item.add_marker(pytest.mark.skip(reason=LEFT_OUT))
         if any(item.path.is_relative_to(folder) for folder in UNTRACED):
             item.add_marker(pytest.mark.no_cover)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say how many slow tests were left out, by folder."""
+    skipped = [each for each in terminalreporter.stats.get("skipped", ()) if LEFT_OUT in str(each.longrepr)]
+    parents = (Path(each.nodeid.split("::")[0]).parent.parts for each in skipped)
+    folders = Counter(parts[1] if len(parts) > 1 else "others" for parts in parents)
+    if folders:
+        counts = ", ".join(f"{folder} {count}" for folder, count in folders.most_common())
+        terminalreporter.write_line(
+            f"left out: {len(skipped)} slow tests ({counts}); make test-all runs them"
+        )
 
 
 @pytest.fixture(scope="session")

@@ -4,9 +4,11 @@ import shutil
 import subprocess
 import zipfile
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import fmpy
 import pytest
+from sharing import made_by_gcc
 
 SOURCES = Path(__file__).with_name("motors")
 HEADERS = Path(fmpy.__file__).with_name("c-code")
@@ -109,25 +111,18 @@ def gcc() -> str:
     return found
 
 
-def library(source: str, target: Path, *options: str) -> bytes:
-    """A shared library of one of the sources."""
-    subprocess.run(
-        [
-            gcc(),
-            "-shared",
-            "-fPIC",
-            "-O2",
-            *options,
-            f"-I{HEADERS}",
-            f"-I{SOURCES}",
-            "-o",
-            target,
-            SOURCES / source,
-            "-lm",
-        ],
-        check=True,
-    )
-    return target.read_bytes()
+def library(source: str, *options: str) -> bytes:
+    """A shared library of one of the sources, compiled once."""
+    call = [gcc(), "-shared", "-fPIC", "-O2", *options, f"-I{HEADERS}", f"-I{SOURCES}"]
+
+    def make() -> bytes:
+        with TemporaryDirectory() as directory:
+            target = Path(directory) / "library.so"
+            subprocess.run([*call, "-o", target, SOURCES / source, "-lm"], check=True)
+            return target.read_bytes()
+
+    texts = [file.read_text() for file in sorted(SOURCES.iterdir())]
+    return made_by_gcc("library.so", [source, *options, *texts], make).read_bytes()
 
 
 def packed(target: Path, description: str, binary: bytes | None, name: str, folder: str = "linux64") -> Path:
@@ -175,18 +170,18 @@ def motor2(
     if single:
         options["flags"] = 'canBeInstantiatedOnlyOncePerProcess="true"'
     macros = [f"-D{macro}" for macro in (f"SINGLE={int(single)}", *defines)]
-    binary = library("fmi2.c", directory / "Motor.so", *macros)
+    binary = library("fmi2.c", *macros)
     return packed(directory / f"{name}.fmu", description2(name, **options), binary, "Motor")  # type: ignore[arg-type]
 
 
 def misbehaving(directory: Path, what: str, where: str = "STEP", returned: int = 0) -> Path:
     """The motor as an FMI 2.0 FMU that crashes, hangs, ... as `misbehaves.c` says; in mode 2 it does not."""
     macros = [f"-DMISBEHAVES={what}", f"-DWHERE={where}", f"-DRETURNED={returned}"]
-    binary = library("misbehaves.c", directory / "Motor.so", *macros)
+    binary = library("misbehaves.c", *macros)
     return packed(directory / "Motor.fmu", description2(), binary, "Motor")
 
 
 def motor3(directory: Path, *, defines: tuple[str, ...] = (), description: str = FMI3) -> Path:
     """The motor as an FMI 3.0 FMU."""
-    binary = library("fmi3.c", directory / "Motor3.so", *(f"-D{macro}" for macro in defines))
+    binary = library("fmi3.c", *(f"-D{macro}" for macro in defines))
     return packed(directory / "Motor3.fmu", description.format(fixed=FIXED), binary, "Motor3", "x86_64-linux")

@@ -1,30 +1,42 @@
 """What all processes have in common that share the tests of one session."""
 
-from collections.abc import Iterator
+import hashlib
+import shutil
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from filelock import FileLock
+from platformdirs import user_cache_path
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.fmi.cache import cache_directory
+from loomfmu.fmi.cache_entries import FMUS, made_file
 from loomfmu.fmi.native.platforms import host
 
-
-def shared_directory(request: pytest.FixtureRequest, factory: pytest.TempPathFactory) -> Path:
-    """The session's temporary directory: each worker of pytest-xdist has its own below it."""
-    own = factory.getbasetemp()
-    return own.parent if hasattr(request.config, "workerinput") else own
+KEPT = user_cache_path("loomfmu-tests", appauthor=False)
 
 
 @pytest.fixture(scope="session", autouse=True)
-def fmu_cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """One cache of built FMUs for all tests, also for the processes they start; not the user's own."""
+def fmu_cache() -> Iterator[None]:
+    """One cache of built FMUs for all tests and the processes that they start, kept from run to run.
+
+    Its entries are named by all that they are made of, and checked when they are used. It is not the user's
+    own.
+    """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LOOMFMU_CACHE", str(shared_directory(request, tmp_path_factory) / "fmu_cache"))
+        patch.setenv("LOOMFMU_CACHE", str(KEPT))
         yield
+
+
+def made_by_gcc(name: str, sources: list[str], make: Callable[[], bytes]) -> Path:
+    """A library that gcc makes of some text and options: once, as an entry of the cache."""
+    gcc = shutil.which("gcc")
+    stamp = Path(gcc).stat().st_mtime_ns if gcc else 0
+    key = hashlib.sha256(repr((name, sources, stamp)).encode()).hexdigest()
+    return made_file(FMUS, key, name, make)
 
 
 def native_fmus() -> dict[str, fmus.Fmu]:

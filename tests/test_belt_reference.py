@@ -164,6 +164,7 @@ def farthest(bow, *args, **given):
 PLAY = {"clearance": CLEARANCE, "guide": GUIDE}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("bow", "bent"), [(own_bow, False), (own_bow, True), (bow_of_span, False)])
 def test_the_guide_holds_the_belt_on_its_stroke(bow, bent):
     belt, times, nodes = stroke(bow, bent=bent, **PLAY)
@@ -197,6 +198,7 @@ def test_the_inertia_of_a_chord_that_turns():
     assert found == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())  # of differences
 
 
+@pytest.mark.slow
 def test_the_inertia_of_the_chord_is_not_small():
     """A finding: the chord from half the clearance to the head turns so fast that it bends the belt."""
     for bow, least, most in ((own_bow, 0.2, 0.6), (bow_of_span, 0.04, 0.08)):

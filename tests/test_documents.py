@@ -214,6 +214,7 @@ FOLLOWED = (
     "optimizing",
     "fitting",
 )
+LONG = ("report", "limits", "testing", "optimizing")  # followed by the slow tests
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",
@@ -228,7 +229,9 @@ def test_every_page_with_examples_is_followed_or_says_why_not() -> None:
 
 
 @pytest.mark.no_cover
-@pytest.mark.parametrize("name", FOLLOWED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.slow) if each in LONG else each for each in FOLLOWED]
+)
 def test_the_docs_can_be_followed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmu_cache: None
 ) -> None:

@@ -151,6 +151,7 @@ def test_without_library_and_compiler_only_claims_are_refused(tmp_path: Path) ->
     assert outcomes(tmp_path, expected) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.no_cover
 @pytest.mark.usefixtures("fmu_cache")
 def test_without_extras_everything_works_or_names_what_it_needs(

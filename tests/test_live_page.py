@@ -71,6 +71,7 @@ def written_whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return live_page.write(WHOLE, [], tmp_path_factory.mktemp("page") / "whole.html")
 
 
+@pytest.mark.slow
 def test_the_report_guide_states_the_size_of_a_page(written: Path, written_whole: Path) -> None:
     guide = " ".join((SIMS.parent / "docs" / "report.md").read_text(encoding="utf-8").split())
     demo, whole = (f"{path.stat().st_size / 1e6:.1f} MB" for path in (written, written_whole))
@@ -120,6 +121,7 @@ def verdicts_agree(page: Any, expected: Any) -> None:
             assert mine["time"] == pytest.approx(its.time, abs=1e-8), its
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", [600.0, 685.5])
 def test_its_values_and_verdicts_are_those_of_a_native_run(
     written: Path, opened: Open, tmp_path: Path, speed: float
@@ -132,6 +134,7 @@ def test_its_values_and_verdicts_are_those_of_a_native_run(
     assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))
 
 
+@pytest.mark.slow
 def test_so_are_those_of_a_loom_with_every_mechanism(
     written_whole: Path, opened: Open, tmp_path: Path
 ) -> None:
@@ -143,6 +146,7 @@ def test_so_are_those_of_a_loom_with_every_mechanism(
     assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))
 
 
+@pytest.mark.slow
 def test_only_what_a_value_reaches_is_stepped_again(opened: Open, tmp_path: Path) -> None:
     """One value after the other, of a scene that does not record all that feeds its FMUs."""
     scene = tmp_path / "scene.toml"
@@ -190,6 +194,7 @@ def test_values_that_an_fmu_rejects_leave_nothing_behind(opened: Open, tmp_path:
     verdicts_agree(page, result.claims)
 
 
+@pytest.mark.slow
 def test_what_takes_long_follows_and_says_so_meanwhile(
     written_whole: Path, opened: Open, tmp_path: Path
 ) -> None:
@@ -259,6 +264,7 @@ def test_a_signal_that_is_not_known_is_not_judged_except_where_it_is(opened: Ope
     assert "free lengths above 5 times bow_length do not count" in found[2]["note"]
 
 
+@pytest.mark.slow
 def test_what_the_model_leaves_open_counts_once_with_other_ends(opened: Open, tmp_path: Path) -> None:
     """Modes leave 1 % of a deflection, on any steps: within that it is undecided, not within ten times."""
     text = (
@@ -438,6 +444,7 @@ def test_drawings_do_not_show_dimensions_that_differ(tmp_path: Path, opened: Ope
     assert "own belt.head_length" in missing.inner_text()
 
 
+@pytest.mark.slow
 def test_how_long_a_change_takes(written: Path, opened: Open) -> None:
     """Printed, not judged: the machine of the tests has other work."""
     page = running(opened(written))

@@ -96,6 +96,7 @@ def in_a_process(*arguments: str, cwd: Path) -> str:
     return found.stdout
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "own"), [("PickingCam", "picking_cam"), ("LiftABC2", "lift_abc2")])
 def test_the_folder_runs_and_its_tests_pass_as_it_is_written(tmp_path: Path, name: str, own: str) -> None:
     assert main(["new", name, "--output", str(tmp_path / "made here")]) == 0
@@ -112,6 +113,7 @@ def test_the_folder_runs_and_its_tests_pass_as_it_is_written(tmp_path: Path, nam
     in_a_process("-m", "pytest", "-q", "-p", "no:cacheprovider", cwd=folder)
 
 
+@pytest.mark.slow
 def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "picking_cam").mkdir()
     assert main(["new", "PickingCam", "--output", str(tmp_path)]) == 2

@@ -98,6 +98,7 @@ def test_a_scene_runs_once(pytester: pytest.Pytester) -> None:
     assert result.stdout.str().count("a run") == 1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -116,6 +117,7 @@ def test_a_scene_that_cannot_be_read_is_an_error_of_one_line(
     assert "Traceback" not in result.stdout.str()
 
 
+@pytest.mark.slow
 def test_other_files_are_left_alone(pytester: pytest.Pytester) -> None:
     write(pytester, "pyproject.toml", "[project]\nname = 'theirs'\n")
     write(pytester, "slow.toml", SLOW)  # not named
@@ -125,6 +127,7 @@ def test_other_files_are_left_alone(pytester: pytest.Pytester) -> None:
     assert theirs.ret == pytest.ExitCode.USAGE_ERROR  # as without the plugin
 
 
+@pytest.mark.slow
 def test_the_configuration_names_scenes(pytester: pytest.Pytester) -> None:
     pytester.makeini("[pytest]\nloomfmu_scenes = sims/*.toml\n")
     for name in ("sims/slow.toml", "sims/sub/slow.toml", "slow.toml"):
@@ -141,6 +144,7 @@ def test_a_scene_without_claims_is_tested_to_run(pytester: pytest.Pytester) -> N
     result.stdout.fnmatch_lines(["bare.toml::runs PASSED*"])
 
 
+@pytest.mark.slow
 def test_several_processes_share_the_work(pytester: pytest.Pytester) -> None:
     write(pytester, "fast.toml", FAST)
     result = pytester.runpytest_subprocess("fast.toml", "-n", "2", "--dist", "loadfile")

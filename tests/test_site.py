@@ -88,6 +88,7 @@ class _Fetched(HTMLParser):
         self.found += [values[name] or "" for name in wanted if name in values]
 
 
+@pytest.mark.slow
 def test_the_site_refers_to_no_host(site: Path) -> None:
     for page in site.rglob("*.html"):
         reader = _Fetched()
@@ -109,6 +110,7 @@ def test_equations_are_typeset(site: Path) -> None:
     assert "<mfrac>" in (site / "fmus" / "weft_insertion" / "index.html").read_text()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("page", ["index", "docs/tour", "fmus/weft_insertion/index", "reference/claims"])
 def test_pages_open_wide_and_narrow_and_in_the_dark(
     site: Path, opened: Callable[..., Any], page: str
@@ -119,6 +121,7 @@ def test_pages_open_wide_and_narrow_and_in_the_dark(
     assert narrow.evaluate("document.documentElement.scrollWidth") <= NARROW[0]
 
 
+@pytest.mark.slow
 def test_the_search_works_without_a_server(site: Path, opened: Callable[..., Any]) -> None:
     page = opened(site / "fmus" / "belt_monitor" / "index.html")
     page.click(".md-search__input")

@@ -341,6 +341,7 @@ def test_xarray_reads_a_group(result: loomfmu.Result, file: h5py.File) -> None:
         assert 470 < middle.size < 490  # 50 ms of steps of 104 us
 
 
+@pytest.mark.slow
 def test_xarray_reads_the_tree(result: loomfmu.Result, file: h5py.File) -> None:
     with xarray.open_datatree(result.path, engine="h5netcdf") as tree:
         assert set(tree.children) == set(result.scene.instances)
@@ -380,6 +381,7 @@ def title(path: Path) -> str:
         return str(trace.attributes["title"])
 
 
+@pytest.mark.slow
 def test_five_thousand_variables_along_one_time(tmp_path: Path) -> None:
     # a dimension scale lists its users in one attribute: above 4,000 an old file format has no room for it
     channels = [Channel("loom", f"signal_{n}", "m", "m", "One of many", n) for n in range(5000)]
@@ -584,6 +586,7 @@ def test_what_a_killed_process_left_is_named_and_deleted_by_the_next_run(
     assert sorted(os.listdir("results")) == ["shaft.h5", mine.partial.name]
 
 
+@pytest.mark.slow
 def test_more_traces_can_be_held_at_once_than_files_may_be_open(result: loomfmu.Result) -> None:
     limits = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(256, limits[0]), limits[1]))
@@ -954,6 +957,7 @@ def test_a_relative_path_means_the_same_file_after_a_change_of_directory(
     assert len(trace["belt.margin"]) == trace.rows
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("claims", "why"),
     [

@@ -82,6 +82,7 @@ def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return python
 
 
+@pytest.mark.slow
 def test_the_first_run_of_a_scene_is_native(python: Path, tmp_path: Path) -> None:
     (tmp_path / "my_loom.toml").write_text(SCENE)
     cache = {"LOOMFMU_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}

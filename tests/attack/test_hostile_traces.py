@@ -49,6 +49,7 @@ def shown(path: Path, capsys: pytest.CaptureFixture[str]) -> int:
 CRAFTED = dict(hostile_traces.crafted())
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", CRAFTED)
 def test_what_somebody_crafts_is_refused(
     name: str,
@@ -89,7 +90,7 @@ def attack(valid: bytes, path: Path, capsys: pytest.CaptureFixture[str], seeds: 
 
 
 def test_damaged_traces(valid: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    attack(valid, tmp_path / "damaged.h5", capsys, range(25))
+    attack(valid, tmp_path / "damaged.h5", capsys, range(6))
 
 
 @pytest.mark.slow

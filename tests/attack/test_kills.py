@@ -129,6 +129,7 @@ def kill_sweep(directory: Path, count: int, seed: int) -> None:
     record("sweeps killed at random moments", kills)
 
 
+@pytest.mark.slow
 def test_runs_and_a_sweep_that_are_killed(tmp_path: Path, fmu_cache: None) -> None:
     kill_runs(tmp_path, 6, seed=1)
     kill_sweep(tmp_path, 4, seed=1)

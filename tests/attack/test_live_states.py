@@ -163,6 +163,7 @@ def attack(name: str, seed: int, calls: int) -> dict[str, int]:
     return done
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_random_calls_and_states_do_no_harm(name: str) -> None:
     done = attack(name, 1, 600)

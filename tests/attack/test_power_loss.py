@@ -105,6 +105,7 @@ def lose_power(image: Path, rounds: int, seed: int) -> None:
     record("power losses during and after runs", 2 * rounds)
 
 
+@pytest.mark.slow
 def test_a_trace_outlasts_a_power_loss(disk: Path, fmu_cache: None) -> None:
     lose_power(disk, 2, seed=1)
 
@@ -114,6 +115,7 @@ def test_traces_outlast_many_power_losses(disk: Path, fmu_cache: None) -> None:
     lose_power(disk, 60, seed=2)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "command",
     [

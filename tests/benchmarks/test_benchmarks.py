@@ -46,6 +46,7 @@ def find(results: Path, name: str) -> list[dict[str, Any]]:
     return records.read(results / written.FOLDER, name)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", written.BENCHMARKS)
 def test_a_benchmark_gives_tables_of_finite_numbers(done: Done, name: str) -> None:
     results = done(name)

@@ -138,6 +138,7 @@ def test_the_finite_elements_lose_stability_at_the_published_critical_speed():
 # On a loom
 
 
+@pytest.mark.few(1)
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("elements", "everywhere", "farthest"),
@@ -477,6 +478,7 @@ ON_DEFLECTIONS = [
 ]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("claim", ON_DEFLECTIONS)
 @pytest.mark.parametrize(
     ("ends", "pushed", "later"),

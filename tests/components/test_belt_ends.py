@@ -447,6 +447,7 @@ LITTLE_PLAY = {"guide_end": PLAY, "guide_clearance": 0.1e-3}
 OFF = {"guide_end": PLAY, "guide_offset": 0.15e-3}
 
 
+@pytest.mark.few(1)
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("bow_of", "given", "elements", "everywhere", "farthest"),

@@ -53,6 +53,7 @@ def safe_speed(name: str, case: str = "I", factor: float = 0.8, tension: float =
 # Accuracy
 
 
+@pytest.mark.few(4)
 @every_stroke
 @pytest.mark.parametrize("name", ALL_MACHINES)
 def test_lowest_values_are_those_of_the_continuous_curve(name, begin):
@@ -126,6 +127,7 @@ def test_table_6_safe_speed_by_case(name, case):
     assert safe_speed(name, case) == pytest.approx(float(row[f"n_{CORRECTED[case]}"]), rel=scatter)
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("row", table("safe_speed_by_yarn_tension"), ids=lambda row: row["tension_gf"])
 @pytest.mark.parametrize("case", CASES)
 def test_table_7_safe_speed_by_yarn_tension(case, row):

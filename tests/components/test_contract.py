@@ -72,6 +72,7 @@ def test_every_usual_source_is_an_output_of_the_standard_loom(component):
         assert units_of[variable] == next(v.unit for v in declared(component) if v.name == sink)
 
 
+@pytest.mark.few(2, each="component")
 @every_component
 @pytest.mark.parametrize("seed", range(5))
 def test_what_keeps_no_motion_shows_what_its_inputs_ask_for(component, seed):
@@ -235,6 +236,7 @@ def test_every_limit_is_a_value_that_runs_or_a_problem(component):
 # Running
 
 
+@pytest.mark.few(2, each="component")
 @every_flag
 def test_runs_alone(component, given):
     instance = component(**given)
@@ -268,6 +270,7 @@ def test_runs_with_any_step(component, step_size):
             finite(instance)
 
 
+@pytest.mark.few(2, each="component")
 @every_flag
 def test_a_step_of_no_length_changes_nothing(component, given):
     instance = component(**given)
@@ -280,6 +283,7 @@ def test_a_step_of_no_length_changes_nothing(component, given):
     finite(instance)
 
 
+@pytest.mark.few(1, each="component")
 @every_flag
 @pytest.mark.parametrize("factor", [0.0, -1.0])
 def test_standing_and_turning_backwards(component, given, factor):
@@ -296,6 +300,7 @@ def test_standing_and_turning_backwards(component, given, factor):
         finite(instance)
 
 
+@pytest.mark.few(1, each="component")
 @every_flag
 def test_any_inputs_give_finite_outputs(component, given):
     rng = random.Random(1)
@@ -311,6 +316,7 @@ def test_any_inputs_give_finite_outputs(component, given):
 # State
 
 
+@pytest.mark.few(1, each="component")
 @pytest.mark.no_cover
 @every_flag
 def test_nothing_is_hidden(component, given):
@@ -331,6 +337,7 @@ def test_nothing_is_hidden(component, given):
         assert values(copy) == values(instance)
 
 
+@pytest.mark.few(1, each="component")
 @pytest.mark.no_cover
 @every_flag
 def test_starting_again_forgets_everything(component, given):
@@ -369,6 +376,7 @@ def same(one, other, tolerance):
         assert other[name] == pytest.approx(value, abs=tolerance * scale), name
 
 
+@pytest.mark.few(2, each="component")
 @every_flag
 @pytest.mark.parametrize("pieces", [2, 3, 10])
 def test_splitting_a_step_changes_nothing(component, given, pieces):
@@ -393,6 +401,7 @@ def test_splitting_a_step_changes_nothing(component, given, pieces):
         same(found, other, 1e-8)
 
 
+@pytest.mark.few(1, each="component")
 @every_flag
 def test_no_sample_is_beyond_an_extreme(component, given):
     numbers = [v for v in declared(component) if v.type is float]
@@ -412,6 +421,7 @@ def test_no_sample_is_beyond_an_extreme(component, given):
             assert beyond <= 1e-12 * abs(far[name]), name
 
 
+@pytest.mark.few(2, each="component")
 @every_flag
 def test_rates_belong_to_their_outputs(component, given):
     rated = [v for v in declared(component) if v.causality == "output" and v.rate is not None]
@@ -432,6 +442,7 @@ def test_rates_belong_to_their_outputs(component, given):
             assert numeric == pytest.approx(here[variable.rate], abs=1e-5 * largest + 1e-10), variable.name
 
 
+@pytest.mark.few(1, each="component")
 @every_flag
 def test_outputs_depend_on_what_they_say(component, given):
     rng = random.Random(4)

@@ -148,6 +148,7 @@ def test_it_settles_where_motor_and_load_balance():
 # Steps of any size
 
 
+@pytest.mark.few(24)
 @pytest.mark.parametrize("at_end", [False, True])
 @pytest.mark.parametrize("size", [10.0**n for n in range(-9, 4)])
 @pytest.mark.parametrize(("slope", "inertia"), [(40.0, 2.0), (0.0, 2.0), (1e9, 1e-6), (1e-6, 1e6)])

@@ -53,6 +53,7 @@ def test_a_smooth_frame_is_followed_with_sixth_order():
     assert orders[1:] == pytest.approx([6.0] * len(orders[1:]), abs=0.4)
 
 
+@pytest.mark.few(2)
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("turns", "parameters"),

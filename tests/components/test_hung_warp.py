@@ -11,6 +11,7 @@ from loomfmu.components import HealdDamper, WarpTension, damper_motion
 from loomfmu.physics.hung_warp import settled_load
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("rpm", "turns", "contacts"), [(200, 1, 0), (450, 2, 4)])
 def test_carrier_and_threads_against_a_monolithic_integration(rpm, turns, contacts):
     speed, fine = rpm * RPM, 720

@@ -139,6 +139,7 @@ def test_takes_the_same_time_to_and_fro():
 # Exact motion
 
 
+@pytest.mark.few(2)
 @pytest.mark.no_cover
 @every_name
 def test_motion_at_720_angles(name):

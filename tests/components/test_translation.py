@@ -59,6 +59,7 @@ def test_flattened_text_imports_math_alone(component):
     assert flatten(component) == flatten(component)
 
 
+@pytest.mark.few(1, each="component")
 @pytest.mark.no_cover
 @every_component
 @pytest.mark.parametrize("seed", range(4))
@@ -76,6 +77,7 @@ def test_flattened_component_gives_the_same_bits(component, seed):
     in_step(component, fresh, seed, compare)
 
 
+@pytest.mark.few(1, each="component")
 @pytest.mark.no_cover
 @every_component
 @pytest.mark.parametrize("seed", range(4))

@@ -41,6 +41,7 @@ def placed(weft: WeftInsertion, theta: float) -> WeftInsertion:
     return weft
 
 
+@pytest.mark.few(2)
 @pytest.mark.no_cover
 @every_machine
 def test_motion_over_a_turn(name):

@@ -195,6 +195,7 @@ def test_the_way_through_the_program_may_be_long_or_backward():
     assert resting.strain * 75.0 == pytest.approx(lowest, rel=1e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.no_cover
 @pytest.mark.parametrize("at_end", [True, False])
 def test_extremes_do_not_depend_on_the_step(at_end):

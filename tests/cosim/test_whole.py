@@ -65,6 +65,7 @@ def demo(fmu_cache: None, tmp_path_factory: pytest.TempPathFactory) -> Whole:
 # ---- the bits of a run
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_it_gives_the_bits_of_the_run(tmp_path: Path, path: Path) -> None:
     scene = loaded(path)
@@ -88,6 +89,7 @@ def test_it_does_so_in_fmi_3(tmp_path: Path) -> None:
     same(one.instance().along(scene.steps, scene.step_size), traced(scene, tmp_path))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("every", [7, 1440])
 def test_a_communication_step_may_hold_many_steps(tmp_path: Path, demo: Whole, every: int) -> None:
     scene = loaded(DEMO)
@@ -139,6 +141,7 @@ def test_fmpy_simulates_it(tmp_path: Path, demo: Whole) -> None:
 # ---- parameters, states, instances
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @given(
     speed=st.floats(30.0, 75.0),
@@ -226,6 +229,7 @@ def test_only_what_its_outputs_need_is_in_it(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_same_scene_gives_the_same_bytes(tmp_path: Path) -> None:
     scene = loaded(SIMS / "belt_alone.toml")
     first = exported(scene, tmp_path).read_bytes()

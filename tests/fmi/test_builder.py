@@ -166,6 +166,7 @@ def digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+@pytest.mark.slow
 def test_builds_repeat_in_another_directory_and_another_process(tmp_path: Path) -> None:
     before = {name: digest(fmus.of_component(name).path) for name in NAMES}
     assert {name: digest(builder.build(name, tmp_path / "here")) for name in NAMES} == before

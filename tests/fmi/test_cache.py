@@ -142,6 +142,7 @@ def test_another_users_cache_is_not_used(
         cache_directory()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("flavour", [["--live"], ["--native"]])
 def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
     no_home: Path, tmp_path: Path, flavour: list[str]

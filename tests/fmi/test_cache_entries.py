@@ -160,6 +160,7 @@ def test_a_line_added_to_an_unpacked_live_fmu_is_not_run(own_cache: Path, tmp_pa
     assert unpacked.read_bytes() == clean
 
 
+@pytest.mark.slow
 def test_no_bytecode_lies_beside_the_source_that_is_checked(own_cache: Path) -> None:
     run(own_cache, "--live")
     assert list(own_cache.rglob("*.py")) and not list(own_cache.rglob("*.pyc"))
@@ -201,6 +202,7 @@ print(sorted(each.fmu.sha256 for each in scene.instances.values()))
 """
 
 
+@pytest.mark.slow
 def test_six_cold_starts_of_one_package_at_once(own_cache: Path, tmp_path: Path) -> None:
     assert cli.main(["export", str(SCENE), "--ssp", str(tmp_path / "x.ssp"), "--flavour", "live"]) == 0
     shutil.rmtree(own_cache)

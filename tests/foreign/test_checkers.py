@@ -20,6 +20,7 @@ def test_fmpy_finds_no_fault(natives: dict[str, Fmu], name: str) -> None:
     assert validate_fmu(str(natives[name].path)) == []
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_fmutool_finds_no_fault(natives: dict[str, Fmu], name: str) -> None:
     if find_spec("fmu_manipulation_toolbox") is None:

@@ -58,6 +58,7 @@ def ecos(path: Path, signals: list[str], _references: dict[str, int]) -> Signals
     return dict(zip(signals, np.array(rows).T, strict=True))
 
 
+@pytest.mark.few(1)
 @pytest.mark.usefixtures("natives")
 @pytest.mark.parametrize("master", [libcosim, ecos], ids=lambda master: master.__name__)
 def test_it_gives_our_bits(tmp_path: Path, master: Stepped) -> None:
@@ -70,6 +71,7 @@ def test_it_gives_our_bits(tmp_path: Path, master: Stepped) -> None:
         np.testing.assert_array_equal(values, expected[signal][1:], err_msg=signal)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_checkers_find_no_fault(natives: dict[str, Fmu], tmp_path: Path, fmi: int) -> None:
     path = exported(demo(STEPS), tmp_path, fmi)

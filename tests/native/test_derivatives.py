@@ -40,6 +40,7 @@ def carried(values: dict[str, float], derivatives: dict[tuple[str, int], float])
     return {name: ahead(name) for name in values}
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("name", DRIVEN)
 @pytest.mark.parametrize("highest", [1, 2, 3])
 def test_given_derivatives_carry_the_inputs_to_the_end_of_the_step(native, name, highest):

@@ -67,6 +67,7 @@ def solver_ready(instance: Native3, **values: object) -> Native3:
 # ---- what it is made of
 
 
+@pytest.mark.few(4)
 @every_fmu
 def test_it_is_valid(built3, name):
     assert validate_fmu(str(built3[name].path)) == []
@@ -119,6 +120,7 @@ def test_it_exports_the_functions_of_the_standard_and_needs_only_libc_and_libm(b
     assert needed <= {"linux-vdso.so.1", "libm.so.6", "libc.so.6", "ld-linux-x86-64.so.2"}
 
 
+@pytest.mark.few(4)
 @every_fmu
 def test_its_sources_compile_without_a_warning(built3, gcc, name):
     warnings = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]

@@ -99,6 +99,7 @@ def test_it_exports_the_functions_of_the_standard_and_nothing_else(built, name):
     assert library(built[name]).fmi2GetTypesPlatform() == b"default"
 
 
+@pytest.mark.few(3)
 @every_fmu
 def test_its_sources_compile_without_a_warning(sources, gcc, name):
     call = [gcc, "-std=c99", "-O1", *WARNINGS, "-c", "fmi2.c", "-o", os.devnull]
@@ -130,6 +131,7 @@ def test_all_it_holds_has_a_licence(built):
     assert [file.get("name") for file in description.iter("SourceFile")] == ["fmi2.c"]
 
 
+@pytest.mark.slow
 def test_builds_repeat_to_the_byte(built, tmp_path, monkeypatch):
     # another directory and an empty cache of the compiler: nothing is taken from the first build
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "zig"))

@@ -310,6 +310,7 @@ def test_faster_loading_makes_the_thread_stiffer(n, r):
 # Turns and levels
 
 
+@pytest.mark.slow
 @given(unit, st.floats(0.0, 20.0), drives)
 def test_force_turns_but_once_where_it_is_said_so(force, decay, drive):
     assume(turns_once(*drive[1:]))

@@ -50,6 +50,7 @@ def test_the_drawing_is_that_of_the_revolution_under_the_cursor(
     assert page.locator(visible).get_attribute("data-drawing") != first  # another pick of the twill
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("suffix", BEGINNINGS)
 @pytest.mark.parametrize("shape", [[], ["--round"]])
 def test_it_is_written_as_a_picture(copied: Path, suffix: str, shape: list[str]) -> None:
@@ -210,6 +211,7 @@ def test_a_report_without_claims_has_no_row_for_them(tmp_path: Path) -> None:
     assert ">Claims</text>" not in page and "worst value of a claim" not in page
 
 
+@pytest.mark.slow
 def test_a_revolution_beyond_those_that_are_kept_is_not_drawn(
     whole: Trace, tmp_path: Path, opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,6 +69,7 @@ def points(page: Any, figure: str, role: str, place: int = 0) -> list[tuple[floa
 # ---- against the physics
 
 
+@pytest.mark.slow
 def test_the_drive_is_where_its_equations_have_it(pages: dict[str, Path], opened: Open) -> None:
     page, weft = opened(pages["whole"]), WeftInsertion()
     assert weft.initialize(0.0) == 0  # the defaults are those of the scene's machine

@@ -27,6 +27,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [diagram.section, drawings.section], ids=["diagram", "motion"])
 def test_memory_does_not_grow_with_the_signals_of_a_long_run(
     runs: list[Path], make: Callable[[Subject], Section | None]

@@ -201,6 +201,7 @@ def test_the_library_is_the_published_one() -> None:
 # ---- pictures
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
 def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
     output = copied.with_name(f"picture{suffix}")
@@ -217,6 +218,7 @@ def test_a_picture_is_written_and_replaced(copied: Path, suffix: str) -> None:
         assert main([*command, "--force"]) == main(command) == 0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("command", "signals"), [("plot", ["belt.margin"]), ("diagram", [])])
 def test_a_matplotlibrc_changes_no_picture(copied: Path, command: str, signals: list[str]) -> None:
     pictures = []

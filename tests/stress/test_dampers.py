@@ -41,6 +41,7 @@ def released(
 # Swings with a closed solution
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("ratio", RATIOS)
 @pytest.mark.parametrize("mass", MASSES)
 def test_a_released_carrier_is_where_the_closed_solution_has_it(mass, ratio):
@@ -67,6 +68,7 @@ def test_a_released_carrier_is_where_the_closed_solution_has_it(mass, ratio):
         assert damper.stop_contacts == 0
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("ratio", [1.0, 1.001, 10.0, 100.0])
 @pytest.mark.parametrize("stiffness", [1e-2, 1e4, 1e10])
 def test_an_overcritical_carrier_does_not_overshoot(stiffness, ratio):
@@ -95,6 +97,7 @@ def energy(damper: HealdDamper) -> float:
     return springs + stop + 0.5 * damper.carrier_mass * damper.rate**2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("steps", "mass", "stiffness"),
     [

@@ -86,28 +86,28 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
         assert all_finite(instance), drawn
 
 
-@seeds(60, 3000)
+@seeds(15, 3000)
 @pytest.mark.parametrize("name", [name for name in COMPONENTS if name not in ("BeltDynamics", "HealdDamper")])
 def test_corners_run_or_are_refused(name, drawn):
     for seed in drawn:
         run_at_corners(COMPONENTS[name], seed, 24)
 
 
-@seeds(60, 3000)
+@seeds(15, 3000)
 def test_corners_of_the_belt_in_motion_run_or_are_refused(belt_in_c, drawn):
     # a stiff or overloaded belt takes a second in Python until it is held
     for seed in drawn:
         run_at_corners(belt_in_c, seed, 24)
 
 
-@seeds(15, 400)
+@seeds(2, 400)
 def test_corners_of_the_damper_run_or_are_refused(drawn):
     # a heavy carrier, for a light one on stiff springs takes seconds until a long step is given up
     for seed in drawn:
         run_at_corners(COMPONENTS["HealdDamper"], seed, 3 if seed % 2 else 24, carrier_mass=1e3)
 
 
-@seeds(30, 1500)
+@seeds(8, 1500)
 @pytest.mark.parametrize("law", LAWS)
 def test_corners_of_a_rotor_law_run_or_are_refused(law, drawn):
     for seed in drawn:
@@ -143,7 +143,7 @@ def drawn_law(law: str, rng: random.Random) -> dict[str, Any]:
     return found
 
 
-@seeds(30, 600)
+@seeds(10, 600)
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "spline_cam"])
 def test_a_rotor_never_turns_back_and_goes_round_once_in_a_turn(law, drawn):
     runs = 0

@@ -50,6 +50,7 @@ print(*(new - old for old, new in zip(before, after)))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("runs", [250, pytest.param(1000, marks=pytest.mark.slow)])
 def test_many_runs_take_no_more_memory_than_a_few(runs: int) -> None:
     grown, files, paths, modules = map(int, in_a_process(SCRIPT, str(runs), str(WARM_UP)).split())

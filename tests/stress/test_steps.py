@@ -83,6 +83,7 @@ def uneven(count: int, end: float, seed: int) -> list[float]:
     return [end * size / sum(drawn) for size in drawn]
 
 
+@pytest.mark.slow
 def test_uneven_steps_lead_to_the_same_place():
     end = 1.2 * TURN / SPEED
     reference = run(WholeLoom(SPEED, follow=True), [end / 3000] * 3000)

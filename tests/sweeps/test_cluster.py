@@ -41,6 +41,7 @@ def cluster(fmu_cache: None) -> Iterator[Any]:
         running.close()
 
 
+@pytest.mark.slow
 def test_a_cluster_makes_the_table_of_one_process(tmp_path: Path, cluster: Any) -> None:
     path = written(tmp_path, SWEPT)
     one = loomfmu.sweep(path, processes=1, output=tmp_path / "one")
@@ -82,6 +83,7 @@ def test_the_rows_run_on_the_cluster_and_a_sweep_goes_on_there(
     assert (output / "table.parquet").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_row_that_ends_the_workers_of_a_cluster_is_found(
     tmp_path: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -86,6 +86,7 @@ def kill_often(directory: Path, table: bytes, speeds: int, count: int, seed: int
     assert sorted(os.listdir(results)) == ["sweep.json", "table.parquet", "traces"]
 
 
+@pytest.mark.slow
 def test_a_sweep_that_is_killed_three_times_loses_and_doubles_nothing(tmp_path: Path, whole: bytes) -> None:
     kill_often(tmp_path, whole, SPEEDS, count=3, seed=5)
 

@@ -42,6 +42,7 @@ def test_tasks_are_shared_by_processes_that_stay(two: Processes) -> None:
     assert os.getpid() not in found.values()
 
 
+@pytest.mark.slow
 def test_what_a_task_raises_is_its_outcome(two: Processes) -> None:
     for pool in (two, Here()):
         found = all_done(pool, [Task(number, odd_tasks.refuse, (number,)) for number in range(3)])
@@ -57,6 +58,7 @@ def test_the_end_of_a_process_is_the_outcome_of_its_task_alone(two: Processes) -
     assert all(isinstance(each, int) for each in found.values())
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_while_it_waits_costs_no_more_than_the_next_task(two: Processes) -> None:
     found = all_done(two, [Task(number, odd_tasks.pid, (number,)) for number in range(2)])
     for victim in set(found.values()):
@@ -69,6 +71,7 @@ def test_a_process_that_is_killed_while_it_waits_costs_no_more_than_the_next_tas
     assert sum(isinstance(each, int) for each in after.values()) >= 4
 
 
+@pytest.mark.slow
 def test_a_closed_pool_leaves_no_process() -> None:
     pool = Processes(2)
     found = all_done(pool, [Task(number, odd_tasks.pid, (number,)) for number in range(2)])

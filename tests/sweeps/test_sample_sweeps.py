@@ -54,6 +54,7 @@ def test_stiff_springs_keep_the_carrier_off_its_stops(tmp_path: Path) -> None:
     assert (output / "map.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_clearance_matters_most_for_the_belt_and_the_law_for_the_dwell(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -67,6 +68,7 @@ def test_clearance_matters_most_for_the_belt_and_the_law_for_the_dwell(
     assert (tmp_path / "out" / "sensitivity.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_bow_over_the_whole_span_deflects_farther_than_the_belts_own(tmp_path: Path) -> None:
     output = tmp_path / "out"
     assert main(["sweep", str(SWEEPS / "belt_motion.toml"), "--output", str(output), "--processes", "1"]) == 1

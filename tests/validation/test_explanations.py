@@ -69,6 +69,7 @@ def test_constant_low_speed_is_the_measured_dwell_at_small_reductions():
         assert uniform / (1.0 - z) == pytest.approx(measured, abs=1.3)  # deg: within 1.3 %
 
 
+@pytest.mark.few(1)
 @pytest.mark.no_cover
 @pytest.mark.parametrize("reduction", [0.3, 0.7])
 def test_elastic_frame_against_an_integration(reduction):

@@ -279,6 +279,7 @@ def test_claims_on_the_loom_say_where_rates_are_missing(
     ]
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 13))
 @pytest.mark.parametrize("power", [2, 3, 4, 5])
 def test_a_smooth_stop_does_not_fail_at_its_bound_wherever_it_lies_between_samples(
@@ -339,6 +340,7 @@ def test_where_one_extreme_is_in_doubt_another_one_still_counts(tmp_path: Path) 
     assert not judge(trace, kind="below", signal="a.x", bound=1.0009)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("steps", [90, 360, 1000])
 @pytest.mark.parametrize("grid", ["uniform", "windows"])
 def test_a_start_up_stays_below_its_speed_and_frames_within_their_stroke(

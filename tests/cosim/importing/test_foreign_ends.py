@@ -39,6 +39,7 @@ def ending(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     return directory, request.param
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("stepped", ["isolated", "compiled", "in Python"])
 @pytest.mark.parametrize(
     ("text", "instance", "velocity"), [(SECOND, "motor", "flange_w"), (THIRD, "shaft", "velocity")]
@@ -69,6 +70,7 @@ def test_the_trace_goes_as_far_as_the_fmu(
     assert len(trace["weft.travel"]) == 51 and np.all(np.diff(trace["weft.travel"][1:]) > 0.0)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("head", "bound", "word"),
     [
@@ -103,6 +105,7 @@ def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
     assert again.word == word
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("claim", ["", CLAIM.format("weft.travel", 10.0)])
 def test_evaluate_tells_it_too(ending: tuple[Path, str], claim: str) -> None:
     place, end = ending
@@ -138,6 +141,7 @@ def brief(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "study",
     [
@@ -160,6 +164,7 @@ def test_rows_that_are_cut_short_cannot_be_run(brief: Path) -> None:
     assert all(re.search(SHORT, text) for text in swept.table["error"].to_pylist())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("claims", [0, 1])
 def test_a_scene_as_a_test_does_not_pass(brief: Path, claims: int) -> None:
     if not claims:  # such a scene is collected for its loom

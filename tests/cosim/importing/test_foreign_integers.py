@@ -51,6 +51,7 @@ def test_those_of_fmi_2_have_32_bits(place: Path) -> None:
         fmi2.value(3000000000, "x")
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("inside", INSIDE)
 @pytest.mark.parametrize("each", HELD)
 def test_values_come_through_as_they_are(place: Path, tmp_path: Path, each: str, inside: str) -> None:

@@ -81,7 +81,7 @@ def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
 
 
 def test_another_guid_is_told_in_the_fmus_words(tmp_path: Path) -> None:
-    binary = library("fmi2.c", tmp_path / "Motor.so", "-DSINGLE=0")
+    binary = library("fmi2.c", "-DSINGLE=0")
     bad(tmp_path, description2().replace("{motor-2}", "{other}"), binary)
     with pytest.raises(LoomfmuError, match=r"cannot be instantiated: \{other\}: 0 alive$"):
         ran(tmp_path, MOTOR, tmp_path)

@@ -135,6 +135,7 @@ IN_A_STEP = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("what", IN_A_STEP)
 def test_one_that_fails_in_a_step_is_named_and_the_trace_kept(tmp_path: Path, what: str) -> None:
     misbehaving(tmp_path, what)
@@ -153,6 +154,7 @@ def test_one_that_fails_in_initialization_is_named(tmp_path: Path, what: str) ->
         ran(tmp_path, MOTOR, tmp_path, step_timeout="0.5 s")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("where", ["TERMINATE", "FREE"])
 @pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
 def test_what_fails_after_the_last_step_costs_nothing(tmp_path: Path, what: str, where: str) -> None:
@@ -234,6 +236,7 @@ values = ["motor.flange_w"]
 """
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
 def test_other_rows_of_a_sweep_are_unharmed(tmp_path: Path, what: str) -> None:
     misbehaving(tmp_path, what)
@@ -275,6 +278,7 @@ def told(path: Path) -> str:
 IN_THIS_PROCESS = "isolated = false\n" + LENGTH + '[motor]\nfmu = "Motor.fmu"\n'
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("where", ["INITIALIZATION", "STEP", "TERMINATE", "FREE"])
 @pytest.mark.parametrize(
     ("what", "how"),
@@ -381,6 +385,7 @@ def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
     assert running.returncode == 130
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("processes", [1, 2])
 def test_a_row_whose_fmu_ends_the_process_leaves_the_others_unharmed(tmp_path: Path, processes: int) -> None:
     misbehaving(tmp_path, "QUIT")
@@ -405,6 +410,7 @@ def test_a_changed_working_directory_is_changed_back(
     assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("compiled", [False, True])
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])
 def test_a_changed_rounding_is_changed_back_before_others_compute(
@@ -422,6 +428,7 @@ def test_a_changed_rounding_is_changed_back_before_others_compute(
     np.testing.assert_array_equal(*found)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("where", ["STEP", "INITIALIZATION"])
 @pytest.mark.parametrize("text", [MOTOR, IN_THIS_PROCESS])
 def test_of_a_process_that_an_fmu_has_forked_one_goes_on(tmp_path: Path, text: str, where: str) -> None:
@@ -451,6 +458,7 @@ def test_a_step_in_the_background_is_named(tmp_path: Path, isolated: bool) -> No
         loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("isolated", [True, False])
 @pytest.mark.parametrize("status", [-1, 6, 2**31 - 1, -(2**31)])
 def test_a_status_that_fmi_does_not_know_is_a_failure(tmp_path: Path, status: int, isolated: bool) -> None:

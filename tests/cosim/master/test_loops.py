@@ -166,6 +166,7 @@ component = "Switched"
 """
 
 
+@pytest.mark.few(3)
 @needs_compiler
 @pytest.mark.usefixtures("odd")
 @pytest.mark.parametrize("flavour", fmus.FLAVOURS)

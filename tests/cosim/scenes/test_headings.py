@@ -68,6 +68,7 @@ def test_the_title_of_an_example_scene_names_nothing_that_can_be_set(path: Path)
         assert "rev/min" not in title and "weave" not in title
 
 
+@pytest.mark.slow
 def test_run_show_report_diagram_and_plot_have_the_heading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

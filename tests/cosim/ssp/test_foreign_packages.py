@@ -311,6 +311,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("said", MISTAKES)
 def test_what_cannot_be_run_is_told_in_one_line(tmp_path: Path, said: str) -> None:
     with pytest.raises(LoomfmuError) as raised:

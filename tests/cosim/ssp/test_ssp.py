@@ -194,6 +194,7 @@ def test_the_diagram_goes_from_left_to_right(demo: Path) -> None:
 # ---- and read again
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["wl680_3600", "full_loom", "worn_belt", "start_up", "satin"])
 def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) -> None:
     changed = SHORT | {"shaft.speed": "487.3 rpm"}

@@ -29,6 +29,7 @@ def listed(name: str) -> list[tuple[Variable, Element, Element]]:
     return [(variable, e, e[0]) for variable, e in zip(declared, elements, strict=True)]
 
 
+@pytest.mark.few(5)
 @every_fmu
 def test_fmpy_finds_no_fault(name: str) -> None:
     assert fmpy.validation.validate_fmu(str(fmus.of_component(name).path)) == []

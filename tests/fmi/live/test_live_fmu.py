@@ -450,6 +450,7 @@ for angle in (1e12, 1e20, 1e300):
 # ---- hosts
 
 
+@pytest.mark.slow
 def test_three_hundred_failures_and_frees_do_not_crash() -> None:
     # without catching every exception the process crashed after 3 to 114 of these
     text = in_a_process(

@@ -94,6 +94,7 @@ def test_pieces_join_with_angle_velocity_and_acceleration(function, reduction):
     assert after == pytest.approx(before, abs=1e-11)
 
 
+@pytest.mark.few(16)
 @pytest.mark.no_cover
 @every_law
 @pytest.mark.parametrize("reduction", REDUCTIONS)

@@ -107,6 +107,7 @@ def covers(found: fitted.Fit, *true: float) -> list[bool]:
     return [each.low <= value <= each.high for each, value in zip(found.parameters, true, strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "most"), [("", 8), ("memory", 0), ("offset", 0)])
 def test_an_interval_covers_the_truth_or_is_not_trusted(tmp_path: Path, kind: str, most: int) -> None:
     random = np.random.default_rng(2026)
@@ -183,6 +184,7 @@ def test_intervals_that_miss_are_not_trusted(
     assert np.all(wrong <= (8 if unsaid else 0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("loss", ["soft_l1", "huber", "cauchy", "arctan"])
 def test_a_robust_loss_passes_over_values_that_are_far_off(tmp_path: Path, loss: str) -> None:
     random = np.random.default_rng(3)

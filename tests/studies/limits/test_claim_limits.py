@@ -130,6 +130,7 @@ SWINGING = {
 }
 
 
+@pytest.mark.slow
 def test_all_intervals_of_a_carrier_that_swings_are_found() -> None:
     scene = parse(SPRUNG + claims(*({"name": name, **each} for name, each in SWINGING.items())))
     found = limit(scene, vary="shaft.speed=100rpm..400rpm")

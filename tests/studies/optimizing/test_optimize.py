@@ -177,6 +177,7 @@ def outcome(found: Optimum) -> tuple[object, ...]:
     return found.values, found.verdicts, found.binding, found.runs, found.allowed
 
 
+@pytest.mark.slow
 def test_the_result_is_the_same_on_any_number_of_processes_and_after_a_kill(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
