@@ -24,7 +24,7 @@ from loomfmu.components.reed_beat_up import ReedBeatUp
 from loomfmu.components.warp_tension import WarpTension
 from loomfmu.components.weft_tension import WeftTension
 from loomfmu.components.weft_transfer import WeftTransfer
-from loomfmu.variables import Component
+from loomfmu.declaring.variables import Component
 
 ROOT = Path(__file__).parents[1]
 FMUS = ROOT / "fmus"

@@ -10,9 +10,9 @@ import pytest
 from sharing import made_by_gcc
 
 from loomfmu.components import BeltDynamics
+from loomfmu.declaring.variables import Component, variables_of
 from loomfmu.fmi.native.builder import ARITHMETIC, SHELL
 from loomfmu.fmi.native.translate import translate
-from loomfmu.variables import Component, variables_of
 
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 TYPES = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool}

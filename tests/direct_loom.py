@@ -12,8 +12,8 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.declaring.variables import variables_of
 from loomfmu.traces import Trace
-from loomfmu.variables import variables_of
 
 # sources before sinks, written down by hand
 STEMS = ("shaft", "weft", "belt", "dobby", "lock", "heald", "damper", "warp", "play", "reed")

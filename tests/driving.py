@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
-from loomfmu.variables import Component, Variable, variables_of
+from loomfmu.declaring.variables import Component, Variable, variables_of
 
 declared = functools.cache(variables_of)  # a declaration does not change, and tests ask for it all the time
 

@@ -20,7 +20,7 @@ from fmpy.fmi2 import (
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
-from loomfmu.variables import Component, variables_of
+from loomfmu.declaring.variables import Component, variables_of
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 SPEED = 41.88790204786391  # 400 rev/min, what every component starts with

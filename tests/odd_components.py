@@ -8,9 +8,9 @@ import pytest
 
 from loomfmu import components
 from loomfmu.cosim.importing import fmus
-from loomfmu.declarations import input_, output, parameter
+from loomfmu.declaring.declarations import input_, output, parameter
+from loomfmu.declaring.variables import Component, Problem
 from loomfmu.fmi import builder
-from loomfmu.variables import Component, Problem
 
 
 @dataclass(slots=True)

@@ -10,10 +10,10 @@ import pytest
 from filelock import FileLock
 from platformdirs import user_cache_path
 
+from loomfmu.cache.directory import cache_directory
+from loomfmu.cache.entries import FMUS, made_file
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi.cache import cache_directory
-from loomfmu.fmi.cache_entries import FMUS, made_file
 from loomfmu.fmi.native.platforms import host
 
 KEPT = user_cache_path("loomfmu-tests", appauthor=False)

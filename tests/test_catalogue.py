@@ -10,9 +10,9 @@ from loomfmu import LoomfmuError, catalogue
 from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi import builder
 from loomfmu.machines import HEADS, MACHINES
-from loomfmu.variables import variables_of
 
 
 @pytest.mark.parametrize("name", NAMES)

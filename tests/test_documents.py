@@ -21,9 +21,9 @@ from loomfmu import cli
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes import scene
+from loomfmu.declaring.variables import MIXED, OWN, PUBLISHED, variables_of
 from loomfmu.fmi.builder import folder
 from loomfmu.sweeps import plan
-from loomfmu.variables import MIXED, OWN, PUBLISHED, variables_of
 
 HOUSE = Path(__file__).parents[1]
 README = HOUSE / "README.md"

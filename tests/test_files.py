@@ -10,9 +10,9 @@ import pytest
 
 import loomfmu
 from loomfmu import catalogue, files
+from loomfmu.cache import entries
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.fmi import cache_entries
-from loomfmu.new import new
+from loomfmu.own.new import new
 from loomfmu.traces import TraceWriter
 
 Call = tuple[str, object, object]  # "wait", inode, digest of the content; or "name", path, inode
@@ -48,7 +48,7 @@ def failed_trace(folder: Path) -> None:
 
 
 def cached(folder: Path) -> None:
-    cache_entries.made_file(cache_entries.STEPPER, 64 * "0", "a.so", lambda: b"code")
+    entries.made_file(entries.STEPPER, 64 * "0", "a.so", lambda: b"code")
 
 
 WRITERS: dict[str, Callable[[Path], object]] = {
@@ -56,7 +56,7 @@ WRITERS: dict[str, Callable[[Path], object]] = {
     "a trace": shaft_trace,
     "the trace of a failed run": failed_trace,
     "the examples": lambda folder: catalogue.start(folder / "examples", everything=True),
-    "a mechanism": lambda folder: new("PickingCam", folder),
+    "a mechanism": lambda folder: new("PickingCam", (), folder),
     "the cache": cached,
 }
 

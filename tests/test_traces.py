@@ -26,8 +26,8 @@ import loomfmu
 from loomfmu import LoomfmuError, Trace, cli, units
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.declaring.variables import variables_of
 from loomfmu.traces import ROWS, TRACE, Channel, TraceWriter, damage
-from loomfmu.variables import variables_of
 
 SCENE = """
 title = "Two frames"

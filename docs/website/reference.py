@@ -16,9 +16,9 @@ from loomfmu.cosim.claims.claim import AT_LEAST
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes.keys import COUPLINGS, GRIDS, KEYS
 from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.documentation import limits_text, start_text
 from loomfmu.loom.standard_loom import LOOM_KEYS
-from loomfmu.variables import variables_of
 
 DESIGN = ("loom", "buckling", "shed", "cam", "cam_export", "rocker_cam", "guidance", "dobby", "loads", "reed")
 CHOICES = {"coupling": COUPLINGS, "grid": GRIDS}

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from . import units
 from .components import COMPONENTS
+from .declaring.variables import Component, Variable, variables_of
 from .errors import LoomfmuError, listed, suggestion
 from .files import ANY, write_file
 from .fmi.description.documentation import accuracy_text, limits_text, start_text
 from .machines import HEADS, MACHINES, parameters
 from .own import load
-from .variables import Component, Variable, variables_of
 
 if TYPE_CHECKING:
     from .cosim.importing.fmus import Fmu

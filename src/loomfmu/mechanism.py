@@ -3,10 +3,11 @@
 Functions of `loomfmu.physics` can be imported, too: they are carried into the FMU with the rest.
 """
 
-from .arrays import array
 from .components.shaft_driven import TOO_FAR, ShaftDriven
 from .components.terminals import FRAME, HEAD, ROTOR, SHAFT
-from .declarations import at_step_end, auxiliary, indicator, input_, output, parameter, state
+from .declaring.arrays import array
+from .declaring.declarations import at_step_end, auxiliary, indicator, input_, output, parameter, state
+from .declaring.variables import EXTREMES, MOTION, NOTHING, Component, Problem, Terminal
 from .physics.numerics.extremes import (
     highest_by_two_rates,
     highest_so_far,
@@ -14,7 +15,6 @@ from .physics.numerics.extremes import (
     lowest_so_far,
 )
 from .physics.shaft import carried, too_far
-from .variables import EXTREMES, MOTION, NOTHING, Component, Problem, Terminal
 
 __all__ = [
     "EXTREMES",

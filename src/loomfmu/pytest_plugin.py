@@ -191,7 +191,7 @@ def _relative(path: Path) -> Path:
 
 def _names(claims: list[dict[str, Any]]) -> list[str]:
     """A name for the test of each claim: its own or its kind, with a number where there are several."""
-    from .printed import safe
+    from .display.printed import safe
 
     names: list[str] = []
     for claim in claims:

@@ -20,10 +20,10 @@ from loomfmu.cosim import whole
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import step_order
 from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.fmi.native import compiler, platforms
 from loomfmu.fmi.native.translate import translate
-from loomfmu.variables import variables_of
 
 HERE = Path(__file__).parent
 KINDS = ("Real", "Integer", "Boolean")

@@ -15,6 +15,7 @@ from scipy.special import ellipk
 
 from loomfmu import run
 from loomfmu.components.belt_dynamics import BeltDynamics
+from loomfmu.declaring.variables import variables_of
 from loomfmu.physics.belt_end_forces import (
     CROSS_ALONG,
     CROSS_TWICE,
@@ -26,7 +27,6 @@ from loomfmu.physics.belt_ends import CROSS, SQUARE, buckling, end_amplitudes, t
 from loomfmu.physics.belt_modes import Bow
 from loomfmu.physics.belt_motion import accelerations
 from loomfmu.physics.belt_moving import instant
-from loomfmu.variables import variables_of
 
 BELT, SPAN = 1, 2
 PLAY, GUIDED = 2, 2

@@ -21,9 +21,9 @@ from driving import (
 from loomfmu import units
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import usual_wires
+from loomfmu.declaring.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 from loomfmu.errors import numbered
 from loomfmu.loom.standard_loom import COMPONENT_OF
-from loomfmu.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 
 every_component = pytest.mark.parametrize("component", COMPONENTS.values(), ids=COMPONENTS)
 every_flag = pytest.mark.parametrize(

@@ -14,10 +14,10 @@ from scipy.integrate import solve_ivp
 from loomfmu.components import COMPONENTS, DrivenShaft, WeftInsertion
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.usual_wires import gathered
+from loomfmu.declaring.variables import variables_of
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import parameters
 from loomfmu.physics.driven_shaft import driven_motion
-from loomfmu.variables import variables_of
 
 MP = mpmath.mp.clone()
 MP.dps = 120

@@ -15,8 +15,8 @@ from scipy.optimize import fsolve
 from loomfmu.components.heald_damper import HealdDamper
 from loomfmu.components.heald_frame import HealdFrame
 from loomfmu.components.warp_tension import WarpTension
+from loomfmu.declaring.variables import variables_of
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, UNIFORM
-from loomfmu.variables import variables_of
 
 RPM = pi / 30.0
 FRONT, BACK = 0.25, 0.5

@@ -19,11 +19,11 @@ from write_fmu_pages import SAMPLES, STEP_SIZE, reference, write_references
 
 from loomfmu import LoomfmuError, components
 from loomfmu.cosim.importing import fmus
-from loomfmu.declarations import output, parameter
+from loomfmu.declaring.declarations import output, parameter
+from loomfmu.declaring.variables import Component, variables_of
 from loomfmu.fmi import builder
 from loomfmu.fmi.description import documentation
 from loomfmu.fmi.source import SourceError, flatten
-from loomfmu.variables import Component, variables_of
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 

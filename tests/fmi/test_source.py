@@ -8,10 +8,10 @@ from math import pi, sin
 import pytest
 
 from loomfmu.components import COMPONENTS
-from loomfmu.declarations import output, parameter
+from loomfmu.declaring.declarations import output, parameter
+from loomfmu.declaring.variables import Component, variables_of
 from loomfmu.fmi.source import SourceError, flatten
 from loomfmu.physics.shaft import carried
-from loomfmu.variables import Component, variables_of
 
 GAIN = 2.5
 COUNT = 3

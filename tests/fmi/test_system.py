@@ -5,11 +5,11 @@ from xml.etree.ElementTree import Element, fromstring
 import pytest
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.description.model_description3 import model_description3
 from loomfmu.fmi.description.terminals import FILE, terminal_files
 from loomfmu.fmi.system.system import Drive, Part, System, component_of
-from loomfmu.variables import variables_of
 
 MARGIN, TRAVEL, CLEARANCE = "belt.margin", "weft.travel", "belt.guide_clearance"
 OUTPUTS = frozenset([MARGIN, TRAVEL, "weft.velocity", "weft.acceleration", CLEARANCE, "heald_1.lift"])

@@ -10,9 +10,9 @@ from masters import oms_library
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.native.builder import build_native
 from loomfmu.fmi.native.platforms import host
-from loomfmu.variables import variables_of
 
 PARTS = {"shaft": "MainShaft", "dobby": "DobbyDrive", "heald_1": "HealdFrame"}
 SCENE = """

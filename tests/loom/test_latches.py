@@ -8,8 +8,8 @@ import pytest
 from loomfmu import Trace, evaluate, judge
 from loomfmu.cosim.claims.claims import read
 from loomfmu.cosim.scenes.scene import parse
+from loomfmu.declaring.variables import Beside
 from loomfmu.traces import Channel, TraceWriter
-from loomfmu.variables import Beside
 
 TIME = np.linspace(0.0, 1.0, 21)  # one turn in 1 s, a sample at every 18 deg
 TURN = 2.0 * np.pi

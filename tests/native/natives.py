@@ -9,7 +9,7 @@ from fmpy import calloc, free, platform
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing.fmus import Fmu
-from loomfmu.variables import NOTHING
+from loomfmu.declaring.variables import NOTHING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from loomfmu.declaring.variables import Component, variables_of
 from loomfmu.fmi.builder import guid
-from loomfmu.variables import Component, variables_of
 
 OK, WARNING, DISCARD, ERROR = range(4)
 LOGGER = CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)

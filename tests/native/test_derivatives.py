@@ -7,7 +7,7 @@ from driving import assign, inputs
 from natives import DISCARD, ERROR, OK
 
 from loomfmu.components import COMPONENTS
-from loomfmu.variables import variables_of
+from loomfmu.declaring.variables import variables_of
 
 DRIVEN = [name for name, component in COMPONENTS.items() if inputs(component)]
 SIZE = 2e-3

@@ -19,9 +19,9 @@ from natives import MEMORYLESS
 from natives3 import DISCARD, ERROR, OK, TIME, TYPES, Native3, Unpacked3
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.builder import guid
 from loomfmu.fmi.native import builder as native_builder
-from loomfmu.variables import variables_of
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

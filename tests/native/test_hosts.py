@@ -13,8 +13,8 @@ from attack_figures import record
 from fmpy import platform
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.native.builder import HEADERS, sources
-from loomfmu.variables import variables_of
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

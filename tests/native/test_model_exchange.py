@@ -12,8 +12,8 @@ from driving import assign, drawn_inputs
 from natives import ERROR, MEMORYLESS, OK, Native
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.native import builder as native_builder
-from loomfmu.variables import variables_of
 
 solved = pytest.mark.parametrize("name", MEMORYLESS)
 either_fmi = pytest.mark.parametrize("fmi", [2, 3])

@@ -14,12 +14,12 @@ from natives import MEMORYLESS, library
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
+from loomfmu.declaring.variables import variables_of
 from loomfmu.errors import LoomfmuError
 from loomfmu.fmi.builder import guid
 from loomfmu.fmi.native import builder as native_builder
 from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
 from loomfmu.fmi.native.platforms import check_platforms
-from loomfmu.variables import variables_of
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

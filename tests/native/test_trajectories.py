@@ -15,7 +15,7 @@ from natives import DISCARD, ERROR, OK
 
 import loomfmu
 from loomfmu.components import COMPONENTS
-from loomfmu.variables import Component, Variable, variables_of
+from loomfmu.declaring.variables import Component, Variable, variables_of
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

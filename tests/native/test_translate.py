@@ -12,11 +12,11 @@ import toys
 from compiled import WARNINGS, compiled, library
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import Problem, variables_of
 from loomfmu.fmi.native import translate as translating
 from loomfmu.fmi.native.builder import sources
 from loomfmu.fmi.native.tables import tables
 from loomfmu.fmi.native.translate import TranslationError, translate
-from loomfmu.variables import Problem, variables_of
 
 HELPERS = """
 int64_t whole(double x) { return python_whole(x); }
@@ -234,9 +234,9 @@ def test_what_is_not_in_the_subset(tmp_path, monkeypatch, line, reason):
     text = f'''
 from dataclasses import dataclass
 from math import sqrt
-from loomfmu.arrays import array
-from loomfmu.declarations import output
-from loomfmu.variables import Component
+from loomfmu.declaring.arrays import array
+from loomfmu.declaring.declarations import output
+from loomfmu.declaring.variables import Component
 TABLE = (1.0, 2.0)
 
 @dataclass(frozen=True)

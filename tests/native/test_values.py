@@ -8,7 +8,7 @@ from live_fmus import live
 from natives import DISCARD, ERROR, FATAL, OK
 
 from loomfmu.components import COMPONENTS, WeftInsertion
-from loomfmu.variables import variables_of
+from loomfmu.declaring.variables import variables_of
 
 __all__ = ["live"]
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from loomfmu.components import COMPONENTS
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi import builder
 from loomfmu.fmi.native import builder as native_builder
-from loomfmu.variables import variables_of
 
 WINE = shutil.which("wine64") or shutil.which("wine") or shutil.which("/usr/lib/wine/wine64")
 HERE = Path(__file__).parent

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from math import ceil, exp, floor, pi, sqrt
 
-from loomfmu.arrays import array
-from loomfmu.declarations import input_, output, parameter, state
-from loomfmu.variables import Component
+from loomfmu.declaring.arrays import array
+from loomfmu.declaring.declarations import input_, output, parameter, state
+from loomfmu.declaring.variables import Component
 
 TWO = 2
 STEEP = -1.5

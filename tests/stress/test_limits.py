@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from whole_loom import TURN
 
 from loomfmu.components import COMPONENTS, BeltMonitor, BeltWrap, DobbyDrive, PatternLock, WarpTension
+from loomfmu.declaring.variables import Component, Variable
 from loomfmu.physics.belt import NO_LIMIT, elastica_deflection, length_factor
 from loomfmu.physics.rotor_laws.rotor import dwell_angle
-from loomfmu.variables import Component, Variable
 
 MP = mpmath.mp.clone()
 MP.dps = 40

@@ -13,8 +13,8 @@ from reference import ALL_MACHINES, MP, Jet, acos, atan2, cos, sector_angle, sin
 from whole_loom import TURN
 
 from loomfmu.components import ReedBeatUp, WeftInsertion
+from loomfmu.declaring.variables import Component
 from loomfmu.machines import parameters
-from loomfmu.variables import Component
 
 CLEAR = 1e-9  # m or 1: how far both components stay clear of a dead point
 WEFT = (

@@ -8,7 +8,7 @@ from driving import declared
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
-from loomfmu.variables import Component
+from loomfmu.declaring.variables import Component
 
 RPM = pi / 30.0
 TURN = 2.0 * pi

@@ -7,7 +7,7 @@ import numpy as np
 from verdicts.drawing import MANY
 from verdicts.judging import Found
 
-from loomfmu.printed import as_csv
+from loomfmu.display.printed import as_csv
 
 HEADS = (
     *("family", "claim", "scenes", "verdicts", "false_holds", "false_fails", "wrong_from_1440", "undecided"),

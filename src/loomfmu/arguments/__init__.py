@@ -6,8 +6,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
+from ..display.printed import complain, say
 from ..errors import shown, suggestion
-from ..printed import complain, say
 from ..version import __version__
 from . import package, scenes, studies, traces
 

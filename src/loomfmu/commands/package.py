@@ -5,8 +5,8 @@ import shlex
 import shutil
 from pathlib import Path
 
+from ..display.printed import say
 from ..errors import LoomfmuError
-from ..printed import say
 from .options import platforms
 
 
@@ -64,9 +64,11 @@ def init(options: argparse.Namespace) -> int:
 
 def new(options: argparse.Namespace) -> int:
     """Write a folder for a mechanism of the user's own."""
-    from ..new import new as write
+    from ..cosim.scenes.keys import KEYS, TAKEN
+    from ..loom.standard_loom import COMPONENT_OF
+    from ..own.new import new as write
 
-    written = write(options.name, options.output)
+    written = write(options.name, (*KEYS, *TAKEN, *COMPONENT_OF), options.output)
     say(*written, "")
     say(f"next: cd {shlex.quote(str(written[0].parent))} && loomfmu run {written[-1].name}")
     return 0
@@ -74,8 +76,8 @@ def new(options: argparse.Namespace) -> int:
 
 def cache(options: argparse.Namespace) -> int:
     """Show the cache of built FMUs, or empty it."""
-    from ..fmi.cache import cache_directory
-    from ..fmi.cache_entries import clear, contents
+    from ..cache.directory import cache_directory
+    from ..cache.entries import clear, contents
 
     if options.clear:
         clear()

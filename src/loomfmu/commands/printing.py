@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .. import printed
-from ..printed import say
+from ..display import printed
+from ..display.printed import say
 
 if TYPE_CHECKING:
     from ..traces import Verdict

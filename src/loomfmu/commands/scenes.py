@@ -8,8 +8,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
-from ..printed import complain, say, warn
 from .options import pairs, platforms
 from .printing import print_verdicts, revolutions
 from .status import BEGUN, status_of

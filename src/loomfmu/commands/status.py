@@ -8,9 +8,9 @@ from collections.abc import Callable
 from signal import SIG_IGN, SIGINT, signal
 from time import perf_counter
 
-from .. import printed
+from ..display import printed
+from ..display.printed import complain
 from ..errors import LoomfmuError, described, why
-from ..printed import complain
 
 BEGUN = perf_counter()  # when the command started
 

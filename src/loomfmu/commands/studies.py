@@ -2,7 +2,7 @@
 
 import argparse
 
-from ..printed import warn
+from ..display.printed import warn
 from .options import pairs
 
 

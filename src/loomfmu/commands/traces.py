@@ -6,10 +6,11 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .. import printed, units
+from .. import units
+from ..display import printed
+from ..display.printed import say
 from ..errors import LoomfmuError
 from ..files import check_target
-from ..printed import say
 from .options import pairs, share
 from .printing import print_verdicts, revolutions
 

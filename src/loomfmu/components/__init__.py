@@ -4,7 +4,7 @@ from collections.abc import Iterator, MutableMapping
 from importlib import import_module
 from typing import Any
 
-from ..variables import Component
+from ..declaring.variables import Component
 
 MODULES = {
     "MainShaft": "main_shaft",

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..arrays import array
-from ..declarations import at_step_end, input_, output, parameter, state
-from ..variables import Component, Problem, Terminal
+from ..declaring.arrays import array
+from ..declaring.declarations import at_step_end, input_, output, parameter, state
+from ..declaring.variables import Component, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .terminals import HEAD
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declarations import auxiliary, input_, output, parameter
-from ..variables import EXTREMES, MIXED, Problem, Terminal
+from ..declaring.declarations import auxiliary, input_, output, parameter
+from ..declaring.variables import EXTREMES, MIXED, Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity, yarn_tension
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declarations import input_, output, parameter
+from ..declaring.declarations import input_, output, parameter
+from ..declaring.variables import NOTHING, PUBLISHED, Component
 from ..physics.belt_wrap import bending_moment, lever_arm, restraint_load
-from ..variables import NOTHING, PUBLISHED, Component
 
 
 @dataclass(slots=True)

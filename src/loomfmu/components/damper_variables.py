@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declarations import at_step_end, input_, output, parameter, state
-from ..variables import MIXED, Problem, Terminal
+from ..declaring.declarations import at_step_end, input_, output, parameter, state
+from ..declaring.variables import MIXED, Problem, Terminal
 from .terminals import CARRIER, FRAME
 from .threads import Threads
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import inf, sin
 from typing import ClassVar
 
-from ..declarations import indicator, input_, output, parameter
+from ..declaring.declarations import indicator, input_, output, parameter
+from ..declaring.variables import MIXED, NOTHING, Problem
 from ..physics.detaching_roller import (
     DRAFT_END,
     DRAFT_START,
@@ -15,7 +16,6 @@ from ..physics.detaching_roller import (
     top_roller_torque,
 )
 from ..physics.shaft import too_far
-from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 _OF_MOTION = ("shaft_angle", "shaft_velocity", "shaft_acceleration", "acceleration")

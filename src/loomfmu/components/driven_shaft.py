@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..arrays import array
-from ..declarations import at_step_end, input_, output, parameter, state
+from ..declaring.arrays import array
+from ..declaring.declarations import at_step_end, input_, output, parameter, state
+from ..declaring.variables import Component, Terminal
 from ..physics.driven_shaft import bulge_for, driven_motion, summed, work_of
-from ..variables import Component, Terminal
 from .terminals import SHAFT
 
 LOADS = 32  # mechanisms: 28 heald frames, dobby, both rapiers and reed

@@ -6,7 +6,7 @@ Where one mechanism takes the motion of two heads, `prefix` begins the names of 
 
 from typing import Any
 
-from ..declarations import input_
+from ..declaring.declarations import input_
 
 HEAD = "the rapier head"
 

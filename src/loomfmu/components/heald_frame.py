@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from math import fabs, inf, pi, sin
 from typing import ClassVar
 
-from ..arrays import array
-from ..declarations import at_step_end, indicator, input_, output, parameter
+from ..declaring.arrays import array
+from ..declaring.declarations import at_step_end, indicator, input_, output, parameter
+from ..declaring.variables import MIXED, NOTHING, Component, Problem, Terminal
 from ..physics.heald import crank_slope, lift_fraction, peg, slow_points_passed
 from ..physics.shaft import carried, too_far
-from ..variables import MIXED, NOTHING, Component, Problem, Terminal
 from .shaft_driven import turned_too_far
 from .terminals import FRAME, ROTOR
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from math import fabs, inf
 from typing import ClassVar
 
-from ..declarations import at_step_end, input_, output, parameter, state
+from ..declaring.declarations import at_step_end, input_, output, parameter, state
+from ..declaring.variables import Component, Problem, Terminal
 from ..physics.heald_play import distance, until_bar, until_free
 from ..physics.numerics.motion import joined, moved_on
-from ..variables import Component, Problem, Terminal
 from .terminals import FRAME
 
 MOST_FLIGHTS = 10000  # in one step

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import Any, ClassVar
 
-from ..declarations import output, parameter
+from ..declaring.declarations import output, parameter
+from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import shaft_motion
-from ..variables import NOTHING, Component, Terminal
 from .terminals import SHAFT
 
 WAVE = 16  # least steps in a ripple of the speed, and in the start-up

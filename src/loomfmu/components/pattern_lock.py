@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from math import fabs, floor, inf, pi
 from typing import Any, ClassVar
 
-from ..declarations import auxiliary, indicator, output, parameter
+from ..declaring.declarations import auxiliary, indicator, output, parameter
+from ..declaring.variables import MIXED, NOTHING, Problem
 from ..physics.pattern_lock import (
     available_time,
     engagement,
@@ -17,7 +18,6 @@ from ..physics.pattern_lock import (
     torque_speed_limit,
 )
 from ..physics.shaft import too_far
-from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from math import cos, fabs, inf, pi, sin, sqrt
 from typing import Any, ClassVar
 
-from ..declarations import auxiliary, output, parameter
+from ..declaring.declarations import auxiliary, output, parameter
+from ..declaring.variables import MIXED, NOTHING, Problem
 from ..physics.linkage import four_bar, four_bar_margin, wrapped
 from ..physics.reed import (
     dead_centre,
@@ -17,7 +18,6 @@ from ..physics.reed import (
     transmission_angle,
 )
 from ..physics.shaft import too_far
-from ..variables import MIXED, NOTHING, Problem
 from .shaft_driven import TOO_FAR, ShaftDriven
 
 

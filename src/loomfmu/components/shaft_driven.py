@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..declarations import at_step_end, input_, parameter
+from ..declaring.declarations import at_step_end, input_, parameter
+from ..declaring.variables import Component, Problem, Terminal
 from ..physics.shaft import carried
-from ..variables import Component, Problem, Terminal
 from .terminals import SHAFT
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..variables import Terminal
+from ..declaring.variables import Terminal
 
 SHAFT = Terminal("shaft", "Motion of the main shaft", ("angle", "velocity", "acceleration"))
 HEAD = Terminal("head", "Motion of the rapier head", ("travel", "velocity", "acceleration"))

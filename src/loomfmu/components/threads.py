@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..declarations import parameter
-from ..variables import Component
+from ..declaring.declarations import parameter
+from ..declaring.variables import Component
 
 
 @dataclass(slots=True)

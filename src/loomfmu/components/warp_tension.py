@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declarations import at_step_end, input_, output, state
+from ..declaring.declarations import at_step_end, input_, output, state
+from ..declaring.variables import MIXED, Terminal
 from ..physics.numerics.motion import joined, joined_area
 from ..physics.shaft import carried
 from ..physics.warp import (
@@ -17,7 +18,6 @@ from ..physics.warp import (
     turns_once,
 )
 from ..physics.warp_energy import thread_energy, thread_power
-from ..variables import MIXED, Terminal
 from .terminals import FRAME
 from .threads import Threads
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from math import fabs, floor, inf, pi
 from typing import ClassVar
 
-from ..declarations import auxiliary, output, parameter
+from ..declaring.declarations import auxiliary, output, parameter
+from ..declaring.variables import MIXED, NOTHING, Problem, Terminal
 from ..physics.linkage import four_bar_margin, spherical_margin, spherical_rocker, weft_motion, wrapped
 from ..physics.shaft import too_far
-from ..variables import MIXED, NOTHING, Problem, Terminal
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 

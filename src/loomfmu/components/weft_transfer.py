@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..declarations import at_step_end, indicator, output, parameter
+from ..declaring.declarations import at_step_end, indicator, output, parameter
+from ..declaring.variables import NOTHING, Component, Terminal
 from ..physics.shaft import carried
-from ..variables import NOTHING, Component, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity
 from .terminals import GIVER, TAKER
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar
 
-from ..arrays import array
-from ..declarations import auxiliary, output, parameter, state
-from ..variables import Problem, Terminal
+from ..declaring.arrays import array
+from ..declaring.declarations import auxiliary, output, parameter, state
+from ..declaring.variables import Problem, Terminal
 from .head_inputs import head_acceleration, head_travel, head_velocity
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD

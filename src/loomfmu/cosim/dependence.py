@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..declaring.upstream import sources_of, upstream
+from ..declaring.variables import EXTREMES, MOTION
 from ..errors import listed
 from ..traces.signals import Floats, Integers
-from ..upstream import sources_of, upstream
-from ..variables import EXTREMES, MOTION
 from .claims.claim import Claim
 from .master.grid import SAME, passed_by, period
 from .planning.requested import signals_of

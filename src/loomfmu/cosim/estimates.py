@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..declaring.variables import MOTION
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
-from ..variables import MOTION
 from .claims.claim import Claim
 from .dependence import Count, Dependence, Judged, Method
 from .importing.process import AVAILABLE

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from .. import printed
+from ..display import printed
+from ..display.progress import progress as progress_bar
 from ..errors import LoomfmuError, why
 from ..files import LONGEST_STEM, cannot_write, check_target, digest, short_stem
-from ..progress import progress as progress_bar
 from ..traces import PARTIAL, TRACE, Channel, Early, Trace, TraceWriter, Verdict, partial_of
 from ..traces.disk import check_room, largest, size_text
 from ..traces.places import abandoned

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .. import notebook
+from ..display import notebook
 from ..errors import LoomfmuError
 from ..traces import Early, Recording, Trace, Verdict
 from ..traces.verdict import HEADINGS, outcome

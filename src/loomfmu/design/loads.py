@@ -11,10 +11,10 @@ from math import pi
 
 from ..components.dobby.drive import DobbyDrive
 from ..components.heald_frame import HealdFrame
+from ..declaring.variables import variables_of
 from ..errors import LoomfmuError, listed
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..physics.warp import eye_pull
-from ..variables import variables_of
 from .quantities import Quantity, read, whole
 
 LAWS = next(v.choices for v in variables_of(DobbyDrive) if v.name == "law")

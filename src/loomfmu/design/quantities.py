@@ -10,8 +10,8 @@ from .. import units
 from ..components.belt_monitor import BeltMonitor
 from ..components.dobby.drive import DobbyDrive
 from ..components.heald_frame import HealdFrame
+from ..declaring.variables import Variable, variables_of
 from ..errors import LoomfmuError
-from ..variables import Variable, variables_of
 
 Quantity = float | str  # a number in SI, or a text such as "0.5 mm"
 

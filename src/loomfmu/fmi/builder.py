@@ -16,8 +16,8 @@ import fmpy
 
 from .. import units
 from ..components import COMPONENTS
+from ..declaring.variables import Component, variables_of
 from ..files import check_target, write_file, zip_with
-from ..variables import Component, variables_of
 from ..version import __version__
 from .description import documentation
 from .description.model_description import model_description

@@ -11,21 +11,19 @@ from functools import cache
 from pathlib import Path
 
 from .. import components
+from ..cache.entries import IDENTITIES, made_file
+from ..declaring.variables import Component
 from ..files import replace_file
-from ..variables import Component
-from .cache_entries import IDENTITIES, made_file
 from .native.platforms import SHIPPED, stamp
 
 PACKAGE = Path(__file__).parents[1]
 PARTS = (
     "components",
+    "declaring",
     "fmi",
     "machines",
     "physics",
-    "arrays.py",
-    "declarations.py",
     "units.py",
-    "variables.py",
     "version.py",
 )
 KINDS = (

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any, get_args
 
+from ..declaring.variables import Component, Variable, arrays_of, variables_of
 from ..errors import LoomfmuError
-from ..variables import Component, Variable, arrays_of, variables_of
 
 HEADER = '"""{name}, written by loomfmu from its component and the physics it uses; do not edit."""\n'
 

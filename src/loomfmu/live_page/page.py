@@ -19,6 +19,8 @@ from ..cosim.scenes.keys import UNIFORM
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.scene_files import files_of
 from ..cosim.whole import system
+from ..declaring.upstream import sources_of, upstream
+from ..declaring.variables import Variable, variables_of
 from ..errors import path_of
 from ..extras import need
 from ..files import check_target, starts_with, write_file
@@ -28,8 +30,6 @@ from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
 from ..report.templates import template
 from ..traces import Trace
-from ..upstream import sources_of, upstream
-from ..variables import Variable, variables_of
 from .claims import claims
 from .knobs import Knob, ends_of, knobs
 

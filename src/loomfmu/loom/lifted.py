@@ -7,9 +7,9 @@ from itertools import chain
 from typing import Any
 
 from ..cosim.claims.claim import Wired
+from ..declaring.upstream import sources_of, upstream
 from ..errors import LoomfmuError, listed, shown
 from ..traces import Signals
-from ..upstream import sources_of, upstream
 
 LENGTH = "pattern_length"  # of the pattern of a heald frame
 WORDS = [f"pattern_{number}" for number in range(1, 9)]  # parameters of a heald frame: picks, as bits

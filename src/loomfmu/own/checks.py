@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import pi
 from typing import Any
 
-from ..variables import Component, variables_of
+from ..declaring.variables import Component, variables_of
 
 SPEED = 40.0  # of the shaft [rad/s]
 FINE = 2.0 * pi / 1440.0  # rad

@@ -9,9 +9,9 @@ from dataclasses import Field, fields
 from typing import Any, NamedTuple
 
 from .. import units
-from ..declarations import MAKERS
+from ..declaring.declarations import MAKERS
+from ..declaring.variables import EXTREMES, MOTION, NOTHING, Component, Variable, variables_of
 from ..errors import suggestion
-from ..variables import EXTREMES, MOTION, NOTHING, Component, Variable, variables_of
 from . import memory
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import ModuleType
 
 from ..components import COMPONENTS
+from ..declaring.variables import Component
 from ..errors import LoomfmuError, described, suggestion
 from ..files import text_of
-from ..variables import Component
 from . import declared
 
 SPEC = re.compile(r"(?P<file>.+\.py)(?::(?P<name>[^:/\\]*))?")

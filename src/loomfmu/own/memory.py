@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-from ..variables import AT_STEP_END, Component, variables_of
+from ..declaring.variables import AT_STEP_END, Component, variables_of
 
 STEPS = 24
 MOST_LINES = 1_000_000  # that the steps may execute: an endless loop must not hang the loading

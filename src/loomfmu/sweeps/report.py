@@ -3,9 +3,10 @@
 import sys
 from typing import Any
 
-from .. import printed, units
+from .. import units
+from ..display import printed
+from ..display.printed import say
 from ..errors import listed
-from ..printed import say
 from ..traces.verdict import FAILS, HOLDS, UNDECIDED
 from .ranking import beyond, worst_rows
 from .run import Sweep

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..cosim.scenes.scene_files import files_of
+from ..display.printed import as_csv
+from ..display.progress import Advance
+from ..display.progress import progress as progress_bar
 from ..errors import LoomfmuError, described, path_of
 from ..extras import installed
 from ..files import ANY, write_file
-from ..printed import as_csv
-from ..progress import Advance
-from ..progress import progress as progress_bar
 from ..traces import TRACE
 from . import plan as plans
 from .place import check_place, cluster, local, resumable

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import notebook, units
+from .. import units
+from ..display import notebook
 from ..errors import LoomfmuError, shown, suggestion
 from ..extras import need
 from .axes import Axis, Range, whole

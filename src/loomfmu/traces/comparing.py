@@ -12,9 +12,9 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import units
+from ..declaring.upstream import sources_of, upstream
+from ..declaring.variables import SHARED
 from ..errors import LoomfmuError, listed, path_of, shown
-from ..upstream import sources_of, upstream
-from ..variables import SHARED
 from .comparison import Change, Comparison, Difference
 from .meeting import Meeting, meet
 from .reader import Trace

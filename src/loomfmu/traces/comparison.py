@@ -5,7 +5,8 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .. import notebook, printed, units
+from .. import units
+from ..display import notebook, printed
 from ..errors import listed
 
 SIGNAL_HEADINGS = ("signal", "first at", "", "", "largest difference", "relative", "at")

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import units
+from ..declaring.variables import SHARED
 from ..errors import LoomfmuError, shown
-from ..variables import SHARED
 from .comparison import Change, Place
 from .reader import Trace
 from .signals import Floats

@@ -8,9 +8,9 @@ from typing import Any
 
 import h5py
 
+from ..declaring.variables import SHARED
 from ..errors import LoomfmuError
 from ..files import source
-from ..variables import SHARED
 from .disk import superblock
 from .layout import Foreign, has
 from .places import place_of

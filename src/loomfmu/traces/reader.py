@@ -12,11 +12,12 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import notebook, units
+from .. import units
 from ..components import COMPONENTS
+from ..declaring.variables import SHARED, variables_of
+from ..display import notebook
 from ..errors import LoomfmuError, shown
 from ..units import UnitError
-from ..variables import SHARED, variables_of
 from .layout import BESIDE, attributes, check_link, column, has, legible, member
 from .opened import TraceFile
 from .signals import Floats, Signals

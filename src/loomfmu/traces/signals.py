@@ -11,9 +11,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ..declaring.variables import ALONE, Beside
 from ..errors import LoomfmuError, shown, suggestion
 from ..units import unit
-from ..variables import ALONE, Beside
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]

@@ -6,7 +6,8 @@ from dataclasses import MISSING, dataclass, field, fields
 from types import NoneType
 from typing import Any, Self
 
-from .. import notebook, units
+from .. import units
+from ..display import notebook
 from ..errors import shown
 
 HEADINGS = ("verdict", "claim", "signal", "worst", "bound", "distance", "error", "at", "note")

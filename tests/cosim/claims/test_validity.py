@@ -8,8 +8,8 @@ import pytest
 
 from loomfmu import Trace, judge
 from loomfmu.cli import main
+from loomfmu.declaring.variables import Beside
 from loomfmu.traces import Channel, TraceWriter
-from loomfmu.variables import Beside
 
 TIME = np.linspace(0.0, 1.0, 11)
 TURN = 2.0 * math.pi

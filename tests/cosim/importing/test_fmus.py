@@ -10,13 +10,13 @@ import pytest
 
 import loomfmu
 from loomfmu import LoomfmuError
+from loomfmu.cache.directory import cache_directory
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.built import file_of, run_files
 from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.fmi.builder import zipped
-from loomfmu.fmi.cache import cache_directory
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.native import platforms
 from loomfmu.sweeps.plan import load

@@ -14,6 +14,7 @@ from odd_components import odd
 
 import loomfmu
 from loomfmu import LoomfmuError
+from loomfmu.cache.entries import CHECKSUM
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master import steppers
 from loomfmu.cosim.master.grid import Grid, chosen, uniform
@@ -22,7 +23,6 @@ from loomfmu.cosim.planning.pruning import prune
 from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.fmi.cache_entries import CHECKSUM
 from loomfmu.fmi.native.builder import build_native
 from loomfmu.fmi.native.libraries import library_of
 from loomfmu.fmi.native.platforms import host

@@ -10,9 +10,9 @@ from live_fmus import COMPONENTS, NAMES, excited
 
 from loomfmu import units
 from loomfmu.cosim.importing import fmus
+from loomfmu.declaring.variables import Component, Variable, variables_of
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.live.live_slave import CATEGORIES
-from loomfmu.variables import Component, Variable, variables_of
 from loomfmu.version import __version__
 
 every_fmu = pytest.mark.parametrize("name", NAMES)

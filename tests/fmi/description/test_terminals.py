@@ -10,9 +10,9 @@ from live_fmus import COMPONENTS, NAMES
 from lxml import etree
 
 from loomfmu.cosim.importing import fmus
+from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.terminals import FILE
 from loomfmu.fmi.native import builder as native_builder
-from loomfmu.variables import variables_of
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"

@@ -30,8 +30,8 @@ from live_fmus import (
 from loomfmu import units
 from loomfmu.components import DobbyDrive, HealdFrame, WeftInsertion
 from loomfmu.cosim.importing import fmus
+from loomfmu.declaring.variables import Variable, variables_of
 from loomfmu.fmi.live.live_slave import CATEGORIES, CAUSALITIES
-from loomfmu.variables import Variable, variables_of
 
 __all__ = ["live"]
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import fabs, floor, inf, pi, sin
 from typing import ClassVar
 
-from ...declarations import indicator, output, parameter
+from ...declaring.declarations import indicator, output, parameter
+from ...declaring.variables import MIXED, NOTHING, Terminal
 from ...physics.heald import crank_slope, lift_fraction
 from ...physics.rotor_laws.mechanisms import (
     NONCIRCULAR_GEARS,
@@ -19,7 +20,6 @@ from ...physics.rotor_laws.rotor import highest_rates
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, cam_phase
 from ...physics.rotor_laws.table import TABLE
 from ...physics.shaft import too_far
-from ...variables import MIXED, NOTHING, Terminal
 from ..terminals import ROTOR
 from .laws import RotorLaws
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 from math import asin, fabs, floor, inf, pi, sqrt
 from typing import Any, ClassVar
 
+from ...declaring.variables import Problem
 from ...physics.numerics.brackets import nearer_root
 from ...physics.numerics.spline import cubic_piece, slope_extremes, stretch_above, turning_points
 from ...physics.rotor_laws.mechanisms import (
@@ -19,7 +20,6 @@ from ...physics.rotor_laws.plateau import PLATEAU, plateau_law
 from ...physics.rotor_laws.rotor import dwell_angle, rotor_law
 from ...physics.rotor_laws.shed_cam import SPLINE_CAM, not_a_knot
 from ...physics.rotor_laws.table import TABLE, bend_weight
-from ...variables import Problem
 from ..shaft_driven import TOO_FAR
 from .parameters import LawParameters
 

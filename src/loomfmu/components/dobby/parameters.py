@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import pi
 
-from ...arrays import array
-from ...declarations import auxiliary, parameter
+from ...declaring.arrays import array
+from ...declaring.declarations import auxiliary, parameter
 from ..shaft_driven import ShaftDriven
 
 

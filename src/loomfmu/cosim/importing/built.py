@@ -7,12 +7,12 @@ from typing import Literal, get_args
 
 import fmpy
 
+from ...cache.entries import FMUS, has_file, made_file
 from ...components import COMPONENTS
+from ...declaring.variables import Component
 from ...errors import LoomfmuError, shown, suggestion
 from ...fmi import identities
-from ...fmi.cache_entries import FMUS, has_file, made_file
 from ...fmi.native import platforms
-from ...variables import Component
 
 Flavour = Literal["live", "native"]
 FLAVOURS: tuple[str, ...] = get_args(Flavour)

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from ... import units
+from ...declaring.variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from ...errors import LONGEST_NAME, check_text, shown
 from ...fmi.description.references import FIRST_REFERENCE, FMI_TYPES
-from ...variables import ALONE, SHARED, Beside, Component, Variable, beside, variables_of
 from .ports import BASES, RANGES, Definition, Port, Value, own_definition, own_name, shown_in
 
 # FMI type -> how scenes and the master know it; what is not here, such as String, is left out

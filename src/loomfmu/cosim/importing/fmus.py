@@ -12,14 +12,14 @@ from typing import Any
 
 import fmpy
 
+from ...cache.entries import UNPACKED, folder
 from ...components import COMPONENTS
+from ...declaring.variables import MOTION, Component
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...extras import install
 from ...files import check_archive, source
 from ...fmi import identities
-from ...fmi.cache_entries import UNPACKED, folder
 from ...fmi.native import platforms
-from ...variables import MOTION, Component
 from ...version import __version__
 from .built import (
     FLAVOURS,

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ... import units
+from ...declaring.variables import ALONE, Beside
 from ...errors import LoomfmuError, listed, misspelt, numbered, shown
-from ...variables import ALONE, Beside
 
 Value = float | int | bool
 _WHOLE = re.compile(r"\s*[-+]?[0-9]{1,400}\s*")  # as a real a longer one is infinite

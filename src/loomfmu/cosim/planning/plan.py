@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ... import printed
+from ...display import printed
 from ...traces import ROWS, Channel, Early, Recording
 from ..importing import fmus
 from ..importing.slave import Ended

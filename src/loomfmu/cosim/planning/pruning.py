@@ -8,7 +8,7 @@ Third-party FMUs always run: they may be there for what they do, such as to log 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from ...upstream import sources_of, upstream
+from ...declaring.upstream import sources_of, upstream
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.instances import Instance, altered

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
+from ...declaring.variables import MOTION, TIME, Beside, variables_of
 from ...errors import LoomfmuError, suggestion
-from ...variables import MOTION, TIME, Beside, variables_of
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, place_of, read
 from ..claims.signal_claims import Bounded, check_speed

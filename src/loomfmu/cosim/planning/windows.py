@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...declaring.variables import MOTION, Component, variables_of
 from ...errors import LoomfmuError
 from ...traces import Recording
-from ...variables import MOTION, Component, variables_of
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order

@@ -6,9 +6,9 @@ from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
+from ...declaring.variables import AT_STEP_END, Component, Variable, variables_of
 from ...errors import LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
-from ...variables import AT_STEP_END, Component, Variable, variables_of
 from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
 from .graph import Wire

@@ -6,8 +6,8 @@ from typing import Any
 
 from ... import machines
 from ...components import COMPONENTS
+from ...declaring.variables import variables_of
 from ...errors import LoomfmuError, listed, shown, suggestion
-from ...variables import variables_of
 from .instance_tables import fmu_of
 from .instances import Instance
 from .keys import TIMES, WHOLE

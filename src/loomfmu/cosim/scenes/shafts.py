@@ -6,7 +6,7 @@ from typing import Any
 from ...components import COMPONENTS
 from ...components.shaft_driven import ShaftDriven
 from ...components.terminals import SHAFT
-from ...variables import Component, variables_of
+from ...declaring.variables import Component, variables_of
 from ..standard import standard
 from .usual_wires import terminals
 

@@ -5,8 +5,8 @@ from collections.abc import Collection, Container, Iterable, Mapping
 from typing import Any
 
 from ...components import COMPONENTS
+from ...declaring.variables import Component, Terminal, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError, suggestion
-from ...variables import Component, Terminal, Variable, arrays_of, variables_of
 from ..standard import standard
 
 ALL = "*."  # in the place of an instance: the output of that name of every instance that has it

@@ -10,13 +10,13 @@ import math
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
+from ...declaring.variables import AT_STEP_END
 from ...errors import LoomfmuError
 from ...files import check_target, write_file, zip_with
 from ...fmi import builder
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
 from ...fmi.description.xml_text import text_of
 from ...fmi.native import platforms as native
-from ...variables import AT_STEP_END
 from ...version import __version__
 from ..importing import fmus
 from ..importing.fmus import Fmu, Port, Value

@@ -11,9 +11,9 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
+from ...cache.entries import PACKAGES, folder
 from ...errors import LoomfmuError
 from ...files import check_archive, source
-from ...fmi.cache_entries import PACKAGES, folder
 
 LARGEST_XML = 100_000_000  # bytes of one XML file
 

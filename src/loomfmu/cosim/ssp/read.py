@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
+from ...declaring.variables import AT_STEP_END
 from ...errors import LoomfmuError, shown, why
 from ...own.declared import PARAMETER_SETS
-from ...variables import AT_STEP_END
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu

@@ -7,7 +7,7 @@ import re
 import threading
 
 from ... import units
-from ...variables import EXTREMES, NOTHING, Component, Variable, variables_of
+from ...declaring.variables import EXTREMES, NOTHING, Component, Variable, variables_of
 from . import equations
 
 RENDERING = threading.Lock()  # mdurl's table of characters is not safe for threads while it is made

@@ -2,7 +2,7 @@
 
 from xml.etree.ElementTree import Element, SubElement
 
-from ...variables import NOTHING, TIME, Component, Variable, variables_of
+from ...declaring.variables import NOTHING, TIME, Component, Variable, variables_of
 from .model_description import (
     about,
     attributes_of,

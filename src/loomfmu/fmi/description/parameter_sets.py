@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element, SubElement
 
 from ... import units
+from ...declaring.variables import Component, variables_of
 from ...machines import HEADS, MACHINES, Value, parameters
-from ...variables import Component, variables_of
 from .xml_text import text_of
 
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"

@@ -5,7 +5,7 @@ FMI 2.0.4 takes the file over from FMI 3.0 as it is, under the same name.
 
 from xml.etree.ElementTree import Element, SubElement
 
-from ...variables import Component, variables_of
+from ...declaring.variables import Component, variables_of
 from .xml_text import text_of
 
 FILE = "terminalsAndIcons/terminalsAndIcons.xml"

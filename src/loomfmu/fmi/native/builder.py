@@ -6,8 +6,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ...components import COMPONENTS
+from ...declaring.variables import Component
 from ...files import write_file
-from ...variables import Component
 from ...version import __version__
 from ..builder import (
     FMU,

@@ -9,9 +9,9 @@ import zipfile
 from pathlib import Path
 from threading import BoundedSemaphore
 
+from ...cache.directory import compiler_environment
 from ...errors import LoomfmuError
 from ...extras import install
-from ..cache import compiler_environment
 from .fat_binary import fat_binary
 from .platforms import COMPILER, HERE, PLATFORMS, SHIPPED, compiler, platform_of, stamp
 from .sources import code_of

@@ -9,9 +9,9 @@ from collections.abc import Iterable
 from functools import cache, partial
 from pathlib import Path
 
+from ...cache.entries import STEPPER, made_file
 from ...errors import LoomfmuError
 from ...files import ANY, write_file
-from ..cache_entries import STEPPER, made_file
 from . import platforms
 from .sources import code_of
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ... import units
-from ...variables import AT_STEP_END, NOTHING, Component, Variable, variables_of
+from ...declaring.variables import AT_STEP_END, NOTHING, Component, Variable, variables_of
 from ..description.references import FIRST_REFERENCE
 from ..live.live_slave import CATEGORIES, DISCARD, ERROR, WARNING
 from .c_code import c_name

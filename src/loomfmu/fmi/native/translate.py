@@ -14,8 +14,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from ...declaring.variables import Component, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError
-from ...variables import Component, Variable, arrays_of, variables_of
 from .. import source
 from .c_code import TYPES, Scope, Untranslatable, c_name, comment, literal
 from .c_program import Program

@@ -4,7 +4,7 @@ import hashlib
 import uuid
 from pathlib import Path
 
-from ...variables import Component
+from ...declaring.variables import Component
 from ...version import __version__
 from ..builder import NAMESPACE
 from ..description import documentation

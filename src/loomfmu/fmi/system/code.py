@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterable, Iterator
 
+from ...declaring.variables import Variable, variables_of
 from ...errors import LoomfmuError
-from ...variables import Variable, variables_of
 from ..native.c_code import TYPES, c_name, literal
 from ..native.tables import Part as Stepped
 from ..native.translate import Translation, translate

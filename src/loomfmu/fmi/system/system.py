@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from ...variables import TIME, Component, Problem, Terminal, Variable, variables_of
+from ...declaring.variables import TIME, Component, Problem, Terminal, Variable, variables_of
 
 Value = float | int | bool
 Reach = Callable[[str], tuple[str, ...]]

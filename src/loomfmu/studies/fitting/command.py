@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from ...cosim.reading import checked
+from ...display.printed import say, warn
 from ...errors import LoomfmuError
 from ...files import check_target
-from ...printed import say, warn
 from ...report import pictures
 from .. import rewritten
 from .fit import fit

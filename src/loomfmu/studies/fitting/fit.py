@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ... import notebook
 from ...cosim.provenance import texts
 from ...cosim.reading import checked, protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
+from ...display import notebook
 from ...errors import LoomfmuError, listed, shown, suggestion
 from .. import rewritten
 from ..span import Span, set_twice, span_of, warnings_of

@@ -1,7 +1,7 @@
 """A fit as people read it."""
 
-from ... import printed
-from ...printed import say
+from ...display import printed
+from ...display.printed import say
 from .fit import HEADINGS, Fit, rows
 
 

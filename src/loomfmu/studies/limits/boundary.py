@@ -11,8 +11,8 @@ from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
+from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, shown
-from ...progress import progress as progress_bar
 from ..span import Span, set_twice, span_of
 from .limits import POINTS, limits_of, whole_points
 from .results import Boundary, Limits

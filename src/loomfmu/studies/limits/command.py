@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ...display.printed import say, warn
 from ...errors import LoomfmuError
 from ...files import Kind, check_target, write_file
-from ...printed import say, warn
 from ...report import pictures
 from .boundary import limit
 from .report import CSV_LIMITS, boundary_table, show, show_boundary, table

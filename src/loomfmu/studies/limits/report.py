@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from ... import printed
-from ...printed import say
+from ...display import printed
+from ...display.printed import say
 from ..span import Span
 from .results import (
     HEADINGS,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from ... import notebook
+from ...display import notebook
 from ...errors import listed
 from ...traces import Verdict
 from ..span import Span

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...printed import warn
+from ...display.printed import warn
 from .optimize import optimize
 from .report import show
 

@@ -15,10 +15,10 @@ import numpy as np
 from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
+from ...display.printed import as_csv
 from ...errors import listed
 from ...extras import install, installed
 from ...files import ANY, write_file
-from ...printed import as_csv
 from ...sweeps.directory import files
 from ...traces import Verdict
 from .. import rewritten

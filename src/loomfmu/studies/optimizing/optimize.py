@@ -10,9 +10,9 @@ from pathlib import Path
 from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
 from ...cosim.scenes.scene_files import files_of
+from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, path_of
 from ...extras import need
-from ...progress import progress as progress_bar
 from ...sweeps.place import check_place, cluster, local, resumable
 from ...sweeps.worker import job_of
 from . import study as studies

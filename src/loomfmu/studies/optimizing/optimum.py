@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ... import notebook, units
+from ... import units
 from ...cosim.claims.claims import called
+from ...display import notebook
 from ...errors import listed
 from ...sweeps.varied import Value
 from ...traces import Verdict

@@ -1,7 +1,7 @@
 """The best design as people read it in a terminal."""
 
-from ... import printed
-from ...printed import say
+from ...display import printed
+from ...display.printed import say
 from .optimum import CLAIMS, HEADINGS, Optimum, claim_rows, conclusion, front_table, value_rows
 
 

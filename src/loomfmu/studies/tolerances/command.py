@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from ...printed import say, warn
+from ...display.printed import say, warn
 from ...report import pictures
 from .report import draw, show
 from .tolerances import tolerances

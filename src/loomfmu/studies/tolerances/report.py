@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from ... import printed
-from ...printed import say
+from ...display import printed
+from ...display.printed import say
 from ...traces.plotting import COLOURS, figure, fixed_style
 from .tolerances import HEADINGS, Tolerances, rows
 

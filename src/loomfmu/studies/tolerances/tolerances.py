@@ -9,15 +9,15 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from ... import notebook
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
 from ...cosim.run import prepare
 from ...cosim.scenes.headings import heading
 from ...cosim.scenes.scene import Scene
+from ...display import notebook
+from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, listed
-from ...progress import progress as progress_bar
 from ...traces import Verdict
 from ..evaluations import Evaluations
 from ..span import Span, set_twice, span_of, warnings_of

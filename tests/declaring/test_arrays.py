@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from loomfmu.arrays import array
-from loomfmu.declarations import output, parameter, state
-from loomfmu.variables import Component, arrays_of, variables_of
+from loomfmu.declaring.arrays import array
+from loomfmu.declaring.declarations import output, parameter, state
+from loomfmu.declaring.variables import Component, arrays_of, variables_of
 
 
 @dataclass(slots=True)

@@ -8,9 +8,9 @@ from dataclasses import MISSING, Field, dataclass, fields, replace
 from itertools import groupby
 from typing import Any, ClassVar, NamedTuple
 
-from . import units
+from .. import units
+from ..errors import LoomfmuError, numbered
 from .declarations import MAKERS
-from .errors import LoomfmuError, numbered
 
 LARGEST_INTEGER = 2147483647  # of FMI 2
 AT_STEP_END = "inputs_at_step_end"  # false where inputs are values at the start of the step

@@ -13,8 +13,8 @@ def array(declarations: Iterable[Any]) -> Any:
     the component read all of them as a tuple, so counted from 0, and set all of them at once:
 
     >>> from dataclasses import dataclass
-    >>> from loomfmu.declarations import parameter
-    >>> from loomfmu.variables import Component
+    >>> from loomfmu.declaring.declarations import parameter
+    >>> from loomfmu.declaring.variables import Component
     >>> @dataclass(slots=True)
     ... class Pegs(Component):
     ...     peg: tuple[int, ...] = array(parameter("1", start, "A peg") for start in (1, 0, 1))

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import loomfmu
-from loomfmu import LoomfmuError, progress
+from loomfmu import LoomfmuError
+from loomfmu.display import progress
 from loomfmu.traces import Verdict
 
 SCENE = """

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from loomfmu import LoomfmuError, cli
+from loomfmu.cache import entries
+from loomfmu.cache.entries import FMUS, UNPACKED, folder, made_file
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master import steppers
-from loomfmu.fmi import cache_entries
-from loomfmu.fmi.cache_entries import FMUS, UNPACKED, folder, made_file
 from loomfmu.fmi.native.libraries import library_of
 
 SIMS = Path(__file__).parents[2] / "sims"
@@ -225,7 +225,7 @@ def test_an_entry_in_use_is_kept(own_cache: Path) -> None:
     top = entry()
     os.utime(top, (0, 0))
     entry()
-    assert time.time() - top.stat().st_mtime < cache_entries.DAY
+    assert time.time() - top.stat().st_mtime < entries.DAY
 
 
 def test_the_command_shows_the_cache_and_empties_it(
@@ -250,7 +250,7 @@ def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path)
     shutil.rmtree(kind, ignore_errors=True)
     kind.parent.mkdir(parents=True, exist_ok=True)
     kind.symlink_to(elsewhere)
-    cache_entries.clear()
+    entries.clear()
     assert kept.is_dir()
 
 
@@ -258,7 +258,7 @@ USED = 64 * "0"
 USES = """
 import sys
 from pathlib import Path
-from loomfmu.fmi.cache_entries import FMUS, made_file
+from loomfmu.cache.entries import FMUS, made_file
 path = made_file(FMUS, "0" * 64, "x.fmu", lambda: b"content")
 print("ready", flush=True)
 sys.stdin.readline()

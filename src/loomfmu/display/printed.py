@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Iterable, Sequence
 from typing import TextIO
 
-from .errors import LoomfmuError
+from ..errors import LoomfmuError
 
 COLOURS = {"FAILS": "bold red", "undecided": "bold yellow"}  # of verdicts
 INDENT = "  "  # of the lines of an entry but the first

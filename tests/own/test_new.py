@@ -18,10 +18,12 @@ import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.new import new
+from loomfmu.cosim.scenes.keys import KEYS
+from loomfmu.loom.standard_loom import COMPONENT_OF
 from loomfmu.own import checks, load
+from loomfmu.own.new import new
 
-TRIAL = Path(__file__).parent / "own" / "picking_cam"  # what was written by hand
+TRIAL = Path(__file__).with_name("picking_cam")  # what was written by hand
 SCENE = """
 revolutions = 3
 steps_per_revolution = {steps}
@@ -39,7 +41,7 @@ bound = "10 N"
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that the command writes."""
-    return new("PickingCam", tmp_path_factory.mktemp("new"))[0].parent
+    return new("PickingCam", (), tmp_path_factory.mktemp("new"))[0].parent
 
 
 @pytest.fixture
@@ -148,7 +150,7 @@ def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[st
 )
 def test_names_that_cannot_be_used_are_refused(tmp_path: Path, name: str, said: str) -> None:
     with pytest.raises(LoomfmuError, match=said):
-        new(name, tmp_path)
+        new(name, (*KEYS, *COMPONENT_OF), tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -413,7 +415,7 @@ def test_a_sweep_of_it_runs_in_several_processes(cam: Path) -> None:
 
 @pytest.mark.slow  # it builds for all platforms
 def test_the_commands_of_its_page_work(tmp_path: Path) -> None:
-    page = (Path(__file__).parents[1] / "docs" / "own_mechanism.md").read_text()
+    page = (Path(__file__).parents[2] / "docs" / "own_mechanism.md").read_text()
     section = page[page.index("## Start") : page.index("## In a scene")]
     commands = [line.strip() for line in section.splitlines() if line.startswith("    ")]
     assert len(commands) == 8
@@ -431,9 +433,9 @@ def test_the_commands_of_its_page_work(tmp_path: Path) -> None:
 def test_the_message_on_its_page_is_the_one_that_is_given(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    page = (Path(__file__).parents[1] / "docs" / "own_mechanism.md").read_text()
+    page = (Path(__file__).parents[2] / "docs" / "own_mechanism.md").read_text()
     (shown,) = [line.strip() for line in page.splitlines() if line.startswith("    loomfmu: ")]
-    monkeypatch.chdir(new("PickingCam", tmp_path)[0].parent)
+    monkeypatch.chdir(new("PickingCam", (), tmp_path)[0].parent)
     text = Path("picking_cam.py").read_text()
     Path("picking_cam.py").write_text(text.replace('rate="velocity"', 'rate="velocty"'))
     assert main(["build", "picking_cam.py"]) == 2

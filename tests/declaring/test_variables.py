@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from loomfmu.declarations import input_, output, parameter, state
-from loomfmu.variables import Component, Problem, variables_of
+from loomfmu.declaring.declarations import input_, output, parameter, state
+from loomfmu.declaring.variables import Component, Problem, variables_of
 
 
 @dataclass(slots=True)

@@ -1,7 +1,7 @@
 """The declarations of a component's variables, from which everything else is derived.
 
 A component is a dataclass whose fields are made by `parameter`, `input_`, `output`, `state` and `auxiliary`,
-or by `loomfmu.arrays.array` of these; the attributes of `variables.Variable` explain their arguments.
+or by `arrays.array` of these; the attributes of `variables.Variable` explain their arguments.
 The model description, the FMU's state, the attributes of the traces, the variable tables of the
 documentation, the checks of limits and the C struct all come from `variables_of(component)`.
 """

@@ -5,15 +5,14 @@ import re
 import secrets
 import shutil
 import sys
+from collections.abc import Collection
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-from . import mechanism
-from .components import COMPONENTS
-from .cosim.scenes.keys import KEYS, TAKEN
-from .errors import LoomfmuError
-from .files import ANY, cannot_write, check_target, put, write_file
-from .loom.standard_loom import COMPONENT_OF
+from .. import mechanism
+from ..components import COMPONENTS
+from ..errors import LoomfmuError
+from ..files import ANY, cannot_write, check_target, put, write_file
 
 NAME = re.compile("[A-Z][A-Za-z0-9]*")
 TEMPLATE = Path(__file__).with_name("template")
@@ -29,12 +28,13 @@ MODULES = ("loomfmu", "conftest")  # not among the installed packages where this
 FILES = ("eccentric.py", "test_eccentric.py", "README.md", "eccentric.toml")
 
 
-def new(name: str, directory: Path = Path()) -> list[Path]:
+def new(name: str, of_scenes: Collection[str], directory: Path = Path()) -> list[Path]:
     """Write the folder of a mechanism called `name`, such as PickingCam, into a directory; returns the files.
 
+    `of_scenes` are names that mean something else in a scene.
     Raises LoomfmuError for a name that cannot be used or a folder that exists; nothing has been written then.
     """
-    own = _file_name(name)
+    own = _file_name(name, of_scenes)
     folder = directory / own
     if folder.exists() or folder.is_symlink():
         raise LoomfmuError(f"{folder} already exists; nothing was written")
@@ -54,7 +54,7 @@ def new(name: str, directory: Path = Path()) -> list[Path]:
     return [folder / target for target in targets.values()]
 
 
-def _file_name(name: str) -> str:
+def _file_name(name: str, of_scenes: Collection[str]) -> str:
     """The name of a component's file, instance and folder: PickingCam -> picking_cam."""
     own = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
     if not NAME.fullmatch(name) or keyword.iskeyword(name):
@@ -66,7 +66,7 @@ def _file_name(name: str) -> str:
         reason = "it is one of loomfmu's components"
     elif name in mechanism.__all__:
         reason = "loomfmu.mechanism has this name"
-    elif own in (*KEYS, *TAKEN, *COMPONENT_OF):
+    elif own in of_scenes:
         reason = f"scenes use the name {own} themselves"
     elif keyword.iskeyword(own):
         reason = f"{own} is a Python keyword"

@@ -12,9 +12,10 @@ import pytest
 from live_fmus import in_a_process
 
 from loomfmu import LoomfmuError
+from loomfmu.cache import directory
+from loomfmu.cache.directory import cache_directory, compiler_environment
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi import builder, cache
-from loomfmu.fmi.cache import cache_directory, compiler_environment
+from loomfmu.fmi import builder
 
 SIMS = Path(__file__).parents[2] / "sims"
 unix = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes of files are those of Unix")
@@ -109,7 +110,7 @@ def test_a_named_cache_that_cannot_be_one_is_refused(tmp_path: Path, monkeypatch
 def test_a_file_in_the_place_of_the_users_cache_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(cache, "_temporary", [])
+    monkeypatch.setattr(directory, "_temporary", [])
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     (tmp_path / "loomfmu").touch()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -124,11 +125,11 @@ def test_a_file_in_the_place_of_the_users_cache_is_named(
 def test_another_users_cache_is_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(cache, "_temporary", [])
+    monkeypatch.setattr(directory, "_temporary", [])
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     cache_directory()
     monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)
-    monkeypatch.setattr(cache, "SYSTEM", -1)
+    monkeypatch.setattr(directory, "SYSTEM", -1)
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     found = cache_directory()
@@ -172,7 +173,7 @@ def test_the_processes_of_a_run_share_the_temporary_one(no_home: Path, tmp_path:
     text = in_a_process(
         """
 import multiprocessing
-from loomfmu.fmi.cache import cache_directory
+from loomfmu.cache.directory import cache_directory
 if __name__ == "__main__":
     print(cache_directory() == cache_directory())
     with multiprocessing.get_context("spawn").Pool(1) as pool:

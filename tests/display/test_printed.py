@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import loomfmu
-from loomfmu import printed
+from loomfmu.display import printed
 
 HEADINGS = ("verdict", "claim", "value")
 ROWS = [("FAILS", "a long claim about something", "1 mm"), ("holds", "another", "")]

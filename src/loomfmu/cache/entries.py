@@ -21,7 +21,7 @@ from types import ModuleType
 
 from ..errors import LoomfmuError
 from ..files import cannot_write, put
-from .cache import cache_directory, is_private
+from .directory import cache_directory, is_private
 
 fcntl: ModuleType | None
 try:

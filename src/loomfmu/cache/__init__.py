@@ -1,0 +1,1 @@
+"""The cache: FMUs, packages and libraries, built or unpacked once."""

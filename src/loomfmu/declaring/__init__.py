@@ -1,0 +1,1 @@
+"""Declaring a component: its variables, and what follows from them."""
