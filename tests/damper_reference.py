@@ -4,8 +4,9 @@ Equations and contact rules stand here a second time, as an initial value proble
 the component or of `loomfmu.physics.damper` is used but the damping ratio of a stop.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import copysign, log2, pi, sqrt
 from typing import Any
 
@@ -78,7 +79,7 @@ class Carrier:
         self.stop_damping = 2.0 * ratio * sqrt(self.stop_spring * self.mass)
         self.start = (damper.start_displacement, damper.start_rate)
 
-    def press(self, side: float, z: float, v: float) -> float:
+    def press(self, side: float, z: Any, v: Any) -> Any:
         """Force of a stop, were it to act."""
         return self.stop_spring * (side * z - self.travel) + self.stop_damping * side * v
 
@@ -92,7 +93,7 @@ class Carrier:
 
         def passed(value: Callable[[float, float], float], direction: int) -> Callable[..., float]:
             def event(_time: float, state: np.ndarray) -> float:
-                return value(*state)
+                return value(*state[:2])
 
             event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
             return event
@@ -128,23 +129,34 @@ class Carrier:
         self, acceleration: Load, stops: Sequence[float], times: np.ndarray, load: Load = unloaded
     ) -> Trace:
         """Trace at sorted times from 0 to the last stop; the frame's acceleration is smooth between these."""
-        state, contact, side, contacts = np.array(self.start), FREE, 0.0, 0
-        rows = np.zeros((len(times), 3))
-        edges: list[tuple[float, float]] = []
-        begin = 0.0
+
+        def motion(contact: str, side: float, time: float, state: np.ndarray) -> tuple[float, float]:
+            z, v = state
+            return v, (load(time) - self.force(contact, side, z, v)) / self.mass - acceleration(time)
+
+        rows, contacts, edges = np.zeros((len(times), 3)), 0, []
+        for inside, before, after, run in self.runs(motion, np.array(self.start), stops, times):
+            z, v = run.sol(times[inside]) if inside.any() else np.zeros((2, 0))
+            rows[inside] = np.column_stack([z, v, self.force(*before, z, v)])
+            if run.status == 1:
+                contacts += before[0] == FREE
+                edges += [(run.t[-1], self.force(*each, *run.y[:, -1])) for each in (before, after)]
+        return Trace(*rows.T, contacts, tuple(edges))
+
+    def runs(
+        self, motion: Callable[..., Any], state: np.ndarray, stops: Sequence[float], times: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, tuple[str, float], tuple[str, float], Any]]:
+        """Integrate from one change of contact to the next, or to a stop.
+
+        Yield which of the times lie in it, contact and side in it and after it, and what scipy found. The
+        state begins with displacement and rate.
+        """
+        contact, begin = (FREE, 0.0), 0.0
         for stop in stops:
             while begin < stop:
-
-                def motion(
-                    time: float, state: np.ndarray, contact: str = contact, side: float = side
-                ) -> tuple[float, float]:
-                    z, v = state
-                    force = load(time) - self.force(contact, side, z, v)
-                    return v, force / self.mass - acceleration(time)
-
                 # a step of 0.2 ms keeps the interpolation between scipy's steps as exact as the steps
                 run = solve_ivp(
-                    motion,
+                    partial(motion, *contact),
                     (begin, stop),
                     state,
                     method="DOP853",
@@ -152,21 +164,14 @@ class Carrier:
                     atol=1e-14,
                     max_step=2e-4,
                     dense_output=True,
-                    events=self.events(contact, side),
+                    events=self.events(*contact),
                 )
-                until = run.t[-1]
-                inside = (times >= begin) & (times <= until)
-                if inside.any():
-                    z, v = run.sol(times[inside])
-                    rows[inside] = np.column_stack([z, v, self.force(contact, side, z, v)])
-                state, begin = run.y[:, -1], until
+                before, inside = contact, (times >= begin) & (times <= run.t[-1])
+                state, begin = run.y[:, -1], run.t[-1]
                 if run.status == 1:
                     which = next(index for index, found in enumerate(run.t_events) if len(found))
-                    contacts += contact == FREE
-                    edges.append((until, self.force(contact, side, *state)))
-                    contact, side = self.after(contact, side, which, state[0])
-                    edges.append((until, self.force(contact, side, *state)))
-        return Trace(*rows.T, contacts, tuple(edges))
+                    contact = self.after(*contact, which, state[0])
+                yield inside, before, contact, run
 
 
 def simulated(

@@ -8,7 +8,6 @@ from math import pi
 
 import numpy as np
 from damper_reference import FREE, Carrier, frame, knots
-from scipy.integrate import solve_ivp
 
 from loomfmu.components import HealdDamper
 
@@ -36,53 +35,24 @@ class Hung(Carrier):
         """Displacement, rate, thread force, load and transmitted force at sorted times; contacts."""
         height = frame(0.0, speed)[0] + self.offset + self.start[0]
         state = np.array([*self.start, self.b * self.geometry(height)[0]])
-        contact, side, contacts, begin = FREE, 0.0, 0, 0.0
-        rows = np.zeros((len(times), 5))
-        for stop in [*knots(speed, turns), 2.0 * pi * turns / speed]:
-            while begin < stop:
 
-                def motion(time, state, contact=contact, side=side):
-                    z, v, force = state
-                    y, dy, ddy = frame(time, speed)
-                    x, slope = self.geometry(y + z + self.offset)
-                    pull = self.load(y + z + self.offset, force) - self.force(contact, side, z, v)
-                    growth = self.b * (slope * (dy + v) + self.n * x) - self.r * force
-                    return v, pull / self.mass - ddy, growth
+        def motion(contact, side, time, state):
+            z, v, force = state
+            y, dy, ddy = frame(time, speed)
+            x, slope = self.geometry(y + z + self.offset)
+            pull = self.load(y + z + self.offset, force) - self.force(contact, side, z, v)
+            growth = self.b * (slope * (dy + v) + self.n * x) - self.r * force
+            return v, pull / self.mass - ddy, growth
 
-                events = [of_two(each) for each in self.events(contact, side)]
-                run = solve_ivp(
-                    motion,
-                    (begin, stop),
-                    state,
-                    method="DOP853",
-                    rtol=1e-12,
-                    atol=1e-13,
-                    max_step=2e-4,
-                    dense_output=True,
-                    events=events,
-                )
-                inside = (times >= begin) & (times <= run.t[-1])
-                for place in np.flatnonzero(inside):
-                    z, v, force = run.sol(times[place])
-                    height = frame(times[place], speed)[0] + z + self.offset
-                    load, sent = self.load(height, force), self.force(contact, side, z, v)
-                    rows[place] = z, v, force, load, sent
-                state, begin = run.y[:, -1], run.t[-1]
-                if run.status == 1:
-                    which = next(index for index, found in enumerate(run.t_events) if len(found))
-                    contacts += contact == FREE
-                    contact, side = self.after(contact, side, which, state[0])
+        rows, contacts = np.zeros((len(times), 5)), 0
+        stops = [*knots(speed, turns), 2.0 * pi * turns / speed]
+        for inside, before, _after, run in self.runs(motion, state, stops, times):
+            for place in np.flatnonzero(inside):
+                z, v, force = run.sol(times[place])
+                height = frame(times[place], speed)[0] + z + self.offset
+                rows[place] = z, v, force, self.load(height, force), self.force(*before, z, v)
+            contacts += run.status == 1 and before[0] == FREE
         return rows, contacts
-
-
-def of_two(event):
-    """An event of displacement and rate, for a state of three."""
-
-    def of_three(time, state):
-        return event(time, state[:2])
-
-    of_three.terminal, of_three.direction = event.terminal, event.direction
-    return of_three
 
 
 def stepped(damper: HealdDamper, speed: float, turns: int, steps: int) -> np.ndarray:

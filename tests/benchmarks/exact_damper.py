@@ -2,8 +2,8 @@
 
 Between two changes of contact it is a linear oscillator: `z'' + c z' + k z = u(t)`, and its state after a
 time is that of the homogeneous equation plus the response to u, an integral that Gauss' rule gives to all
-digits, since u is analytic between the knots of the frame's law. Equations and rules of contact are those of
-`damper_reference`, which integrates them step by step.
+digits, since u is analytic between the knots of the frame's law. The rules of contact stand in
+`damper_reference`, which integrates step by step.
 """
 
 from bisect import bisect_right
@@ -11,9 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import damper_reference
 import mpmath
 import neighbours  # noqa: F401  the other reference
-from damper_reference import FREE, LET_GO, PRESSING
+from damper_reference import FREE, PRESSING
 
 from loomfmu.components import HealdDamper
 from loomfmu.physics.damper import stop_damping_ratio
@@ -32,10 +33,10 @@ class Piece:
     displacement: Any
     rate: Any
     contact: str
-    side: int
+    side: float
 
 
-class Carrier:
+class Carrier(damper_reference.Carrier):
     """The carrier of the default damper over a duration [s], under a frame's acceleration [m/s2]."""
 
     def __init__(self, acceleration: Callable[[Any], Any], knots: Sequence[Any], duration: Any) -> None:
@@ -68,7 +69,7 @@ class Carrier:
             self._note(piece, time)
             contact, side = piece.contact, piece.side
             if which >= 0:
-                contact, side = self._next(piece, which, displacement)
+                contact, side = self.after(contact, side, which, displacement)
                 self.contacts += piece.contact == FREE
             self.pieces.append(Piece(time, displacement, rate, contact, side))
 
@@ -108,26 +109,14 @@ class Carrier:
             v += weight * duration / 2 * moving * drive
         return z, v
 
-    def _press(self, side: int, z: Any, v: Any) -> Any:
-        """Force of a stop, were it to act."""
-        return self.stop_spring * (side * z - self.travel) + self.stop_damping * side * v
-
     def _events(self, piece: Piece) -> list[Callable[[Any, Any], Any]]:
         """What rises through zero where a contact ends."""
         side = piece.side
         if piece.contact == FREE:
             return [lambda z, v: z - self.travel, lambda z, v: -z - self.travel]
         if piece.contact == PRESSING:
-            return [lambda z, v: -self._press(side, z, v)]
-        return [lambda z, v: self.travel - side * z, lambda z, v: self._press(side, z, v)]
-
-    def _next(self, piece: Piece, which: int, z: Any) -> tuple[str, int]:
-        """Contact that follows one of the piece's events."""
-        if piece.contact == FREE:
-            return PRESSING, 1 if z > 0 else -1
-        if piece.contact == PRESSING:
-            return (LET_GO, piece.side) if piece.side * z > self.travel else (FREE, 0)
-        return (FREE, 0) if which == 0 else (PRESSING, piece.side)
+            return [lambda z, v: -self.press(side, z, v)]
+        return [lambda z, v: self.travel - side * z, lambda z, v: self.press(side, z, v)]
 
     def _passed(self, piece: Piece, event: Callable[[Any, Any], Any], end: Any) -> Any:
         """When an event comes within the piece, or None."""

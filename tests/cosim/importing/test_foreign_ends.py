@@ -93,7 +93,8 @@ def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
     status = int(word != "holds")
     assert main(["run", str(place / "x.toml"), "--output", str(tmp_path / "x.h5")]) == status
     said = capsys.readouterr()
-    assert said.out.startswith(f'WL680-3600: ended by motor at {end} s, 50 steps\nscene "M"\n\n{word} ')
+    heading = f"WL680-3600, G6300 left: ended by motor at {end} s, 50 steps"
+    assert said.out.startswith(f'{heading}\nscene "M"\n\n{word} ')
     assert ("the run ended at 25" in said.out) == (word == "undecided")
     assert said.err == (
         f"warning: motor ended the simulation at {end} s; the run would have gone on to 0.2 s\n"
