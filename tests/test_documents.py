@@ -16,8 +16,8 @@ from environments import made, needed
 from test_packages import pins
 from write_fmu_pages import with_list
 
-from loomfmu import arguments as cli_arguments
 from loomfmu import cli
+from loomfmu import commands as cli_commands
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes import scene
@@ -71,7 +71,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
 def test_commands_are_understood(page: Path) -> None:
     for arguments in commands(page):
-        cli_arguments.parser().parse_args(arguments)  # exits where it does not understand
+        cli_commands.parser().parse_args(arguments)  # exits where it does not understand
 
 
 def test_the_house_lists_what_is_there_and_the_layers_as_they_are_enforced() -> None:

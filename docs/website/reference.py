@@ -9,7 +9,8 @@ from dataclasses import MISSING, fields
 from unittest import mock
 
 import loomfmu
-from loomfmu import arguments, mechanism
+from loomfmu import commands as cli_commands
+from loomfmu import mechanism
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.arguments import Argument, argument_of
 from loomfmu.cosim.claims.claim import AT_LEAST
@@ -38,7 +39,7 @@ def pages() -> dict[str, str]:
 
 def commands() -> str:
     """What `--help` prints, command by command."""
-    parser = arguments.parser()
+    parser = cli_commands.parser()
     found = next(each for each in parser._actions if isinstance(each, argparse._SubParsersAction))
     with mock.patch.dict(os.environ, COLUMNS="90", NO_COLOR="1"):
         helps = {"loomfmu": parser.format_help()} | {

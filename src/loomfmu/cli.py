@@ -5,34 +5,12 @@ import atexit
 import gc
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from .arguments import parser, with_negative
-from .commands import package, scenes, studies, traces
+from .commands import parser, with_negative
 from .commands.status import status_of
 
 atexit.register(gc.freeze)  # last of all: Python ends without a search for garbage, 60 ms of a run
-
-COMMANDS = {
-    "run": scenes.run,
-    "export": scenes.export,
-    "page": scenes.page,
-    "sweep": studies.sweep,
-    "limit": studies.limit,
-    "tolerances": studies.tolerances,
-    "optimize": studies.optimize,
-    "fit": studies.fit,
-    "show": traces.show,
-    "report": traces.report,
-    "diagram": traces.diagram,
-    "plot": traces.plot,
-    "compare": traces.compare,
-    "build": package.build,
-    "list": package.list_,
-    "init": package.init,
-    "new": package.new,
-    "cache": package.cache,
-}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -44,7 +22,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     def command() -> int:
         given = sys.argv[1:] if arguments is None else arguments
         parser().parse_args(with_negative(given) or ["--help"], options)
-        return COMMANDS[options.command](options)
+        action: Callable[[argparse.Namespace], int] = options.action
+        return action(options)
 
     return status_of(command, options)
 

@@ -1,4 +1,4 @@
-"""The commands that take a scene: `run`, `export`, `page`."""
+"""The commands that take a scene, with their arguments: `run`, `page`, `export`."""
 
 import argparse
 import shlex
@@ -6,17 +6,40 @@ import shutil
 import sys
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..display.printed import complain, say, warn
 from ..errors import LoomfmuError
-from .options import pairs, platforms
 from .printing import print_verdicts, revolutions
+from .shared import add_force, add_platform, add_scene, add_set, ending, pairs, platforms
 from .status import BEGUN, status_of
 
 if TYPE_CHECKING:
     from ..cosim.results import Result
     from ..traces import Trace
+
+
+def add_run(commands: Any) -> None:
+    """Add `run` and its arguments."""
+    command = commands.add_parser("run", help="simulate a scene, record a trace and check the claims")
+    add_scene(command)
+    add_set(command)
+    command.add_argument(
+        "--output",
+        metavar="FILE.h5",
+        help="trace file; results/SCENE.h5 by default, with the values of --set results/SCENE_VALUES.h5",
+    )
+    flavour = command.add_mutually_exclusive_group()
+    flavour.add_argument(
+        "--live", action="store_true", help="use live FMUs (Python) instead of native ones (compiled)"
+    )
+    flavour.add_argument("--native", action="store_true", help=argparse.SUPPRESS)  # which it does anyway
+    command.add_argument(
+        "--report", action="store_true", help="also write a page to look at, beside the trace"
+    )
+    command.add_argument("--explain", action="store_true", help="report skipped FMUs, outputs and steps")
+    add_force(command, "FILE.h5 even if it is not a trace")
+    command.set_defaults(action=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -109,6 +132,34 @@ def _print_pace(result: "Result") -> None:
     say(f"{result.steps} steps with {kind}, {pace}; {perf_counter() - BEGUN:.2f} s in total")
 
 
+def add_export(commands: Any) -> None:
+    """Add `export` and its arguments."""
+    command = commands.add_parser(
+        "export", help="write a scene as one FMU, or as a system package (SSP), for other tools"
+    )
+    command.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
+    file = command.add_mutually_exclusive_group(required=True)
+    file.add_argument(
+        "--fmu",
+        type=Path,
+        metavar="FILE.fmu",
+        help="write one native FMU: all mechanisms wired inside, without delay between them",
+    )
+    file.add_argument(
+        "--ssp", type=Path, metavar="FILE.ssp", help="write a system package: one FMU for each mechanism"
+    )
+    add_set(command)
+    command.add_argument("--fmi", type=int, choices=(2, 3), help="FMI version of FILE.fmu; 2 by default")
+    command.add_argument(
+        "--flavour",
+        choices=("live", "native"),
+        help="kind of FMUs in FILE.ssp; native by default if they can be built",
+    )
+    add_platform(command)
+    add_force(command, "the file even if loomfmu did not write it")
+    command.set_defaults(action=export)
+
+
 def export(options: argparse.Namespace) -> int:
     """Write a scene as one FMU or as a system package."""
     from ..cosim import whole
@@ -128,6 +179,28 @@ def export(options: argparse.Namespace) -> int:
     warn(warnings)
     say(f"written: {options.fmu or options.ssp}")
     return 0
+
+
+def add_page(commands: Any) -> None:
+    """Add `page` and its arguments."""
+    command = commands.add_parser("page", help="write a scene as a page in which its FMUs run (HTML)")
+    command.add_argument("scene", type=ending(".toml"), metavar="SCENE.toml")
+    command.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        help="what the page has a slider for, such as shaft.speed=400rpm..800rpm (repeatable); without a"
+        " range 20 %% around the scene's value, or its choices; the shaft's speed by default",
+    )
+    add_set(command)
+    command.add_argument(
+        "--output",
+        metavar="FILE.html",
+        help="results/SCENE_page.html by default, with the values of --set in its name",
+    )
+    add_force(command, "FILE.html even if it is not such a page")
+    command.set_defaults(action=page)
 
 
 def page(options: argparse.Namespace) -> int:

@@ -1,23 +1,28 @@
-"""The commands that run a scene many times: `sweep`, `limit`, `tolerances`, `optimize`, `fit`."""
+"""The commands that run a scene many times, with their arguments."""
 
 import argparse
+from pathlib import Path
+from typing import Any
 
-from ..display.printed import warn
-from .options import pairs
+from ..display.printed import say, warn
+from ..errors import LoomfmuError
+from ..files import check_target
+from .shared import add_force, add_place, add_scene, add_set, ending, pairs
+
+
+def add_sweep(commands: Any) -> None:
+    """Add `sweep` and its arguments."""
+    command = commands.add_parser("sweep", help="run a scene with many combinations of values")
+    command.add_argument("sweep", type=ending(".toml"), metavar="SWEEP.toml")
+    add_place(command, "SWEEP")
+    command.set_defaults(action=sweep)
 
 
 def sweep(options: argparse.Namespace) -> int:
     """Run a scene with many combinations of values."""
     from ..sweeps.run import sweep as run_sweep
 
-    found = run_sweep(
-        options.sweep,
-        processes=options.processes,
-        output=options.output,
-        scheduler=options.scheduler,
-        restart=options.restart,
-        progress=True,
-    )
+    found = run_sweep(options.sweep, progress=True, **_places(options))
     from ..sweeps.report import show  # after the extra `sweep` is known to be installed
 
     warn(found.warnings)
@@ -25,29 +30,225 @@ def sweep(options: argparse.Namespace) -> int:
     return 0 if found.holds and not found.untraced else 1
 
 
+def _places(options: argparse.Namespace) -> dict[str, Any]:
+    """Return where many runs go, and which processes make them."""
+    return {name: getattr(options, name) for name in ("output", "processes", "scheduler", "restart")}
+
+
+def add_limit(commands: Any) -> None:
+    """Add `limit` and its arguments."""
+    command = commands.add_parser(
+        "limit",
+        help="find the values at which claims begin to fail",
+        epilog="Exit status: 0 all claims hold in some range; 1 in none; 2 bad input or a failed FMU.",
+    )
+    add_scene(command)
+    command.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        help="what is varied, such as shaft.speed or shaft.speed=300rpm..900rpm; a second one gives the"
+        " limits of the first at values of the second",
+    )
+    command.add_argument(
+        "--from",
+        dest="from_",
+        metavar="LOW",
+        help="where the range of the first --vary begins, with its unit",
+    )
+    command.add_argument(
+        "--to", metavar="HIGH", help="where it ends; by default half to twice the scene's value"
+    )
+    command.add_argument(
+        "--points", type=int, metavar="N", help="values of the first that are tried first (41)"
+    )
+    command.add_argument("--rows", type=int, metavar="N", help="values of the second that are taken (11)")
+    add_set(command)
+    command.add_argument(
+        "--output", metavar="FILE.csv|svg|png|pdf", help="also write the limits as a table or a picture"
+    )
+    add_force(command, "the file even if it is not such a table or picture")
+    command.set_defaults(action=limit)
+
+
 def limit(options: argparse.Namespace) -> int:
     """Find the values at which claims begin to fail."""
-    from ..studies.limits import command
+    from ..studies.limits import report
+    from ..studies.limits.boundary import limit as find
 
-    return command.run(options, pairs(options.overrides))
+    inputs = [Path(options.scene)]
+    output = Path(options.output) if options.output else None
+    if output is not None:
+        report.check(output, inputs, options.force)  # before the runs, not after them
+    counts = {name: getattr(options, name) for name in ("points", "rows")}
+    found = find(
+        options.scene,
+        vary=options.vary,
+        from_=options.from_,
+        to=options.to,
+        set=pairs(options.overrides),
+        progress=True,
+        **{name: count for name, count in counts.items() if count is not None},
+    )
+    if output is not None:  # before anything is printed
+        report.write(found, output, inputs, options.force)
+    warn(found.warnings)
+    report.show(found)
+    if output is not None:
+        say(f"written: {output}")
+    return 0 if found else 1
+
+
+def add_tolerances(commands: Any) -> None:
+    """Add `tolerances` and its arguments."""
+    command = commands.add_parser(
+        "tolerances",
+        help="find the worst case of every claim within tolerances",
+        epilog="Exit status: 0 all hold in their worst cases; 1 a claim fails or is undecided;"
+        " 2 bad input or a failed FMU.",
+    )
+    add_scene(command)
+    command.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="INSTANCE.VARIABLE=LOW..HIGH",
+        help="a tolerance, such as belt.guide_clearance=0.2mm..0.5mm (repeatable); those of the scene's"
+        " [tolerances] by default",
+    )
+    add_set(command)
+    command.add_argument("--picture", metavar="FILE.svg|png|pdf", help="also draw the worst cases")
+    add_force(command, "the picture even if loomfmu did not draw it")
+    command.set_defaults(action=tolerances)
 
 
 def tolerances(options: argparse.Namespace) -> int:
     """Find the worst case of every claim within tolerances."""
-    from ..studies.tolerances import command
+    from ..report import pictures
+    from ..studies.tolerances.report import draw, show
+    from ..studies.tolerances.tolerances import tolerances as find
 
-    return command.run(options, pairs(options.overrides))
+    inputs = [Path(options.scene)]
+    picture = Path(options.picture) if options.picture else None
+    if picture is not None:  # before the runs, not after them
+        pictures.check(picture, inputs, options.force)
+    found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
+    if picture is not None:
+        pictures.save(draw(found), picture, found.title, inputs, options.force)
+    warn(found.warnings)
+    show(found)
+    if picture is not None:
+        say(f"written: {picture}")
+    return 0 if found else 1
+
+
+def add_optimize(commands: Any) -> None:
+    """Add `optimize` and its arguments."""
+    command = commands.add_parser(
+        "optimize",
+        help="find the best design within ranges and choices, all claims met",
+        epilog="Exit status: 0 all claims hold in the best design; 1 one is undecided there, or no design"
+        " meets all claims; 2 bad input or a failed FMU.",
+    )
+    command.add_argument("study", type=ending(".toml"), metavar="STUDY.toml")
+    add_place(command, "STUDY")
+    command.set_defaults(action=optimize)
 
 
 def optimize(options: argparse.Namespace) -> int:
     """Find the best design."""
-    from ..studies.optimizing import command
+    from ..studies.optimizing.optimize import optimize as find
+    from ..studies.optimizing.report import show
 
-    return command.run(options)
+    found = find(options.study, progress=True, **_places(options))
+    warn(found.warnings)
+    show(found)
+    return 0 if found.holds else 1
+
+
+def add_fit(commands: Any) -> None:
+    """Add `fit` and its arguments."""
+    command = commands.add_parser(
+        "fit",
+        help="find parameters of a scene from measured curves",
+        epilog="Exit status: 0 parameters were found; 1 a signal is hardly explained, or a parameter ended at"
+        " an end of its range; 2 bad input or a failed FMU.",
+    )
+    add_scene(command)
+    command.add_argument(
+        "data",
+        metavar="DATA.csv|h5",
+        help="columns with units, such as shaft_angle [deg],heald_1.displacement [mm]; or a trace",
+    )
+    command.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="INSTANCE.VARIABLE[=LOW..HIGH]",
+        help="a parameter to find, such as damper_1.spring_stiffness=1N/mm..20N/mm (repeatable)",
+    )
+    command.add_argument(
+        "--signal",
+        action="append",
+        default=[],
+        metavar="SIGNAL",
+        help="what is fitted of the data (repeatable); all columns of a table by default",
+    )
+    command.add_argument(
+        "--offset",
+        metavar="LOW..HIGH",
+        help="also find what is added to the times or shaft angles of the data, such as -2ms..2ms",
+    )
+    command.add_argument(
+        "--loss",
+        metavar="LOSS",
+        default="linear",
+        help="soft_l1, huber, cauchy or arctan where some values may be far off; linear (least squares)",
+    )
+    add_set(command)
+    command.add_argument("--output", metavar="FILE.toml", help="also write the scene with the fitted values")
+    command.add_argument(
+        "--picture", metavar="FILE.svg|png|pdf", help="also draw measured and computed curves"
+    )
+    add_force(command, "these files even if they are not a scene and a picture")
+    command.set_defaults(action=fit)
 
 
 def fit(options: argparse.Namespace) -> int:
-    """Find parameters from measured curves."""
-    from ..studies.fitting import command
+    """Find parameters from measured curves; write the scene and the picture that were asked for."""
+    from ..cosim.reading import checked
+    from ..report import pictures
+    from ..studies import rewritten
+    from ..studies.fitting.fit import fit as find
+    from ..studies.fitting.report import show
 
-    return command.run(options, pairs(options.overrides))
+    inputs = [Path(options.scene), Path(options.data)]
+    output, picture = (Path(each) if each else None for each in (options.output, options.picture))
+    scene = checked(options.scene, pairs(options.overrides), "native")
+    # before the runs, not after them
+    if output is not None:
+        if output.suffix != ".toml":
+            raise LoomfmuError(f"{output}: a scene is written as .toml; --picture draws the curves")
+        check_target(output, rewritten.KIND, inputs, options.force)
+        rewritten.check(scene)
+    if picture is not None:
+        pictures.check(picture, inputs, options.force)
+    found = find(
+        scene,
+        options.data,
+        vary=options.vary,
+        signals=options.signal,
+        offset=options.offset,
+        loss=options.loss,
+    )
+    if output is not None:
+        found.write(output, options.force)
+    if picture is not None:
+        from ..studies.fitting.picture import draw
+
+        pictures.save(draw(found), picture, found.title, inputs, options.force)
+    warn(found.warnings)
+    show(found)
+    say(*(f"written: {path}" for path in (output, picture) if path is not None))
+    return 0 if found else 1

@@ -1,10 +1,14 @@
-"""Limits as people read them: tables, sentences, CSV."""
+"""Limits as people read them: tables, sentences, CSV, pictures."""
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 from ...display import printed
 from ...display.printed import say
+from ...errors import LoomfmuError
+from ...files import Kind, check_target, write_file
+from ...report import pictures
 from ..span import Span
 from .results import (
     HEADINGS,
@@ -20,7 +24,45 @@ from .results import (
 CSV_LIMITS = ("claim", "begins", "value", "low", "high", "error", "unit", "jumps")
 
 
-def show(found: Limits) -> None:
+def check(path: Path, inputs: Sequence[Path], overwrite: bool) -> None:
+    """Refuse a file of limits that cannot be written. Raises LoomfmuError."""
+    if path.suffix == ".csv":
+        check_target(path, TABLE, inputs, overwrite)
+    elif path.suffix in pictures.PICTURES:
+        pictures.check(path, inputs, overwrite)
+    else:
+        raise LoomfmuError(f"{path}: use .csv for a table, or .svg, .png or .pdf for a picture")
+
+
+def write(found: Limits | Boundary, path: Path, inputs: Sequence[Path], overwrite: bool) -> None:
+    """Write limits as a table or a picture."""
+    if path.suffix == ".csv":
+        text = boundary_table(found) if isinstance(found, Boundary) else table(found)
+        write_file(path, text.encode(), TABLE, inputs, overwrite)
+    else:
+        from .picture import draw
+
+        pictures.save(draw(found), path, found.title, inputs, overwrite)
+
+
+def _is_table(path: Path) -> bool:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        line = file.readline(2000).rstrip("\n")
+    return line == ",".join(CSV_LIMITS) or line.endswith(",binding below,binding above")
+
+
+TABLE = Kind("a table of limits", _is_table)
+
+
+def show(found: Limits | Boundary) -> None:
+    """Print limits."""
+    if isinstance(found, Boundary):
+        show_boundary(found)
+    else:
+        show_limits(found)
+
+
+def show_limits(found: Limits) -> None:
     """Print the limits of one variable."""
     span = found.span
     say(f"{found.title}: {span.key} from {span.text} ({span.source})")
