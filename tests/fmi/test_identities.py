@@ -30,10 +30,17 @@ def test_what_is_kept_is_what_would_be_computed(name: str) -> None:
 @pytest.mark.usefixtures("anew")
 def test_every_source_counts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     before = identities.sources()
-    for part, file in (("components", "cam.py"), ("physics", "law.py"), ("fmi/native/shell", "shell.c")):
+    folders = {
+        "components": "cam.py",
+        "declaring": "array.py",
+        "physics": "law.py",
+        "fmi/native/shell": "shell.c",
+    }
+    files = [part for part in identities.PARTS if part.endswith(".py")]
+    for part, file in folders.items():
         (tmp_path / part).mkdir(parents=True)
         (tmp_path / part / file).write_text("1")
-    for part in identities.PARTS[-4:]:
+    for part in files:
         (tmp_path / part).write_text("1")
     monkeypatch.setattr(identities, "documents", lambda: tmp_path / "fmus")
     monkeypatch.setattr(identities, "PACKAGE", tmp_path)
@@ -44,7 +51,7 @@ def test_every_source_counts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
     (tmp_path / "fmus/cam").mkdir(parents=True)
     (tmp_path / "fmus/cam/README.md").write_text("1")
     found.add(identities.sources())
-    assert len(found) == 2 + 3 + 4 + 1
+    assert len(found) == 2 + len(folders) + len(files) + 1
 
 
 @pytest.mark.usefixtures("anew")

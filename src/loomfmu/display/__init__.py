@@ -1,1 +1,1 @@
-"""What people read: tables and progress bars, on a terminal and in a notebook."""
+"""Tables and progress bars, on a terminal and in a notebook."""

@@ -39,7 +39,7 @@ def flatten(component: type[Component]) -> str:
 
 @dataclass
 class _Used:
-    """What methods use, directly or through others, by name; what is used first comes first."""
+    """All that methods use, directly or through others, by name; what is used first comes first."""
 
     functions: dict[str, FunctionType] = field(default_factory=dict)
     records: dict[str, type] = field(default_factory=dict)
