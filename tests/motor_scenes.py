@@ -23,8 +23,8 @@ SHAFT3 = '[shaft]\nfmu = "Motor3.fmu"\n'
 
 
 def ran(place: Path, text: str, tmp_path: Path, **changed: object) -> Result:
-    """The run of a scene whose FMUs lie in a place."""
-    overrides = {key.replace("__", "."): value for key, value in changed.items()}
+    """The run of a scene whose FMUs lie in a place; in this process, where nothing else is said."""
+    overrides = {"isolated": False} | {key.replace("__", "."): value for key, value in changed.items()}
     scene = scenes.parse(text, "motor", overrides, place)
     return run(scene, output=tmp_path / "motor.h5")
 

@@ -19,6 +19,7 @@ from natives import MEMORYLESS
 from natives3 import DISCARD, ERROR, OK, TIME, TYPES, Native3, Unpacked3
 
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.builder import guid
 from loomfmu.fmi.native import builder as native_builder
@@ -34,7 +35,7 @@ def built3(built, tmp_path_factory):
     folder = tmp_path_factory.mktemp("fmi3")
 
     def build(name: str) -> Unpacked3:
-        path = native_builder.build_native(name, folder, ("linux64",), 3)
+        path = file_of(COMPONENTS[name], "native", ("linux64",), 3)
         with zipfile.ZipFile(path) as zipped:
             zipped.extractall(folder / name)
         return Unpacked3(COMPONENTS[name], path, folder / name)

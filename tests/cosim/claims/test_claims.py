@@ -43,7 +43,7 @@ def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Callable[
     known: dict[tuple[Any, ...], Trace] = {}
     directory = tmp_path_factory.mktemp("looms")
 
-    def open_(steps: int = 1440, weave: str = "10/01", rest: str = "", **values: Any) -> Trace:
+    def open_(steps: int = 360, weave: str = "10/01", rest: str = "", **values: Any) -> Trace:
         key = (steps, weave, rest, *values.items())
         if key not in known:
             changed = {name.replace("__", "."): value for name, value in values.items()}

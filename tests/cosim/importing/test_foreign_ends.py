@@ -56,7 +56,7 @@ def test_the_trace_goes_as_far_as_the_fmu(
     if stepped == "in Python":
         monkeypatch.setattr(steppers, "library_of", lambda _source: None)
     place, end = ending
-    result = ran(place, text if stepped == "isolated" else f"isolated = false\n{text}", tmp_path)
+    result = ran(place, text, tmp_path, isolated=stepped == "isolated")
     assert (result.ended, result.steps) == (f"{instance} at {end} s", 50)
     assert result.warnings == (
         f"{instance} ended the simulation at {end} s; the run would have gone on to 0.2 s",

@@ -143,7 +143,7 @@ def test_names_and_units_are_ours_where_they_can_be(place: Path, tmp_path: Path)
 
 def test_claims_on_other_makers_signals(place: Path, tmp_path: Path) -> None:
     text = MOTOR + '[[claims]]\nkind = "below"\nsignal = "motor.{}"\nbound = {}\n'
-    assert ran(place, text.format("flange_w", '"600 rpm"'), tmp_path).holds
+    assert ran(place, text.format("flange_w", '"600 rpm"'), tmp_path, isolated=True).holds
     result = ran(place, text.format("winding", "150"), tmp_path)
     assert not result.holds and "winding), 200 K at 0 s" in str(result.claims[0])
     with pytest.raises(
@@ -263,13 +263,13 @@ def test_they_are_made_anew_for_every_run(place: Path, tmp_path: Path, opened: l
 def test_one_that_a_process_can_have_once(tmp_path: Path) -> None:
     path = motor2(tmp_path, single=True)
     for _ in range(2):
-        assert ran(tmp_path, MOTOR, tmp_path).holds
+        assert ran(tmp_path, MOTOR, tmp_path, isolated=True).holds
     two = MOTOR + '[other]\nfmu = "Motor.fmu"\n'
     assert refused(tmp_path, "isolated = false\n" + two) == (
         f"motor and other: a process can hold only one instance of {path}"
         " (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
     )
-    assert ran(tmp_path, two, tmp_path).holds  # each in a process of its own
+    assert ran(tmp_path, two, tmp_path, isolated=True).holds  # each in a process of its own
 
 
 def test_messages_with_arguments_are_told_whole_and_to_the_right_instance(

@@ -11,7 +11,8 @@ from motor_scenes import LENGTH, MOTOR, SHAFT3, ran, refused
 from loomfmu import LoomfmuError
 from loomfmu.cosim.scenes import scene as scenes
 
-INSIDE = ["isolated = false\n", ""]  # in this process the compiled stepper converts the values, else Python
+# in this process the compiled stepper converts the values, else Python
+either = pytest.mark.parametrize("isolated", [False, True])
 OTHER = '[other]\nfmu = "Motor3.fmu"\n'
 CARRIED = (-(2**31), 2**31 - 1)
 
@@ -52,34 +53,34 @@ def test_those_of_fmi_2_have_32_bits(place: Path) -> None:
 
 
 @pytest.mark.few(5)
-@pytest.mark.parametrize("inside", INSIDE)
+@either
 @pytest.mark.parametrize("each", HELD)
-def test_values_come_through_as_they_are(place: Path, tmp_path: Path, each: str, inside: str) -> None:
+def test_values_come_through_as_they_are(place: Path, tmp_path: Path, each: str, isolated: bool) -> None:
     for value in (max(limits(each)[0], CARRIED[0]), min(limits(each)[1], CARRIED[1])):
-        text = inside + LENGTH + SHAFT3 + f'to_{each} = {value}\n[other]\nfmu = "Motor3.fmu"\n'
-        trace = ran(place, text + f'[wires]\n"other.to_{each}" = "shaft.{each}"\n', tmp_path).trace
+        text = LENGTH + SHAFT3 + f'to_{each} = {value}\n{OTHER}[wires]\n"other.to_{each}" = "shaft.{each}"\n'
+        trace = ran(place, text, tmp_path, isolated=isolated).trace
         assert set(trace[f"shaft.{each}"]) == set(trace[f"other.{each}"]) == {value}
 
 
-@pytest.mark.parametrize("inside", INSIDE)
-def test_what_a_wired_input_cannot_hold_ends_the_run(place: Path, tmp_path: Path, inside: str) -> None:
-    text = inside + LENGTH + SHAFT3 + OTHER + '[wires]\n"other.to_UInt8" = "shaft.{}"\n'
+@either
+def test_what_a_wired_input_cannot_hold_ends_the_run(place: Path, tmp_path: Path, isolated: bool) -> None:
+    text = LENGTH + SHAFT3 + OTHER + '[wires]\n"other.to_UInt8" = "shaft.{}"\n'
     with pytest.raises(LoomfmuError) as raised:
-        ran(place, text.format("Int16"), tmp_path, shaft__to_Int16=-1)
+        ran(place, text.format("Int16"), tmp_path, isolated=isolated, shaft__to_Int16=-1)
     assert str(raised.value) == "other at 0 s: to_UInt8 = -1 is outside [0, 255], the range of UInt8"
     with pytest.raises(LoomfmuError) as raised:
-        ran(place, text.format("steps"), tmp_path, duration="0.3 s")
+        ran(place, text.format("steps"), tmp_path, isolated=isolated, duration="0.3 s")
     assert str(raised.value) == "other at 0.255 s: to_UInt8 = 256 is outside [0, 255], the range of UInt8"
 
 
-@pytest.mark.parametrize("inside", INSIDE)
+@either
 @pytest.mark.parametrize(("each", "value"), [("UInt32", 2**31), ("UInt64", 2**64 - 1)])
 def test_what_a_run_cannot_carry_ends_it_unless_it_is_left_out(
-    place: Path, tmp_path: Path, each: str, value: int, inside: str
+    place: Path, tmp_path: Path, each: str, value: int, isolated: bool
 ) -> None:
-    changed = {f"shaft__to_{each}": str(value)}
+    changed = {f"shaft__to_{each}": str(value), "isolated": isolated}
     with pytest.raises(LoomfmuError) as raised:
-        ran(place, inside + LENGTH + SHAFT3, tmp_path, **changed)
+        ran(place, LENGTH + SHAFT3, tmp_path, **changed)
     assert str(raised.value) == (
         f"shaft at 0 s: {each} = {value} is outside [-2147483648, 2147483647],"
         " the range of 32-bit integers; leave it out of record"
@@ -88,13 +89,13 @@ def test_what_a_run_cannot_carry_ends_it_unless_it_is_left_out(
     assert f"shaft.{each}" not in trace and trace.rows == 201
 
 
-@pytest.mark.parametrize("inside", INSIDE)
-def test_one_that_grows_too_large_is_told_when_it_does(place: Path, tmp_path: Path, inside: str) -> None:
-    fast = inside + LENGTH + SHAFT3 + "w_free = 1e5\ntau_stall = 1e6\n"  # 2147 rad are soon reached
+@either
+def test_one_that_grows_too_large_is_told_when_it_does(place: Path, tmp_path: Path, isolated: bool) -> None:
+    fast = LENGTH + SHAFT3 + "w_free = 1e5\ntau_stall = 1e6\n"  # 2147 rad are soon reached
     with pytest.raises(
         LoomfmuError, match=r"^shaft at 0\.0\d* s: microradians = 21\d{8} is outside \[-2147483648, 21474836"
     ):
-        ran(place, fast, tmp_path)
+        ran(place, fast, tmp_path, isolated=isolated)
 
 
 def test_items_of_enumerations_may_have_blanks(tmp_path: Path) -> None:

@@ -7,12 +7,14 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
+import motor_scenes
 import numpy as np
 import pytest
 from foreign_motors import misbehaving, motor2, motor3
-from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran
+from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace
@@ -22,6 +24,7 @@ from loomfmu.cosim.master import steppers
 from loomfmu.cosim.run import evaluate
 from loomfmu.cosim.scenes import scene as scenes
 
+ran = partial(motor_scenes.ran, isolated=True)
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the misbehaving FMU is compiled for Linux")
 
 
