@@ -7,7 +7,7 @@ import pytest
 from hung_warp_reference import Hung, stepped
 from looms import RPM
 
-from loomfmu.components import HealdDamper, WarpTension, damper_motion
+from loomfmu.components import HealdDamper, WarpTension, heald_damper
 from loomfmu.physics.hung_warp import settled_load
 
 
@@ -66,10 +66,10 @@ def test_a_piece_that_never_settles_ends_the_step(displacement, monkeypatch):
     def counted(*arguments):
         nonlocal tried
         tried += 1
-        assert tried <= damper_motion.MOST_PIECES + damper_motion.MOST_HALVINGS
+        assert tried <= heald_damper.MOST_PIECES + heald_damper.MOST_HALVINGS
         return settled_load(*arguments)
 
-    monkeypatch.setattr(damper_motion, "settled_load", counted)
+    monkeypatch.setattr(heald_damper, "settled_load", counted)
     damper = HealdDamper(thread_count=200)
     damper.initialize(0.0)
     damper.displacement = displacement

@@ -9,10 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import MP
 
-from loomfmu.physics.damper import design_stiffness, propagate, stop_damping_ratio
+from loomfmu.physics.damper import Swing, design_stiffness, propagate, stop_damping_ratio
 from loomfmu.physics.damper_search import (
     LEVEL,
     SLOPE,
+    Gauge,
+    Stop,
     contact_change,
     first_change,
     gauge_at,
@@ -46,7 +48,7 @@ def test_propagation_is_the_matrix_exponential(z, w, elastic, viscous, shares, d
     v, k, c = w / duration, (elastic / duration) ** 2, viscous / duration
     drive = [size / duration ** (2 + power) for power, size in enumerate(shares)]
     exact = exponential(z, v, k, c, drive, duration)
-    found = propagate(z, v, k, c, *drive, duration)
+    found = propagate(Swing(z, v, k, c, *drive), duration)
     # every term of the series is at most the sum of what enters: about 8 roundings of it
     scale = abs(z) + abs(w) + sum(map(abs, shares))
     assert abs(found[0] - exact[0]) <= 1e-15 * scale + 1e-300
@@ -56,7 +58,7 @@ def test_propagation_is_the_matrix_exponential(z, w, elastic, viscous, shares, d
 @given(unit, unit, st.floats(0.1, 0.9))
 def test_two_pieces_make_one_whole(z, v, first_part):
     k, c, drive = 0.8, 0.3, (0.3, -0.5, 0.7, -0.2)
-    first = propagate(z, v, k, c, *drive, first_part)
+    first = propagate(Swing(z, v, k, c, *drive), first_part)
     # the drive from there on, expanded about the later time
     u0, u1, u2, u3 = drive
     later = (
@@ -65,12 +67,12 @@ def test_two_pieces_make_one_whole(z, v, first_part):
         u2 + 3 * first_part * u3,
         u3,
     )
-    both = propagate(*first, k, c, *later, 1.0 - first_part)
-    assert both == pytest.approx(propagate(z, v, k, c, *drive, 1.0), abs=5e-15)  # a few roundings
+    both = propagate(Swing(*first, k, c, *later), 1.0 - first_part)
+    assert both == pytest.approx(propagate(Swing(z, v, k, c, *drive), 1.0), abs=5e-15)  # a few roundings
 
 
 def test_no_duration_changes_nothing():
-    assert propagate(0.3, -0.2, 1e9, 1e9, 1.0, 1.0, 1.0, 1.0, 0.0) == (0.3, -0.2)
+    assert propagate(Swing(0.3, -0.2, 1e9, 1e9, 1.0, 1.0, 1.0, 1.0), 0.0) == (0.3, -0.2)
 
 
 def test_published_stiffness_of_a_spring():
@@ -121,35 +123,34 @@ FREE, UPPER, LOWER, LET_GO, LET_GO_BELOW = 0, 1, -1, 2, -2
 )
 def test_contact_rules(contact, position, rate, then):
     # a carrier without forces, over a time in which it goes nowhere
-    time, found = contact_change(
-        contact, position, rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.01, 1000.0, 10.0, 0.0, 0.0, 1e-9
-    )
+    swing = Swing(position, rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    time, found = contact_change(contact, Stop(0.01, 1000.0, 10.0), swing, 0.0, 0.0, 1e-9)
     assert (time, found) == ((1e-9, contact) if then is None else (0.0, then))
 
 
 def test_of_two_changes_the_first_one_counts():
     # z = 0.5 + 2 t - 4 t^2 beyond 0.7 at (5 - sqrt 5) / 20, and back within; later below -0.7
-    found = contact_change(0, 0.5, 2.0, 0.0, 0.0, -8.0, 0.0, 0.0, 0.0, 0.7, 1.0, 0.0, 8.0, 0.0, 1.0)
+    swing = Swing(0.5, 2.0, 0.0, 0.0, -8.0, 0.0, 0.0, 0.0)
+    found = contact_change(0, Stop(0.7, 1.0, 0.0), swing, 8.0, 0.0, 1.0)
     assert found == (pytest.approx((5 - sqrt(5)) / 20, abs=1e-15), UPPER)
-    found = contact_change(0, 0.5, 2.0, 0.0, 0.0, -8.0, 0.0, 0.0, 0.0, 0.76, 1.0, 0.0, 8.0, 0.0, 1.0)
+    found = contact_change(0, Stop(0.76, 1.0, 0.0), swing, 8.0, 0.0, 1.0)
     assert found == (pytest.approx((10 + sqrt(604)) / 40, abs=1e-15), LOWER)
 
 
 def passes(level, z, v, duration, start=0.0):
     """Where an undamped oscillator of frequency 1 first passes a level upwards."""
     bend = sqrt(z**2 + v**2)
-    return first_change(
-        LEVEL, level, 0.0, 0.0, 1.0, 0.0, -1.0, bend, z, v, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, start, duration
-    )
+    swing = Swing(z, v, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return first_change(Gauge(LEVEL, level, 0.0, 0.0, 1.0, 0.0), swing, -1.0, bend, start, duration)
 
 
 def turns(k, c, z, v, drive, duration):
     """All times at which the load `k z + c z'` turns round."""
-    a = drive[0] - k * z - c * v
-    _a, jerk, snap = rate_bounds(a, drive[1] - k * v - c * a, k, c, drive[2], drive[3], duration)
+    swing = Swing(z, v, k, c, *drive)
+    _a, jerk, snap = rate_bounds(swing, duration)
     found, time = [], 0.0
     while len(found) < 6:
-        time = next_turn(0.0, 0.0, 0.0, k, c, k * jerk + c * snap, z, v, k, c, *drive, time, duration)
+        time = next_turn(Gauge(SLOPE, 0.0, 0.0, 0.0, k, c), swing, k * jerk + c * snap, time, duration)
         if time < 0.0:
             break
         found.append(time)
@@ -178,7 +179,8 @@ def test_located_turn():
     # z = sin(t + asin 0.6)
     assert turns(1.0, 0.0, 0.6, 0.8, (0.0, 0.0, 0.0, 0.0), 1.0) == [pytest.approx(acos(0.6), abs=2e-15)]
     (found,) = turns(1.0, 0.5, 0.6, 0.8, (0.0, 0.0, 0.0, 0.0), 0.5)
-    value, _slope = gauge_at(SLOPE, 0.0, 0.0, 0.0, 1.0, 0.5, 0.6, 0.8, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, found)
+    swing = Swing(0.6, 0.8, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0)
+    value, _slope = gauge_at(Gauge(SLOPE, 0.0, 0.0, 0.0, 1.0, 0.5), swing, found)
     assert value == pytest.approx(0.0, abs=1e-15)
 
 
@@ -193,11 +195,11 @@ def test_every_turn_of_a_piece_is_found(wanted, elastic, viscous):
     for part, factor in ((rate.deriv(), 1.0), (rate, c), (position, k)):
         for power, coefficient in enumerate(part.coef if factor else ()):
             drive[power] += factor * coefficient
-    a, j = rate.deriv()(0.0), rate.deriv(2)(0.0)
-    _a, jerk, _snap = rate_bounds(a, j, k, c, drive[2], drive[3], 1.0)
+    swing = Swing(0.0, rate(0.0), k, c, *drive)
+    _a, jerk, _snap = rate_bounds(swing, 1.0)
     found, time = [], 0.0
     while len(found) < 6:
-        time = next_turn(0.0, 0.0, 0.0, 1.0, 0.0, jerk, 0.0, rate(0.0), k, c, *drive, time, 1.0)
+        time = next_turn(Gauge(SLOPE, 0.0, 0.0, 0.0, 1.0, 0.0), swing, jerk, time, 1.0)
         if time < 0.0:
             break
         found.append(time)
@@ -214,10 +216,9 @@ def test_bounds_hold_all_along(z, v, own, part, shares, at):
     duration, damping = 1.0, 0.5 * own * part
     stiffness = (0.5 * own * (1.0 - part)) ** 2
     u0, u1, u2, u3 = shares
-    a0 = u0 - stiffness * z - damping * v
-    j0 = u1 - stiffness * v - damping * a0
-    bounds = rate_bounds(a0, j0, stiffness, damping, u2, u3, duration)
-    z, v = propagate(z, v, stiffness, damping, *shares, at)
+    swing = Swing(z, v, stiffness, damping, *shares)
+    bounds = rate_bounds(swing, duration)
+    z, v = propagate(swing, at)
     a = u0 + at * (u1 + at * (u2 + at * u3)) - stiffness * z - damping * v
     j = u1 + at * (2 * u2 + at * 3 * u3) - stiffness * v - damping * a
     s = 2 * u2 + 6 * at * u3 - stiffness * a - damping * j
@@ -242,7 +243,8 @@ def test_located_where_there_is_no_slope():
 def test_located_release_of_an_elastic_stop(depth, share):
     # pressing on an undamped stop the carrier moves on a circle and is let go at its surface
     z, v = 1.0 + depth, -sqrt(1.0 - depth**2) * share
-    found, then = contact_change(1, z, v, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, pi / 2)
+    swing = Swing(z, v, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    found, then = contact_change(1, Stop(1.0, 1.0, 0.0), swing, 1.0, 1.0, pi / 2)
     amplitude = sqrt(depth**2 + v**2)
     exact = acos(0.0) - acos(depth / amplitude)  # depth(t) = amplitude cos(t + phase)
     # the force is a difference of two lengths of 1: rounding over the speed at the surface

@@ -94,7 +94,7 @@ def polynomial_solution(force, decay, drive, share):
 @given(unit, decays, drives, st.floats(0.0, 1.0))
 def test_force_and_its_integral_are_exact(force, decay, drive, share):
     exact, exact_area = polynomial_solution(force, decay, drive, share)
-    found, area = thread_force(force, decay, *drive, share)
+    found, area = thread_force(force, decay, drive, share)
     # (1e-100: what 250 digits leave of powers of a decay of 1e-12)
     # nothing cancels but the terms of the drive themselves; beyond that the rounding of a dozen terms, and
     # of exp(-z u), whose argument is rounded to 1e-16 of itself
@@ -108,7 +108,7 @@ def test_force_and_its_integral_are_exact(force, decay, drive, share):
 def test_growth_is_the_derivative(force, decay, drive, share):
     value, _area = polynomial_solution(force, decay, drive, share)
     slope = FINE.diff(lambda u: polynomial_solution(force, decay, drive, u)[0], share)
-    found = thread_growth(float(value), decay, *drive, share)
+    found = thread_growth(float(value), decay, drive, share)
     assert abs(found - slope) <= 2e-15 * (sum(map(abs, drive)) + decay * abs(value))  # the terms, rounded
 
 
@@ -143,7 +143,7 @@ def run(extension, rate, second, step, steps, stiffness, creep, relaxation, forc
             step * step * second(then),
         )
         drive = thread_drive(stiffness, creep * step, extension(at), extension(then), *a)
-        force, _area = thread_force(force, relaxation * step, *drive, 1.0)
+        force, _area = thread_force(force, relaxation * step, drive, 1.0)
     return force
 
 
@@ -211,8 +211,8 @@ def test_sinusoidal_drive(n, r):
 
 @given(unit, st.floats(0.0, 100.0), drives, st.floats(0.01, 0.99))
 def test_splitting_a_step_changes_nothing(force, decay, drive, share):
-    whole, area = thread_force(force, decay, *drive, 1.0)
-    first, first_area = thread_force(force, decay, *drive, share)
+    whole, area = thread_force(force, decay, drive, 1.0)
+    first, first_area = thread_force(force, decay, drive, share)
     # the drive from there on, as a polynomial of the share of what is left
     rest = 1.0 - share
     p = [MP.mpf(each) for each in drive]
@@ -220,7 +220,7 @@ def test_splitting_a_step_changes_nothing(force, decay, drive, share):
         float(rest ** (k + 1) * sum(MP.binomial(j, k) * p[j] * MP.mpf(share) ** (j - k) for j in range(k, 6)))
         for k in range(6)
     ]
-    second, second_area = thread_force(first, decay * rest, *later, 1.0)
+    second, second_area = thread_force(first, decay * rest, later, 1.0)
     # 32 is the largest sum of the binomials by which terms of both signs grow
     assert second == pytest.approx(whole, abs=32 * 4e-15 * (abs(force) + sum(map(abs, drive))))
     assert first_area + rest * second_area == pytest.approx(
@@ -313,11 +313,11 @@ def test_faster_loading_makes_the_thread_stiffer(n, r):
 @pytest.mark.slow
 @given(unit, st.floats(0.0, 20.0), drives)
 def test_force_turns_but_once_where_it_is_said_so(force, decay, drive):
-    assume(turns_once(*drive[1:]))
+    assume(turns_once(drive))
     slopes = []
     for k in range(101):
-        value, _area = thread_force(force, decay, *drive, k / 100)
-        slopes.append(thread_growth(value, decay, *drive, k / 100))
+        value, _area = thread_force(force, decay, drive, k / 100)
+        slopes.append(thread_growth(value, decay, drive, k / 100))
     signs = [slope > 0.0 for slope in slopes if abs(slope) > 1e-13]
     assert sum(one != other for one, other in pairwise(signs)) <= 1
 
@@ -326,17 +326,17 @@ def test_force_turns_but_once_where_it_is_said_so(force, decay, drive):
 def test_located_level(decay):
     drive = (1.0 + decay, 0.0, 0.0, 0.0, 0.0, 0.0)
     # from 0 towards (1 + z) / z: passes a half of where it gets to
-    end, _area = thread_force(0.0, decay, *drive, 1.0)
-    found = thread_locate(False, 0.5 * end, 0.0, decay, *drive, 0.0, 1.0)
+    end, _area = thread_force(0.0, decay, drive, 1.0)
+    found = thread_locate(False, 0.5 * end, 0.0, decay, drive, 0.0, 1.0)
     exact = 0.5 if decay == 0.0 else -MP.log(1 - MP.mpf(0.5) * end * decay / (1 + decay)) / decay
     assert abs(found - exact) < 3e-15  # the bracket
-    assert thread_force(0.0, decay, *drive, found)[0] >= 0.5 * end
+    assert thread_force(0.0, decay, drive, found)[0] >= 0.5 * end
 
 
 @pytest.mark.parametrize("decay", [0.5, 5.0, 500.0])
 def test_located_turn(decay):
     # dF/du + z F = u from F = 1: falls, then rises with the drive; turns where F = u / z
-    found = thread_locate(True, 0.0, 1.0, decay, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0)
+    found = thread_locate(True, 0.0, 1.0, decay, [0.0, 1.0, 0.0, 0.0, 0.0, 0.0], 0.0, 3.0)
     z = MP.mpf(decay)
     exact = MP.log(1 + z**2) / z  # F = u/z - 1/z^2 + (1 + 1/z^2) exp(-z u)
     assert abs(found - exact) < 1e-12 * (1 + exact)  # the slope's rounding, z 1e-16, over its own slope

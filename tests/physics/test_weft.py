@@ -99,11 +99,11 @@ def test_yielding_brake_is_exact(duration, retardation, force, limit, low, cubic
     if decay < 1e-6:
         return  # the closed form above cancels; `thread_force` itself is tested there
     size = force + sum(map(abs, h))
-    assert abs(relaxed_force(force, decay, low, high, *h) - exact) <= 4e-15 * size
+    assert abs(relaxed_force(force, decay, low, high, list(h)) - exact) <= 4e-15 * size
 
 
 def test_a_yarn_without_viscosity_is_at_the_limit():
-    assert relaxed_force(0.0, 1e300, 0.0, 1.0, 2.0, 0.5, 0.0, 0.0) == pytest.approx(2.5, rel=1e-14)
+    assert relaxed_force(0.0, 1e300, 0.0, 1.0, [2.0, 0.5, 0.0, 0.0]) == pytest.approx(2.5, rel=1e-14)
 
 
 @given(forces, forces, shares)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from loomfmu.components import HealdDamper
-from loomfmu.components.damper_motion import MOST_CONTACTS, MOST_PIECES
+from loomfmu.components.heald_damper import MOST_CONTACTS, MOST_PIECES
 
 MP = mpmath.mp.clone()
 MP.dps = 40

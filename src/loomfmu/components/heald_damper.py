@@ -3,13 +3,41 @@
 from dataclasses import dataclass
 from math import fabs, sqrt
 
-from ..physics.damper import stop_damping_ratio
-from ..physics.hung_warp import warp_load
-from ..physics.numerics.motion import above_noise, bent, bump_noise, bumps, largest_between, sample_noise
+from ..physics.damper import (
+    Piece,
+    Ride,
+    Swing,
+    drive_at,
+    load_at,
+    power_of_frame,
+    propagate,
+    ride_on,
+    stop_damping_ratio,
+)
+from ..physics.damper_search import SLOPE, Gauge, Stop, contact_change, larger, next_turn, rate_bounds
+from ..physics.hung_warp import Warp, force_after, pulled, settled_load, warp_load, warp_stiffness
+from ..physics.numerics.motion import (
+    above_noise,
+    bent,
+    bump_noise,
+    bumps,
+    joined_area,
+    largest_between,
+    sample_noise,
+)
 from ..physics.shaft import carried
 from ..physics.warp import thread_extension
-from .damper_motion import DamperMotion
+from .damper_variables import DamperVariables
 
+# Pieces of motion in one step, and attempts at one: some 10 us each in Python, up to 600 with threads
+MOST_PIECES = 10000
+# A piece is short against the motion of the carrier: by as much, and with threads by as much, whose load
+# is a cubic along it
+SHORT = 0.5
+SHORT_WITH_THREADS = 0.05
+MOST_HALVINGS = 60  # of a piece that is too long for threads so stiff
+MOST_TURNS = 6  # of a load in one piece: four, and two by rounding where it starts at one
+MOST_CONTACTS = 2147483647  # counted: what an FMI integer holds
 # Time [s] below which two samples are one: the squares and cubes of shorter steps would underflow
 SHORTEST = 1e-15
 # Largest acceleration [m/s2] of a frame at rest: some hundred roundings of the motion of a loom, and little
@@ -18,7 +46,7 @@ RESTING = 1e-12
 
 
 @dataclass(slots=True)
-class HealdDamper(DamperMotion):
+class HealdDamper(DamperVariables):
     """Heald-frame damper: the carrier on four springs, free between two stops, driven by its frame.
 
     Exact between two samples of the inputs, whatever the step: the frame moves on the quintic that
@@ -86,7 +114,8 @@ class HealdDamper(DamperMotion):
             load_rate = (self.warp_force - self.sampled_force) / step_size
         elif fabs(self.acceleration) > self.peak_frame:
             self.peak_frame = fabs(self.acceleration)
-        problem = self.move(step_size, lift, velocity, a0, a1, a2, a3, load, load_rate)
+        ride = Ride(lift, velocity, a0, a1, a2, a3)
+        problem = self.move(step_size, ride, load, load_rate)
         self.remember()
         self.show(0.0 if self.inputs_at_step_end else step_size)
         self.show_energies()
@@ -135,6 +164,217 @@ class HealdDamper(DamperMotion):
         if frame > self.peak_frame:
             self.peak_frame = frame
 
+    def eye_offset(self) -> float:
+        """Height of the eyes above the warp line less the lift of their carrier."""
+        return self.shed_offset - 0.5 * self.stroke
+
+    def on_stop(self) -> float:
+        """1 or -1 while the carrier presses on the upper or lower stop, else 0."""
+        if self.contact == 1 or self.contact == -1:
+            return 1.0 * self.contact
+        return 0.0
+
+    def warp(self) -> Warp:
+        """The threads, all together."""
+        return Warp(
+            self.thread_count * self.pretension,
+            self.thread_count * self.thread_stiffness,
+            self.creep_rate,
+            self.relaxation_rate,
+            self.front_length,
+            self.back_length,
+        )
+
+    def move(self, duration: float, ride: Ride, load: float, load_rate: float) -> int:
+        """Move the carrier piece by piece: short against its own motion, one contact each."""
+        mass = self.carrier_mass
+        elapsed = 0.0
+        pieces = 0
+        short = SHORT if self.thread_count == 0 else SHORT_WITH_THREADS
+        own = sqrt(4.0 * self.spring_stiffness / mass) + self.damping / mass
+        if own * duration > short * MOST_PIECES:
+            return 1  # it would need more even if it never met a stop
+        while elapsed < duration:
+            pieces = pieces + 1
+            if pieces > MOST_PIECES:
+                return 1
+            side = self.on_stop()
+            stiffness = (4.0 * self.spring_stiffness + side * side * self.stop_stiffness) / mass
+            damping = (self.damping + side * side * self.stop_damping) / mass
+            preload = side * self.stop_stiffness * self.free_travel / mass
+            rest = duration - elapsed
+            now = ride_on(ride, elapsed)
+            own = self.quickness(stiffness, damping, now.lift)
+            piece = short / own if own * rest > short else rest
+            weight = load + load_rate * elapsed
+            swing = Swing(
+                self.displacement,
+                self.rate,
+                stiffness,
+                damping,
+                preload + weight / mass - now.a0,
+                load_rate / mass - now.a1,
+                -now.a2,
+                -now.a3,
+            )
+            changed, halvings = self.move_with_threads(swing, preload, now, weight, load_rate, piece)
+            if halvings > MOST_HALVINGS:
+                return 1  # however short, a piece never settles
+            pieces = pieces + halvings
+            elapsed = duration if changed >= rest else elapsed + changed
+        return 0
+
+    def quickness(self, stiffness: float, damping: float, lift: float) -> float:
+        """How fast the carrier moves by itself, with its threads [1/s]: a piece is short against that."""
+        if self.thread_count == 0:
+            return sqrt(stiffness) + damping
+        warp = self.warp()
+        threads = warp_stiffness(warp, self.thread_force, lift + self.eye_offset() + self.displacement)
+        return sqrt(stiffness + threads / self.carrier_mass) + damping + self.relaxation_rate
+
+    def move_with_threads(
+        self, swing: Swing, preload: float, ride: Ride, load: float, load_rate: float, piece: float
+    ) -> tuple[float, int]:
+        """Move carrier and threads over one piece, or up to the change of contact in it.
+
+        Returns:
+            the time it took [s], and how often the piece was halved, more than `MOST_HALVINGS` if in vain
+        """
+        mass = self.carrier_mass
+        if self.thread_count == 0:
+            alone = Piece(swing, preload, load, load_rate, 0.0, 0.0)
+            taken = self.move_piece(alone, piece)
+            self.take_work(alone, ride, taken)
+            return taken, 0
+        warp = self.warp()
+        force = self.thread_force
+        eyes = Ride(ride.lift + self.eye_offset(), ride.velocity, ride.a0, ride.a1, ride.a2, ride.a3)
+        taken = piece
+        d0, d1, d2, d3, settled = settled_load(warp, force, mass, swing, eyes, taken)
+        halvings = 0
+        while not settled and halvings < MOST_HALVINGS:
+            halvings = halvings + 1
+            taken = 0.5 * taken
+            d0, d1, d2, d3, settled = settled_load(warp, force, mass, swing, eyes, taken)
+        if not settled:
+            return taken, MOST_HALVINGS + 1
+        stiffness = swing.stiffness
+        damping = swing.damping
+        acceleration = swing.drive + ride.a0 + d0 / mass - stiffness * swing.position - damping * swing.rate
+        together = Piece(pulled(swing, mass, d0, d1, d2, d3), preload, load + d0, load_rate + d1, d2, d3)
+        taken = self.move_piece(together, taken)
+        self.take_work(together, ride, taken)
+        end = ride_on(eyes, taken)
+        second = end.a0 + drive_at(together.swing, taken)
+        self.thread_force = force_after(
+            warp,
+            force,
+            eyes.lift + swing.position,
+            ride.velocity + swing.rate,
+            acceleration,
+            end.lift + self.displacement,
+            end.velocity + self.rate,
+            second - stiffness * self.displacement - damping * self.rate,
+            taken,
+        )
+        return taken, halvings
+
+    def move_piece(self, piece: Piece, duration: float) -> float:
+        """Move over one piece, or up to the change of contact within it; the time that took."""
+        swing = piece.swing
+        stiffness = swing.stiffness
+        damping = swing.damping
+        most_acceleration, most_jerk, most_snap = rate_bounds(swing, duration)
+        taken = duration
+        farthest = fabs(swing.position) + duration * (fabs(swing.rate) + 0.5 * duration * most_acceleration)
+        before = self.contact
+        if before != 0 or farthest >= self.free_travel:
+            stop = Stop(self.free_travel, self.stop_stiffness, self.stop_damping)
+            taken, self.contact = contact_change(before, stop, swing, most_acceleration, most_jerk, duration)
+            if before == 0 and self.contact != 0 and self.stop_contacts < MOST_CONTACTS:
+                self.stop_contacts = self.stop_contacts + 1
+        self.displacement, self.rate = propagate(swing, taken)
+        first = stiffness * swing.position + damping * swing.rate - piece.preload
+        last = stiffness * self.displacement + damping * self.rate - piece.preload
+        # the curve lies no farther than that beyond the line between its ends
+        bulge = 0.125 * taken * taken * (stiffness * most_acceleration + damping * most_jerk)
+        bend = stiffness * most_jerk + damping * most_snap
+        mass = self.carrier_mass
+        if mass * (larger(first, last) + bulge) > self.peak_load:
+            self.note_turns(piece, False, bend, taken)
+        load_bend = 2.0 * fabs(piece.load_2) + 6.0 * fabs(piece.load_3) * taken
+        bulge = bulge + 0.125 * taken * taken * load_bend / mass
+        if larger(piece.load / mass - first, load_at(piece, taken) / mass - last) + bulge > self.peak_carrier:
+            self.note_turns(piece, True, bend + 6.0 * fabs(piece.load_3) / mass, taken)
+        return taken
+
+    def take_work(self, piece: Piece, ride: Ride, taken: float) -> None:
+        """Add the work of the frame on the carrier over a piece: its power runs on a quintic there."""
+        mass = self.carrier_mass
+        swing = piece.swing
+        t = taken
+        power, growth, bend = power_of_frame(mass, piece.preload, swing, ride.velocity, ride.a0, ride.a1)
+        end = Swing(
+            self.displacement,
+            self.rate,
+            swing.stiffness,
+            swing.damping,
+            drive_at(swing, t),
+            swing.drive_1 + t * (2.0 * swing.drive_2 + t * 3.0 * swing.drive_3),
+            swing.drive_2,
+            swing.drive_3,
+        )
+        end_power, end_growth, end_bend = power_of_frame(
+            mass,
+            piece.preload,
+            end,
+            ride.velocity + t * (ride.a0 + t * (ride.a1 / 2.0 + t * (ride.a2 / 3.0 + t * ride.a3 / 4.0))),
+            ride.a0 + t * (ride.a1 + t * (ride.a2 + t * ride.a3)),
+            ride.a1 + t * (2.0 * ride.a2 + t * 3.0 * ride.a3),
+        )
+        self.frame_work = self.frame_work + joined_area(
+            t, power, growth, bend, end_power, end_growth, end_bend
+        )
+
+    def note_turns(self, piece: Piece, of_carrier: bool, bend: float, taken: float) -> None:
+        """Keep the loads at the ends of a piece and where the transmitted one, or the carrier's sum, turns.
+
+        Its slope is a sum of six functions at most, which has few zeros on so short a piece.
+        """
+        swing = piece.swing
+        share = 1.0 / self.carrier_mass if of_carrier else 0.0
+        self.note_place(piece, swing.position, swing.rate, 0.0)
+        self.note_place(piece, self.displacement, self.rate, taken)
+        slope = Gauge(
+            SLOPE,
+            share * piece.load_1,
+            share * 2.0 * piece.load_2,
+            share * 3.0 * piece.load_3,
+            swing.stiffness,
+            swing.damping,
+        )
+        turn = 0.0
+        for _ in range(MOST_TURNS):
+            turn = next_turn(slope, swing, bend, turn, taken)
+            if turn < 0.0:
+                break
+            z, v = propagate(swing, turn)
+            self.note_place(piece, z, v, turn)
+
+    def note_place(self, piece: Piece, position: float, rate: float, time: float) -> None:
+        """Keep the loads at a place of a piece."""
+        swing = piece.swing
+        pressed = swing.stiffness * position + swing.damping * rate - piece.preload
+        self.note_load(self.carrier_mass * pressed, load_at(piece, time))
+
+    def note_load(self, transmitted: float, load: float) -> None:
+        """Keep the largest transmitted force and carrier acceleration."""
+        if fabs(transmitted) > self.peak_load:
+            self.peak_load = fabs(transmitted)
+        carrier = fabs(load - transmitted) / self.carrier_mass
+        if carrier > self.peak_carrier:
+            self.peak_carrier = carrier
+
     def show(self, lead: float) -> None:
         """Outputs that follow from the carrier's state, the inputs carried over `lead`."""
         side = self.on_stop()
@@ -162,17 +402,9 @@ class HealdDamper(DamperMotion):
         """Load of the threads on the carrier as it is shown."""
         if self.thread_count == 0:
             return 0.0
-        load, _rate = warp_load(
-            self.carrier_lift + self.eye_offset(),
-            self.carrier_velocity,
-            self.thread_force,
-            self.thread_count * self.pretension,
-            self.thread_count * self.thread_stiffness,
-            self.creep_rate,
-            self.relaxation_rate,
-            self.front_length,
-            self.back_length,
-        )
+        warp = self.warp()
+        height = self.carrier_lift + self.eye_offset()
+        load, _rate = warp_load(warp, self.thread_force, height, self.carrier_velocity)
         return load
 
     def show_energies(self) -> None:

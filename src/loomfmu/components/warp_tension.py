@@ -139,7 +139,7 @@ class WarpTension(Threads):
 
     def drive(
         self, duration: float, extension: float, a0: float, a1: float, a2: float, a3: float
-    ) -> tuple[float, float, float, float, float, float]:
+    ) -> list[float]:
         """Return the drive of a thread from the last sample to this one, see `thread_drive`."""
         return thread_drive(
             self.thread_stiffness,
@@ -155,12 +155,7 @@ class WarpTension(Threads):
     def work(
         self,
         duration: float,
-        p0: float,
-        p1: float,
-        p2: float,
-        p3: float,
-        p4: float,
-        p5: float,
+        p: list[float],
         a0: float,
         a1: float,
         a2: float,
@@ -177,44 +172,14 @@ class WarpTension(Threads):
         start = low
         stop = high
         if (force - slack_at) * (end - slack_at) < 0.0:
-            passed = thread_locate(
-                False, slack_at, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high
-            )
+            passed = thread_locate(False, slack_at, self.sampled_force, decay, p, low, high)
             start = passed if force < slack_at else low
             stop = high if force < slack_at else passed
         power, growth, bend = thread_power(
-            self.pretension,
-            force if start == low else slack_at,
-            decay,
-            p0,
-            p1,
-            p2,
-            p3,
-            p4,
-            p5,
-            rate,
-            a0,
-            a1,
-            a2,
-            a3,
-            start,
+            self.pretension, force if start == low else slack_at, decay, p, rate, a0, a1, a2, a3, start
         )
         end_power, end_growth, end_bend = thread_power(
-            self.pretension,
-            end if stop == high else slack_at,
-            decay,
-            p0,
-            p1,
-            p2,
-            p3,
-            p4,
-            p5,
-            rate,
-            a0,
-            a1,
-            a2,
-            a3,
-            stop,
+            self.pretension, end if stop == high else slack_at, decay, p, rate, a0, a1, a2, a3, stop
         )
         return self.thread_count * joined_area(
             stop - start, power, growth, bend, end_power, end_growth, end_bend
@@ -226,21 +191,19 @@ class WarpTension(Threads):
         Where the force may turn more than once on the way, each eighth of it is looked at.
         """
         a0, a1, a2, a3 = self.curve(duration, extension, rate, second)
-        p0, p1, p2, p3, p4, p5 = self.drive(duration, extension, a0, a1, a2, a3)
+        p = self.drive(duration, extension, a0, a1, a2, a3)
         decay = self.relaxation_rate * duration
-        panels = 1 if turns_once(p1, p2, p3, p4, p5) else 8
+        panels = 1 if turns_once(p) else 8
         low = 0.0
         force = self.sampled_force
         area = 0.0
         total = 0.0
         for panel in range(panels):
             high = (panel + 1) / panels
-            end, end_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, high)
-            total = total + self.panel_area(
-                decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area
-            )
+            end, end_area = thread_force(self.sampled_force, decay, p, high)
+            total = total + self.panel_area(decay, p, low, force, area, high, end, end_area)
             self.sampled_work = self.sampled_work + self.work(
-                duration, p0, p1, p2, p3, p4, p5, a0, a1, a2, a3, low, force, high, end
+                duration, p, a0, a1, a2, a3, low, force, high, end
             )
             low = high
             force = end
@@ -253,12 +216,7 @@ class WarpTension(Threads):
     def panel_area(
         self,
         decay: float,
-        p0: float,
-        p1: float,
-        p2: float,
-        p3: float,
-        p4: float,
-        p5: float,
+        p: list[float],
         low: float,
         force: float,
         area: float,
@@ -267,31 +225,22 @@ class WarpTension(Threads):
         end_area: float,
     ) -> float:
         """Integral of the tension over a piece of the way on which the force turns at most once."""
-        growth = thread_growth(force, decay, p0, p1, p2, p3, p4, p5, low)
-        if growth * thread_growth(end, decay, p0, p1, p2, p3, p4, p5, high) < 0.0:
+        growth = thread_growth(force, decay, p, low)
+        if growth * thread_growth(end, decay, p, high) < 0.0:
             # it gets no farther than it would at the rate of the start
             tension = self.pretension + force
             bound = tension + growth * (high - low)
             if bound > self.highest_tension or bound < self.lowest_tension or bound * tension < 0.0:
-                turn = thread_locate(True, 0.0, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high)
-                there, there_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, turn)
-                before = self.piece_area(
-                    decay, p0, p1, p2, p3, p4, p5, low, force, area, turn, there, there_area
-                )
-                return before + self.piece_area(
-                    decay, p0, p1, p2, p3, p4, p5, turn, there, there_area, high, end, end_area
-                )
-        return self.piece_area(decay, p0, p1, p2, p3, p4, p5, low, force, area, high, end, end_area)
+                turn = thread_locate(True, 0.0, self.sampled_force, decay, p, low, high)
+                there, there_area = thread_force(self.sampled_force, decay, p, turn)
+                before = self.piece_area(decay, p, low, force, area, turn, there, there_area)
+                return before + self.piece_area(decay, p, turn, there, there_area, high, end, end_area)
+        return self.piece_area(decay, p, low, force, area, high, end, end_area)
 
     def piece_area(
         self,
         decay: float,
-        p0: float,
-        p1: float,
-        p2: float,
-        p3: float,
-        p4: float,
-        p5: float,
+        p: list[float],
         low: float,
         force: float,
         area: float,
@@ -306,10 +255,8 @@ class WarpTension(Threads):
         if tension <= 0.0 and end_tension <= 0.0:
             return 0.0
         if tension < 0.0 or end_tension < 0.0:
-            passed = thread_locate(
-                False, -self.pretension, self.sampled_force, decay, p0, p1, p2, p3, p4, p5, low, high
-            )
-            _force, passed_area = thread_force(self.sampled_force, decay, p0, p1, p2, p3, p4, p5, passed)
+            passed = thread_locate(False, -self.pretension, self.sampled_force, decay, p, low, high)
+            _force, passed_area = thread_force(self.sampled_force, decay, p, passed)
             if tension < 0.0:
                 return self.pretension * (high - passed) + end_area - passed_area
             return self.pretension * (passed - low) + passed_area - area
@@ -332,12 +279,10 @@ class WarpTension(Threads):
         if lead > 0.0:
             extension, rate, second = self.sample(lead)
             a0, a1, a2, a3 = self.curve(lead, extension, rate, second)
-            p0, p1, p2, p3, p4, p5 = self.drive(lead, extension, a0, a1, a2, a3)
+            p = self.drive(lead, extension, a0, a1, a2, a3)
             start = force
-            force, _area = thread_force(force, self.relaxation_rate * lead, p0, p1, p2, p3, p4, p5, 1.0)
-            self.frame_work = self.sampled_work + self.work(
-                lead, p0, p1, p2, p3, p4, p5, a0, a1, a2, a3, 0.0, start, 1.0, force
-            )
+            force, _area = thread_force(force, self.relaxation_rate * lead, p, 1.0)
+            self.frame_work = self.sampled_work + self.work(lead, p, a0, a1, a2, a3, 0.0, start, 1.0, force)
             self.extension = extension
         tension = self.pretension + force
         self.slack = tension < 0.0

@@ -51,12 +51,13 @@ class WeftWay(WeftBrake):
     def force_at(self, passing: bool, low: float, force: float, share: float) -> float:
         """Elastic force at a share of the way, from that at `low`."""
         if passing:
+            limit = list(self.part_limit)
             return relaxed_force(
                 force,
                 self.way_time / self.retardation_time,
                 low - self.part_start,
                 share - self.part_start,
-                *self.part_limit,
+                limit,
             )
         return stretch_force(self.yarn_stiffness, self.length_at(self.travel_at(share)), self.unstretched)
 

@@ -6,7 +6,10 @@ dynamics behind the design formula, per unit of carrier mass and relative to the
 linear, and the power series of its solution, which converges for every step, is summed to rounding.
 """
 
+from dataclasses import dataclass
 from math import atan2, exp, fabs, pi, sqrt
+
+from .numerics.motion import moved_on
 
 
 def design_stiffness(load: float, mass: float, acceleration: float, travel: float) -> float:
@@ -56,48 +59,73 @@ def stop_damping_ratio(restitution: float) -> float:
     return 0.5 * (low + high)
 
 
-def propagate(
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    duration: float,
-) -> tuple[float, float]:
-    """State of `z'' + c z' + k z = u0 + u1 t + u2 t^2 + u3 t^3` after a duration.
+@dataclass(frozen=True)
+class Swing:
+    """A driven oscillator, `z'' + c z' + k z = u0 + u1 t + u2 t^2 + u3 t^3`, from a state on.
+
+    z [m] and z' [m/s] at the start, k [1/s2] and c [1/s], u0 [m/s2] to u3 [m/s5].
+    """
+
+    position: float
+    rate: float
+    stiffness: float
+    damping: float
+    drive: float
+    drive_1: float
+    drive_2: float
+    drive_3: float
+
+
+@dataclass(frozen=True)
+class Ride:
+    """The motion of a frame: lift [m], velocity [m/s], and acceleration, a cubic in time [m/s2 .. m/s5]."""
+
+    lift: float
+    velocity: float
+    a0: float
+    a1: float
+    a2: float
+    a3: float
+
+
+def ride_on(ride: Ride, time: float) -> Ride:
+    """The motion of a frame from a later time on.
+
+    >>> ride_on(Ride(1.0, 2.0, 6.0, 0.0, 0.0, 0.0), 0.5)
+    Ride(lift=2.75, velocity=5.0, a0=6.0, a1=0.0, a2=0.0, a3=0.0)
+    """
+    a1, a2, a3 = ride.a1, ride.a2, ride.a3
+    lift, velocity, acceleration = moved_on(ride.lift, ride.velocity, ride.a0, a1, a2, a3, time)
+    return Ride(
+        lift, velocity, acceleration, a1 + time * (2.0 * a2 + time * 3.0 * a3), a2 + 3.0 * a3 * time, a3
+    )
+
+
+def propagate(swing: Swing, duration: float) -> tuple[float, float]:
+    """State of an oscillator after a duration, `z` [m] and `z'` [m/s].
 
     The power series of the exact solution, summed until its terms are below rounding. Valid for `sqrt(k) t`
     and `c t` up to about 1, where nothing cancels; the caller splits longer steps.
 
-    Args:
-        position, rate: z [m] and z' [m/s] at the start
-        stiffness, damping: k [1/s2] and c [1/s]
-        drive, drive_1, drive_2, drive_3: u0 [m/s2] to u3 [m/s5]
-        duration: t [s]
-
-    Returns:
-        z [m], z' [m/s]
-
     >>> from math import cos, sin
-    >>> z, v = propagate(1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    >>> z, v = propagate(Swing(1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.5)
     >>> abs(z - cos(0.5)) < 1e-16, abs(v + sin(0.5)) < 1e-16
     (True, True)
     """
+    position = swing.position
+    rate = swing.rate
     if duration == 0.0:
         return position, rate
     square = duration * duration
-    elastic = stiffness * square
-    viscous = damping * duration
+    elastic = swing.stiffness * square
+    viscous = swing.damping * duration
     fourth_power = square * square
     following = rate * duration
     # the terms that the drive feeds
-    second = (drive * square - viscous * following - elastic * position) / 2.0
-    third = (drive_1 * duration * square - 2.0 * viscous * second - elastic * following) / 6.0
-    fourth = (drive_2 * fourth_power - 3.0 * viscous * third - elastic * second) / 12.0
-    fifth = (drive_3 * duration * fourth_power - 4.0 * viscous * fourth - elastic * third) / 20.0
+    second = (swing.drive * square - viscous * following - elastic * position) / 2.0
+    third = (swing.drive_1 * duration * square - 2.0 * viscous * second - elastic * following) / 6.0
+    fourth = (swing.drive_2 * fourth_power - 3.0 * viscous * third - elastic * second) / 12.0
+    fifth = (swing.drive_3 * duration * fourth_power - 4.0 * viscous * fourth - elastic * third) / 20.0
     total = position + following + second + third + fourth + fifth
     slope = following + 2.0 * second + 3.0 * third + 4.0 * fourth + 5.0 * fifth
     term = fourth
@@ -115,39 +143,59 @@ def propagate(
     return total, slope / duration
 
 
+def drive_at(swing: Swing, time: float) -> float:
+    """Drive of an oscillator at a time [m/s2].
+
+    >>> drive_at(Swing(0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0), 2.0)
+    49.0
+    """
+    return swing.drive + time * (swing.drive_1 + time * (swing.drive_2 + time * swing.drive_3))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of a carrier's motion: its swing, what a stop pushes back at z = 0 [m/s2], and what loads it.
+
+    The load is a cubic in time [N .. N/s3].
+    """
+
+    swing: Swing
+    preload: float
+    load: float
+    load_1: float
+    load_2: float
+    load_3: float
+
+
+def load_at(piece: Piece, time: float) -> float:
+    """Load of a carrier at a time of a piece [N]."""
+    return piece.load + time * (piece.load_1 + time * (piece.load_2 + time * piece.load_3))
+
+
 def power_of_frame(
-    mass: float,
-    stiffness: float,
-    damping: float,
-    preload: float,
-    position: float,
-    rate: float,
-    drive: float,
-    drive_1: float,
-    velocity: float,
-    acceleration: float,
-    jerk: float,
+    mass: float, preload: float, swing: Swing, velocity: float, acceleration: float, jerk: float
 ) -> tuple[float, float, float]:
     """Power of the frame on its carrier, `-m (k z + c z' - p) v`, and its first and second rate.
 
     Args:
         mass: of the carrier m [kg]
-        stiffness, damping: k [1/s2] and c [1/s]
         preload: p, what a stop pushes back at z = 0 [m/s2]
-        position, rate: z [m] and z' [m/s]
-        drive, drive_1: u of `propagate` and its rate [m/s2, m/s3]
+        swing: of the carrier in its frame, at its start
         velocity, acceleration, jerk: of the frame [m/s, m/s2, m/s3]
 
     Returns:
         power [W], its rates [W/s, W/s2]
 
-    >>> power_of_frame(2.0, 3.0, 0.0, 0.0, 0.5, 0.0, 1.5, 0.0, 4.0, 1.0, 0.0)  # at rest in the moving frame
+    >>> at_rest = Swing(0.5, 0.0, 3.0, 0.0, 1.5, 0.0, 0.0, 0.0)  # in the moving frame
+    >>> power_of_frame(2.0, 0.0, at_rest, 4.0, 1.0, 0.0)
     (-12.0, -3.0, -0.0)
     """
-    second = drive - stiffness * position - damping * rate
-    third = drive_1 - stiffness * rate - damping * second
-    force = mass * (stiffness * position + damping * rate - preload)
-    growth = mass * (stiffness * rate + damping * second)
+    stiffness = swing.stiffness
+    damping = swing.damping
+    second = swing.drive - stiffness * swing.position - damping * swing.rate
+    third = swing.drive_1 - stiffness * swing.rate - damping * second
+    force = mass * (stiffness * swing.position + damping * swing.rate - preload)
+    growth = mass * (stiffness * swing.rate + damping * second)
     bend = mass * (stiffness * second + damping * third)
     return (
         -force * velocity,

@@ -4,9 +4,10 @@ A piece is short against the carrier's own motion, `sqrt(k) t + c t` up to 0.5, 
 frame: within it a load may turn round four times, a contact begin and end again. See `damper.propagate`.
 """
 
+from dataclasses import dataclass
 from math import fabs, sqrt
 
-from .damper import propagate
+from .damper import Swing, drive_at, propagate
 
 # Followed along a piece: a gauge, linear in position and rate, or the first derivative of one
 LEVEL = 0
@@ -17,73 +18,63 @@ LEAST_STRIDE = 1e-8
 MOST_STRIDES = 1000
 
 
-def rate_bounds(
-    acceleration: float,
-    jerk: float,
-    stiffness: float,
-    damping: float,
-    drive_2: float,
-    drive_3: float,
-    duration: float,
-) -> tuple[float, float, float]:
-    """Bounds of acceleration, jerk and the jerk's rate over a piece of the motion that `propagate` gives.
+@dataclass(frozen=True)
+class Gauge:
+    """A gauge `q (z - p) + r z'` (LEVEL), or a slope, `q z' + r z'' - p - p1 t - p2 t^2` (SLOPE).
+
+    p, p1, p2 are the levels, q and r by what position and rate count.
+    """
+
+    order: int
+    level: float
+    level_1: float
+    level_2: float
+    by_position: float
+    by_rate: float
+
+
+def rate_bounds(swing: Swing, duration: float) -> tuple[float, float, float]:
+    """Bounds of acceleration, jerk and the jerk's rate over a piece of a motion.
 
     With a the acceleration and j the jerk, `j' = u'' - c j - k a`, where a and j are bounded by their start
     values and by the bound S of j' itself: `S (1 - c t - k t^2 / 2) <= max |u''| + (c + k t) |j0| + k |a0|`.
 
     Args:
-        acceleration, jerk: a0 [m/s2] and j0 [m/s3]
-        stiffness, damping: k [1/s2] and c [1/s]; `sqrt(k) t + c t` up to 0.5
-        drive_2, drive_3: u2 [m/s4] and u3 [m/s5]
+        swing: with `sqrt(k) t + c t` up to 0.5
         duration: t [s]
 
-    >>> rate_bounds(1.0, 0.0, 0.0, 0.0, 3.0, 0.0, 2.0)  # z'' = 1 + 3 t^2
+    >>> rate_bounds(Swing(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 3.0, 0.0), 2.0)  # z'' = 1 + 3 t^2
     (13.0, 12.0, 6.0)
     """
-    bend = 2.0 * fabs(drive_2) + 6.0 * duration * fabs(drive_3)
+    stiffness = swing.stiffness
+    damping = swing.damping
+    acceleration = swing.drive - stiffness * swing.position - damping * swing.rate
+    jerk = swing.drive_1 - stiffness * swing.rate - damping * acceleration
+    bend = 2.0 * fabs(swing.drive_2) + 6.0 * duration * fabs(swing.drive_3)
     fed = (damping + stiffness * duration) * fabs(jerk) + stiffness * fabs(acceleration)
     snap = (bend + fed) / (1.0 - duration * (damping + 0.5 * stiffness * duration))
     largest_jerk = fabs(jerk) + duration * snap
     return fabs(acceleration) + duration * (fabs(jerk) + 0.5 * duration * snap), largest_jerk, snap
 
 
-def gauge_at(
-    order: int,
-    level: float,
-    level_1: float,
-    level_2: float,
-    by_position: float,
-    by_rate: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    time: float,
-) -> tuple[float, float]:
-    """Value and derivative at a time of the gauge `q (z - p) + r z'`, or of its slope `q z' + r z'' - p`.
+def gauge_at(gauge: Gauge, swing: Swing, time: float) -> tuple[float, float]:
+    """Value and derivative of a gauge at a time since the start [s].
 
-    Args:
-        order: LEVEL for the gauge, SLOPE for its slope
-        level, level_1, level_2: p; of a slope it is `p + p1 t + p2 t^2`
-        by_position, by_rate: q and r
-        position .. drive_3: as for `propagate`
-        time: since the start [s]
-
-    >>> gauge_at(LEVEL, 0.25, 0.0, 0.0, 2.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    >>> still = Swing(1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    >>> gauge_at(Gauge(LEVEL, 0.25, 0.0, 0.0, 2.0, 0.0), still, 0.0)
     (1.5, 1.0)
     """
-    z, v = propagate(position, rate, stiffness, damping, drive, drive_1, drive_2, drive_3, time)
-    a = drive + time * (drive_1 + time * (drive_2 + time * drive_3)) - stiffness * z - damping * v
-    if order == LEVEL:
-        return by_position * (z - level) + by_rate * v, by_position * v + by_rate * a
-    jerk = drive_1 + time * (2.0 * drive_2 + 3.0 * time * drive_3) - stiffness * v - damping * a
+    z, v = propagate(swing, time)
+    by_position = gauge.by_position
+    by_rate = gauge.by_rate
+    a = drive_at(swing, time) - swing.stiffness * z - swing.damping * v
+    if gauge.order == LEVEL:
+        return by_position * (z - gauge.level) + by_rate * v, by_position * v + by_rate * a
+    jerk = swing.drive_1 + time * (2.0 * swing.drive_2 + 3.0 * time * swing.drive_3)
+    jerk = jerk - swing.stiffness * v - swing.damping * a
     return (
-        by_position * v + by_rate * a - (level + time * (level_1 + time * level_2)),
-        by_position * a + by_rate * jerk - (level_1 + 2.0 * time * level_2),
+        by_position * v + by_rate * a - (gauge.level + time * (gauge.level_1 + time * gauge.level_2)),
+        by_position * a + by_rate * jerk - (gauge.level_1 + 2.0 * time * gauge.level_2),
     )
 
 
@@ -119,64 +110,30 @@ def safe_stride(value: float, slope: float, bend: float) -> float:
 
 
 def first_change(
-    order: int,
-    level: float,
-    level_1: float,
-    level_2: float,
-    by_position: float,
-    by_rate: float,
-    sign: float,
-    bend: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    start: float,
-    duration: float,
+    gauge: Gauge, swing: Swing, sign: float, bend: float, start: float, duration: float
 ) -> float:
-    """Time at which a gauge, or its slope, first leaves a sign; on the far side of the zero, to rounding.
+    """Time at which a gauge first leaves a sign; on the far side of the zero, to rounding.
 
     Goes from stride to stride, each so short that no zero can lie within it, whatever the motion: so two
     changes close together are not missed as they are where the ends of a piece alone are compared.
 
     Args:
-        order .. by_rate: as for `gauge_at`
+        gauge, swing: what is followed, and the motion
         sign: -1 or 1, what it leaves
         bend: bound of the second derivative of what is followed, up to the end
-        position .. drive_3: as for `propagate`
         start, duration: from and to these times [s]
 
     Returns:
         time [s], or -1 if it keeps its sign
 
     >>> # the lower of two zeros of 0.02 - t (0.3 - t), where both ends are positive
-    >>> motion = (0.02, -0.3, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
-    >>> t = first_change(LEVEL, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, *motion, 0.0, 1.0)
+    >>> motion = Swing(0.02, -0.3, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
+    >>> t = first_change(Gauge(LEVEL, 0.0, 0.0, 0.0, 1.0, 0.0), motion, 1.0, 2.0, 0.0, 1.0)
     >>> round(t, 12)
     0.1
     """
     low = start
-    at_low, slope = gauge_at(
-        order,
-        level,
-        level_1,
-        level_2,
-        by_position,
-        by_rate,
-        position,
-        rate,
-        stiffness,
-        damping,
-        drive,
-        drive_1,
-        drive_2,
-        drive_3,
-        low,
-    )
+    at_low, slope = gauge_at(gauge, swing, low)
     if sign * at_low < 0.0:
         return low
     for n in range(MOST_STRIDES):
@@ -190,80 +147,23 @@ def first_change(
         # on the way to its zero all along, or noise that no stride gets away from
         if -sign * slope >= bend * rest or high > duration or n == MOST_STRIDES - 1:
             high = duration
-        at_high, slope = gauge_at(
-            order,
-            level,
-            level_1,
-            level_2,
-            by_position,
-            by_rate,
-            position,
-            rate,
-            stiffness,
-            damping,
-            drive,
-            drive_1,
-            drive_2,
-            drive_3,
-            high,
-        )
+        at_high, slope = gauge_at(gauge, swing, high)
         if sign * at_high < 0.0:
-            return locate(
-                order,
-                level,
-                level_1,
-                level_2,
-                by_position,
-                by_rate,
-                position,
-                rate,
-                stiffness,
-                damping,
-                drive,
-                drive_1,
-                drive_2,
-                drive_3,
-                low,
-                high,
-                at_low,
-                at_high,
-            )
+            return locate(gauge, swing, low, high, at_low, at_high)
         low = high
         at_low = at_high
     return -1.0
 
 
-def locate(
-    order: int,
-    level: float,
-    level_1: float,
-    level_2: float,
-    by_position: float,
-    by_rate: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    low: float,
-    high: float,
-    at_low: float,
-    at_high: float,
-) -> float:
-    """Time at which a gauge, or its slope, changes its sign in a bracket.
+def locate(gauge: Gauge, swing: Swing, low: float, high: float, at_low: float, at_high: float) -> float:
+    """Time at which a gauge changes its sign in a bracket [s].
 
     Illinois regula falsi on the exact solution; returns the end of the bracket on the far side of the
     zero, so that a caller that goes there has the change behind it.
 
     Args:
-        order .. drive_3: as for `gauge_at`
+        gauge, swing: what is followed, and the motion
         low, high, at_low, at_high: the bracket [s] and the values at its ends, of different signs
-
-    Returns:
-        time [s]
     """
     width = 1e-15 * high
     last = 0
@@ -273,23 +173,7 @@ def locate(
         t = high - at_high * (high - low) / (at_high - at_low)
         if t <= low or t >= high:
             t = 0.5 * (low + high)
-        value, _slope = gauge_at(
-            order,
-            level,
-            level_1,
-            level_2,
-            by_position,
-            by_rate,
-            position,
-            rate,
-            stiffness,
-            damping,
-            drive,
-            drive_1,
-            drive_2,
-            drive_3,
-            t,
-        )
+        value, _slope = gauge_at(gauge, swing, t)
         if (value > 0.0) == (at_high > 0.0):
             high = t
             at_high = value
@@ -305,31 +189,24 @@ def locate(
     return high
 
 
+@dataclass(frozen=True)
+class Stop:
+    """The stops of a carrier: free way to either side [m], stiffness [N/m] and damping [N s/m] of one."""
+
+    travel: float
+    stiffness: float
+    damping: float
+
+
 def contact_change(
-    contact: int,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    travel: float,
-    stop_stiffness: float,
-    stop_damping: float,
-    most_acceleration: float,
-    most_jerk: float,
-    duration: float,
+    contact: int, stop: Stop, swing: Swing, most_acceleration: float, most_jerk: float, duration: float
 ) -> tuple[float, int]:
     """When the carrier's contact with a stop first changes, and the contact that follows.
 
     Args:
         contact: 0 free; 1 or -1 pressing on the upper or lower stop; 2 or -2 let go by a stop that it
             has not left yet (the stop's dashpot would have to pull)
-        position .. drive_3: as for `propagate`
-        travel: free way to either side [m]
-        stop_stiffness, stop_damping: of a stop [N/m, N s/m]
+        stop, swing: the stops, and the motion of the carrier
         most_acceleration, most_jerk: from `rate_bounds`
         duration: how far to look [s]
 
@@ -338,16 +215,16 @@ def contact_change(
     """
     side = -1.0 if contact < 0 else 1.0
     # two gauges, negative until the contact changes; of a free carrier its ways beyond either stop
-    level = side * travel
+    level = side * stop.travel
     by_position = side
     by_rate = 0.0
     then = 1
-    other_level = -travel
+    other_level = -stop.travel
     other_then = -1
     if contact != 0:
         # one let go is pressed again, or leaves
-        by_position = side * stop_stiffness
-        by_rate = side * stop_damping
+        by_position = side * stop.stiffness
+        by_rate = side * stop.damping
         then = 1 if contact > 0 else -1
         other_level = level
         other_then = 0
@@ -355,120 +232,33 @@ def contact_change(
         by_position = -by_position
         by_rate = -by_rate
         then = 2 * contact
-    time = first_change(
-        LEVEL,
-        level,
-        0.0,
-        0.0,
-        by_position,
-        by_rate,
-        -1.0,
-        fabs(by_position) * most_acceleration + fabs(by_rate) * most_jerk,
-        position,
-        rate,
-        stiffness,
-        damping,
-        drive,
-        drive_1,
-        drive_2,
-        drive_3,
-        0.0,
-        duration,
-    )
+    gauge = Gauge(LEVEL, level, 0.0, 0.0, by_position, by_rate)
+    bend = fabs(by_position) * most_acceleration + fabs(by_rate) * most_jerk
+    time = first_change(gauge, swing, -1.0, bend, 0.0, duration)
     if time < 0.0:
         time = duration
         then = contact
     if contact == 1 or contact == -1:
         return time, then
-    other = first_change(
-        LEVEL,
-        other_level,
-        0.0,
-        0.0,
-        -side,
-        0.0,
-        -1.0,
-        most_acceleration,
-        position,
-        rate,
-        stiffness,
-        damping,
-        drive,
-        drive_1,
-        drive_2,
-        drive_3,
-        0.0,
-        time,
-    )
+    gauge = Gauge(LEVEL, other_level, 0.0, 0.0, -side, 0.0)
+    other = first_change(gauge, swing, -1.0, most_acceleration, 0.0, time)
     if other < 0.0:
         return time, then
     return other, other_then
 
 
-def next_turn(
-    offset: float,
-    offset_1: float,
-    offset_2: float,
-    by_position: float,
-    by_rate: float,
-    bend: float,
-    position: float,
-    rate: float,
-    stiffness: float,
-    damping: float,
-    drive: float,
-    drive_1: float,
-    drive_2: float,
-    drive_3: float,
-    start: float,
-    duration: float,
-) -> float:
-    """Time at which the gauge `q z + r z' - p t - p1 t^2 / 2 - p2 t^3 / 3` next turns; -1 if it does not.
+def next_turn(gauge: Gauge, swing: Swing, bend: float, start: float, duration: float) -> float:
+    """Time at which a slope next passes zero; -1 if it does not.
 
     Args:
-        offset, offset_1, offset_2, by_position, by_rate: p, p1, p2, q and r
-        bend: bound of the third derivative of the gauge up to the end
-        position .. drive_3: as for `propagate`
+        gauge, swing: the slope, and the motion
+        bend: bound of its second derivative up to the end
         start, duration: from and to these times [s]
 
-    >>> round(next_turn(0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.3, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
+    >>> falls = Swing(0.0, 0.3, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0)
+    >>> round(next_turn(Gauge(SLOPE, 0.0, 0.0, 0.0, 1.0, 0.0), falls, 1.0, 0.0, 1.0), 12)
     0.3
     """
-    value, slope = gauge_at(
-        SLOPE,
-        offset,
-        offset_1,
-        offset_2,
-        by_position,
-        by_rate,
-        position,
-        rate,
-        stiffness,
-        damping,
-        drive,
-        drive_1,
-        drive_2,
-        drive_3,
-        start,
-    )
+    value, slope = gauge_at(gauge, swing, start)
     sign = 1.0 if value > 0.0 or (value == 0.0 and slope > 0.0) else -1.0
-    return first_change(
-        SLOPE,
-        offset,
-        offset_1,
-        offset_2,
-        by_position,
-        by_rate,
-        sign,
-        bend,
-        position,
-        rate,
-        stiffness,
-        damping,
-        drive,
-        drive_1,
-        drive_2,
-        drive_3,
-        start,
-        duration,
-    )
+    return first_change(gauge, swing, sign, bend, start, duration)

@@ -141,7 +141,7 @@ def thread_drive(
     a1: float,
     a2: float,
     a3: float,
-) -> tuple[float, float, float, float, float, float]:
+) -> list[float]:
     """Right side of the law over a step, `b (x' + n x)`, as a polynomial in the share u of the step.
 
     The extension at both ends is exact, so rounding does not add up over many steps.
@@ -156,30 +156,20 @@ def thread_drive(
         coefficients of 1, u .. u^5 [N]
 
     >>> thread_drive(1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0)
-    (7.0, 2.0, 0.0, 0.0, 0.0, 0.0)
+    [7.0, 2.0, 0.0, 0.0, 0.0, 0.0]
     """
     rate = end - start - (a0 / 2.0 + a1 / 6.0 + a2 / 12.0 + a3 / 20.0)
-    return (
+    return [
         stiffness * (rate + creep * start),
         stiffness * (a0 + creep * rate),
         stiffness * (a1 + creep * a0) / 2.0,
         stiffness * (a2 / 3.0 + creep * a1 / 6.0),
         stiffness * (a3 / 4.0 + creep * a2 / 12.0),
         stiffness * creep * a3 / 20.0,
-    )
+    ]
 
 
-def thread_force(
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
-    share: float,
-) -> tuple[float, float]:
+def thread_force(force: float, decay: float, p: list[float], share: float) -> tuple[float, float]:
     """Force of the thread at a share u of the step, and its integral over u from 0.
 
     Exact solution of `dF/du + z F = p0 + p1 u + .. + p5 u^5`:
@@ -190,16 +180,17 @@ def thread_force(
     Args:
         force: F0 at the start of the step [N]
         decay: z, the relaxation rate times the duration of the step [1]
-        p0 .. p5: right side of the law, from `thread_drive` [N]
+        p: right side of the law, from `thread_drive` [N]
         share: u [1]
 
     Returns:
         force [N], integral [N]
 
-    >>> thread_force(1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    >>> thread_force(1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0)
     (3.0, 2.0)
     """
     u = share
+    p0, p1, p2, p3, p4, p5 = p
     kept, i0, i1, i2, i3, i4, i5, i6 = fading(decay * u)
     gain = p0 * i0 + u * (p1 * i1 + u * (p2 * i2 + u * (p3 * i3 + u * (p4 * i4 + u * p5 * i5))))
     area = p2 * i3 / 3.0 + u * (p3 * i4 / 4.0 + u * (p4 * i5 / 5.0 + u * p5 * i6 / 6.0))
@@ -207,73 +198,40 @@ def thread_force(
     return force * kept + u * gain, u * (force * i0 + u * area)
 
 
-def thread_growth(
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
-    share: float,
-) -> float:
+def thread_growth(force: float, decay: float, p: list[float], share: float) -> float:
     """Derivative of the force by u, at a given force; see `thread_force`.
 
-    >>> thread_growth(3.0, 2.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    >>> thread_growth(3.0, 2.0, [10.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.5)
     4.0
     """
     u = share
-    return p0 + u * (p1 + u * (p2 + u * (p3 + u * (p4 + u * p5)))) - decay * force
+    return p[0] + u * (p[1] + u * (p[2] + u * (p[3] + u * (p[4] + u * p[5])))) - decay * force
 
 
-def turns_once(p1: float, p2: float, p3: float, p4: float, p5: float) -> bool:
+def turns_once(p: list[float]) -> bool:
     """Return whether the force has at most one extreme in the step: its right side is monotonic.
 
     Between two extremes of the force `exp(z u) dF/du` has one too, and its derivative is `exp(z u)` times
     that of the right side. Sufficient, not necessary: the first coefficient outweighs all others.
 
-    >>> turns_once(1.0, 0.2, 0.0, 0.0, 0.0), turns_once(1.0, -1.0, 0.0, 0.0, 0.0)
+    >>> turns_once([0.0, 1.0, 0.2, 0.0, 0.0, 0.0]), turns_once([0.0, 1.0, -1.0, 0.0, 0.0, 0.0])
     (True, False)
     """
-    return fabs(p1) >= 2.0 * fabs(p2) + 3.0 * fabs(p3) + 4.0 * fabs(p4) + 5.0 * fabs(p5)
+    return fabs(p[1]) >= 2.0 * fabs(p[2]) + 3.0 * fabs(p[3]) + 4.0 * fabs(p[4]) + 5.0 * fabs(p[5])
 
 
-def thread_gauge(
-    turn: bool,
-    level: float,
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
-    share: float,
-) -> float:
+def thread_gauge(turn: bool, level: float, force: float, decay: float, p: list[float], share: float) -> float:
     """Zero where `thread_locate` looks: the derivative of the force by u, or the force minus a level.
 
-    >>> thread_gauge(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    >>> thread_gauge(False, 2.0, 1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0)
     1.0
     """
-    value, _area = thread_force(force, decay, p0, p1, p2, p3, p4, p5, share)
-    return thread_growth(value, decay, p0, p1, p2, p3, p4, p5, share) if turn else value - level
+    value, _area = thread_force(force, decay, p, share)
+    return thread_growth(value, decay, p, share) if turn else value - level
 
 
 def thread_locate(
-    turn: bool,
-    level: float,
-    force: float,
-    decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
-    low: float,
-    high: float,
+    turn: bool, level: float, force: float, decay: float, p: list[float], low: float, high: float
 ) -> float:
     """Share of the step at which the force has an extreme, or at which it passes a level.
 
@@ -282,17 +240,17 @@ def thread_locate(
     Args:
         turn: True for the extreme, False for the level
         level: of the force [N]
-        force .. p5: as for `thread_force`
+        force .. p: as for `thread_force`
         low, high: bracket of u; the derivative, or force minus level, changes sign between them
 
     Returns:
         share [1]
 
-    >>> round(thread_locate(False, 2.0, 1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), 12)
+    >>> round(thread_locate(False, 2.0, 1.0, 0.0, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0.0, 1.0), 12)
     0.5
     """
-    at_low = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, low)
-    at_high = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, high)
+    at_low = thread_gauge(turn, level, force, decay, p, low)
+    at_high = thread_gauge(turn, level, force, decay, p, high)
     last = 0
     for count in range(100):
         if high - low <= 1e-15 or at_high == 0.0:
@@ -300,7 +258,7 @@ def thread_locate(
         u = high - at_high * (high - low) / (at_high - at_low)
         if u <= low or u >= high or count % 3 == 2:
             u = 0.5 * (low + high)
-        here = thread_gauge(turn, level, force, decay, p0, p1, p2, p3, p4, p5, u)
+        here = thread_gauge(turn, level, force, decay, p, u)
         if (here > 0.0) == (at_high > 0.0):
             high = u
             at_high = here

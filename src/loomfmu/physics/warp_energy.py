@@ -34,12 +34,7 @@ def thread_power(
     pretension: float,
     force: float,
     decay: float,
-    p0: float,
-    p1: float,
-    p2: float,
-    p3: float,
-    p4: float,
-    p5: float,
+    p: list[float],
     rate: float,
     a0: float,
     a1: float,
@@ -53,22 +48,22 @@ def thread_power(
 
     Args:
         pretension, force: T0 and F there [N]
-        decay .. p5: as for `thread_force`
+        decay, p: as for `thread_force`
         rate, a0 .. a3: rate of the extension by u at the start, and its second rate as from `joined` [m]
         share: u [1]
 
     Returns:
         power and rates [J]
 
-    >>> thread_power(1.0, 2.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    >>> thread_power(1.0, 2.0, 0.0, [4.0] + [0.0] * 5, 5.0, 0.0, 0.0, 0.0, 0.0, 0.5)
     (15.0, 20.0, 0.0)
     """
     tension = pretension + force
     if tension < 0.0:
         return 0.0, 0.0, 0.0
     u = share
-    growth = thread_growth(force, decay, p0, p1, p2, p3, p4, p5, u)
-    bend = p1 + u * (2.0 * p2 + u * (3.0 * p3 + u * (4.0 * p4 + u * 5.0 * p5))) - decay * growth
+    growth = thread_growth(force, decay, p, u)
+    bend = p[1] + u * (2.0 * p[2] + u * (3.0 * p[3] + u * (4.0 * p[4] + u * 5.0 * p[5]))) - decay * growth
     _x, slope, second = moved_on(0.0, rate, a0, a1, a2, a3, u)
     third = a1 + u * (2.0 * a2 + u * 3.0 * a3)
     return (

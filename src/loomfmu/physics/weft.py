@@ -106,35 +106,32 @@ def unstretched_length(stiffness: float, length: float, force: float) -> float:
     return length * (stiffness / (stiffness + force))
 
 
-def relaxed_force(
-    force: float, decay: float, low: float, share: float, h0: float, h1: float, h2: float, h3: float
-) -> float:
+def relaxed_force(force: float, decay: float, low: float, share: float, limit: list[float]) -> float:
     """Elastic force while the brake lets yarn through: exact solution of `tau F' + F = H`, H a cubic.
 
     Args:
         force: F at the beginning [N]
         decay: duration of the step over the retardation time tau [1]
         low, share: share u of the step at the beginning and at the end
-        h0 .. h3: H by u, coefficients of 1 .. u^3 [N]
+        limit: H by u, coefficients of 1 .. u^3 [N]
 
     Returns:
         F [N]
 
-    >>> relaxed_force(2.0, 3.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0)
+    >>> relaxed_force(2.0, 3.0, 0.0, 1.0, [2.0, 0.0, 0.0, 0.0])
     2.0
     """
     z = decay if decay < MOST_DECAY else MOST_DECAY
-    end, _area = thread_force(
-        force,
-        z,
+    h0, h1, h2, h3 = limit
+    p = [
         z * (h0 + low * (h1 + low * (h2 + low * h3))),
         z * (h1 + low * (2.0 * h2 + 3.0 * low * h3)),
         z * (h2 + 3.0 * low * h3),
         z * h3,
         0.0,
         0.0,
-        share - low,
-    )
+    ]
+    end, _area = thread_force(force, z, p, share - low)
     return end
 
 
