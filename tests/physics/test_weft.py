@@ -117,7 +117,7 @@ def test_program_does_not_overshoot(start, end, share):
 @given(st.tuples(*[st.floats(-2.0, 2.0)] * 6))
 def test_quintic_meets_both_samples(ends):
     curve = quintic(*ends, 0.0)
-    assert along(0.0, *curve)[:3] == ends[:3]
-    for found, exact in zip(along(1.0, *curve), ends[3:], strict=False):
+    assert along(0.0, curve)[:3] == ends[:3]
+    for found, exact in zip(along(1.0, curve), ends[3:], strict=False):
         # sixty roundings of what is joined, or what is taken for its noise
         assert found == pytest.approx(exact, abs=60 * 1.8e-15 * 12.0)

@@ -7,19 +7,11 @@ from typing import ClassVar
 from ..declaring.arrays import array
 from ..declaring.declarations import auxiliary, output, parameter, state
 from ..declaring.variables import Problem, Terminal
+from ..physics.weft_way import PROGRAM_POINTS
 from .head_inputs import head_acceleration, head_travel, head_velocity
 from .shaft_driven import TOO_FAR, ShaftDriven
 from .terminals import HEAD
 
-PROGRAM_POINTS = 24  # of the brake, evenly spaced over a revolution
-QUINTIC = (
-    "value at its start",
-    "rate at its start",
-    "second rate, constant part",
-    "second rate, linear part",
-    "second rate, quadratic part",
-    "second rate, cubic part",
-)
 FOLLOWED = "followed"  # what says when other outputs are known
 
 
@@ -225,23 +217,3 @@ class WeftVariables(ShaftDriven):
         maximum=1,
     )
     acceleration_rate: float = state("m/s3", "Rate of the acceleration between the last two samples")
-    new_travel: float = auxiliary("m", "Travel at the end of the way")
-    new_velocity: float = auxiliary("m/s", "Velocity at the end of the way")
-    new_acceleration: float = auxiliary("m/s2", "Acceleration at the end of the way")
-    new_limit: float = auxiliary("N", "Limit of eye_tension at the end of the way")
-    new_angle: float = auxiliary("rad", "Shaft angle at the end of the way")
-    new_speed: float = auxiliary("rad/s", "Shaft velocity at the end of the way")
-    new_change: float = auxiliary("rad/s2", "Shaft acceleration at the end of the way")
-    way_time: float = auxiliary("s", "Duration of the way between two samples", minimum=0.0)
-    way: tuple[float, ...] = array(
-        auxiliary("m", f"Travel by the share of the way: {what}") for what in QUINTIC
-    )
-    turn: tuple[float, ...] = array(
-        auxiliary("rad", f"Shaft angle by the share of the way: {what}") for what in QUINTIC
-    )
-    part_start: float = auxiliary("1", "Share of the way at which the present part of it begins")
-    part_limit: tuple[float, ...] = array(
-        auxiliary("N", f"Limit of eye_tension by the share since part_start: {part} part")
-        for part in ("constant", "linear", "quadratic", "cubic")
-    )
-    next_point: float = auxiliary("1", "Point of the program that the shaft passes next, counted from 0 deg")

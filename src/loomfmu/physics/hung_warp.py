@@ -109,19 +109,19 @@ def warp_stiffness(warp: Warp, force: float, height: float) -> float:
 
 def cubic_between(
     start: float, start_rate: float, end: float, end_rate: float, duration: float
-) -> tuple[float, float, float, float]:
+) -> list[float]:
     """Cubic in time that meets value and rate at both ends: coefficients of 1, t, t^2, t^3.
 
     >>> cubic_between(0.0, 0.0, 8.0, 12.0, 2.0)
-    (0.0, 0.0, 0.0, 1.0)
+    [0.0, 0.0, 0.0, 1.0]
     """
     mean = (end - start) / duration
-    return (
+    return [
         start,
         start_rate,
         (3.0 * mean - 2.0 * start_rate - end_rate) / duration,
         (start_rate + end_rate - 2.0 * mean) / (duration * duration),
-    )
+    ]
 
 
 def settled_load(

@@ -188,7 +188,7 @@ def moving_load_rate(
 
 def quintic(
     start: float, rate: float, second: float, end: float, end_rate: float, end_second: float, place: float
-) -> tuple[float, float, float, float, float, float]:
+) -> list[float]:
     """The quintic that joins two samples of a motion, without what is lost in their rounding.
 
     Args:
@@ -210,16 +210,15 @@ def quintic(
     a0, a1, a2, a3 = bent(
         second, end_second, above_noise(by_rate, 0.0, rate_noise), above_noise(by_value, 0.0, value_noise)
     )
-    return start, rate, a0, a1, a2, a3
+    return [start, rate, a0, a1, a2, a3]
 
 
-def along(
-    share: float, start: float, rate: float, a0: float, a1: float, a2: float, a3: float
-) -> tuple[float, float, float, float]:
+def along(share: float, way: list[float]) -> tuple[float, float, float, float]:
     """Value on a `quintic` at a share u of the way, and its first three derivatives by u.
 
-    >>> along(0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 20.0)
+    >>> along(0.5, [0.0, 0.0, 0.0, 0.0, 0.0, 20.0])
     (0.03125, 0.3125, 2.5, 15.0)
     """
+    start, rate, a0, a1, a2, a3 = way
     value, first, second = moved_on(start, rate, a0, a1, a2, a3, share)
     return value, first, second, a1 + share * (2.0 * a2 + 3.0 * share * a3)
