@@ -201,6 +201,16 @@ class Si(float):
     """A number that is known to be in SI: it never causes a warning about its unit."""
 
 
+def ends_of(text: str) -> tuple[str, str]:
+    """Return both ends of a range LOW..HIGH; an end that is missing is an empty text.
+
+    >>> ends_of("0.2 mm .. 0.5 mm")
+    ('0.2 mm', '0.5 mm')
+    """
+    low, _, high = (end.strip() for end in text.partition(".."))
+    return low, high
+
+
 def is_plain(quantity: Any) -> bool:
     """Return whether a quantity is a number without a unit, as people write it: read as SI.
 

@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 from loomfmu import LoomfmuError
-from loomfmu.sweeps.pools import Died, Here, Pool, Processes, Task, _undisturbed
+from loomfmu.sweeps.pools import Here, Pool, Processes, Task, WorkerDied, _undisturbed
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_the_end_of_a_process_is_the_outcome_of_its_task_alone(two: Processes) -
     tasks.insert(3, Task("end", odd_tasks.end, ()))
     found = all_done(two, tasks)
     ended = found.pop("end")
-    assert isinstance(ended, Died) and str(ended) == "the process that ran it ended with SIGKILL"
+    assert isinstance(ended, WorkerDied) and str(ended) == "the process that ran it ended with SIGKILL"
     assert all(isinstance(each, int) for each in found.values())
 
 
@@ -67,7 +67,7 @@ def test_a_process_that_is_killed_while_it_waits_costs_no_more_than_the_next_tas
         while psutil.Process(victim).status() != psutil.STATUS_ZOMBIE:
             time.sleep(0.01)
     after = all_done(two, [Task(number, odd_tasks.pid, (number,)) for number in range(6)])
-    assert sum(isinstance(each, Died) for each in after.values()) <= 2
+    assert sum(isinstance(each, WorkerDied) for each in after.values()) <= 2
     assert sum(isinstance(each, int) for each in after.values()) >= 4
 
 

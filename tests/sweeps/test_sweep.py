@@ -22,8 +22,8 @@ from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
 from loomfmu.design import loom
 from loomfmu.sweeps import plan as plans
-from loomfmu.sweeps import report
 from loomfmu.sweeps import run as sweeps_run
+from loomfmu.sweeps import summary
 from loomfmu.sweeps.ranking import beyond, traced_rows, worst_rows
 from loomfmu.sweeps.worker import Job, identity
 
@@ -565,7 +565,7 @@ def test_a_row_within_its_error_of_a_bound_is_undecided(
     assert near["claim_2.decided"] is False and near["claim_2.holds"] is False and near["holds"] is False
     assert near["claim_2.error"] >= abs(near["claim_2.distance"])
     assert far["claim_2.error"] is None and far["claim_2.decided"] is True  # too far away to matter
-    report.show(found)
+    summary.show(found)
     printed = capsys.readouterr().out
     assert "3 combinations: 1 hold, 1 fail and 1 undecided" in printed
     assert "undecided  row 1" in printed

@@ -23,7 +23,7 @@ def sweep(options: argparse.Namespace) -> int:
     from ..sweeps.run import sweep as run_sweep
 
     found = run_sweep(options.sweep, progress=True, **_places(options))
-    from ..sweeps.report import show  # after the extra `sweep` is known to be installed
+    from ..sweeps.summary import show  # after the extra `sweep` is known to be installed
 
     warn(found.warnings)
     show(found)
@@ -74,13 +74,13 @@ def add_limit(commands: Any) -> None:
 
 def limit(options: argparse.Namespace) -> int:
     """Find the values at which claims begin to fail."""
-    from ..studies.limits import report
+    from ..studies.limits import limit_tables
     from ..studies.limits.boundary import limit as find
 
     inputs = [Path(options.scene)]
     output = Path(options.output) if options.output else None
     if output is not None:
-        report.check(output, inputs, options.force)  # before the runs, not after them
+        limit_tables.check(output, inputs, options.force)  # before the runs, not after them
     counts = {name: getattr(options, name) for name in ("points", "rows")}
     found = find(
         options.scene,
@@ -92,9 +92,9 @@ def limit(options: argparse.Namespace) -> int:
         **{name: count for name, count in counts.items() if count is not None},
     )
     if output is not None:  # before anything is printed
-        report.write(found, output, inputs, options.force)
+        limit_tables.write(found, output, inputs, options.force)
     warn(found.warnings)
-    report.show(found)
+    limit_tables.show(found)
     if output is not None:
         say(f"written: {output}")
     return 0 if found else 1
@@ -126,8 +126,8 @@ def add_tolerances(commands: Any) -> None:
 def tolerances(options: argparse.Namespace) -> int:
     """Find the worst case of every claim within tolerances."""
     from ..report import pictures
-    from ..studies.tolerances.report import draw, show
     from ..studies.tolerances.tolerances import tolerances as find
+    from ..studies.tolerances.worst_cases import draw, show
 
     inputs = [Path(options.scene)]
     picture = Path(options.picture) if options.picture else None
@@ -158,8 +158,8 @@ def add_optimize(commands: Any) -> None:
 
 def optimize(options: argparse.Namespace) -> int:
     """Find the best design."""
+    from ..studies.optimizing.best_design import show
     from ..studies.optimizing.optimize import optimize as find
-    from ..studies.optimizing.report import show
 
     found = find(options.study, progress=True, **_places(options))
     warn(found.warnings)
@@ -221,7 +221,7 @@ def fit(options: argparse.Namespace) -> int:
     from ..report import pictures
     from ..studies import rewritten
     from ..studies.fitting.fit import fit as find
-    from ..studies.fitting.report import show
+    from ..studies.fitting.fitted_values import show
 
     inputs = [Path(options.scene), Path(options.data)]
     output, picture = (Path(each) if each else None for each in (options.output, options.picture))

@@ -151,7 +151,7 @@ def _range(
             ends = [min(end, port.maximum) for end in ends]
         low, high = (float(round(end)) if port.kind == "Integer" else end for end in ends)
     else:
-        first, _, last = (end.strip() for end in wanted.partition(".."))
+        first, last = units.ends_of(wanted)
         if not (first and last):
             raise LoomfmuError(f"{where}={wanted}: not a range; {FORM}")
         low, high = (port.value(end, where) for end in (first, last))

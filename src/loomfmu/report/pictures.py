@@ -137,9 +137,9 @@ def _limits(ylim: str, trace: Trace, panels: Sequence[Sequence[str]]) -> tuple[f
         names = listed(each[0] for each in panels)
         raise LoomfmuError(f"ylim {ylim}: {names} are in different panels; plot them apart")
     name = panels[0][0]
-    low, dots, high = ylim.partition("..")
+    low, high = units.ends_of(ylim)
     try:
-        ends = [units.parse(each.strip(), trace.unit(name)) for each in (low, high if dots else low)]
+        ends = [units.parse(each, trace.unit(name)) for each in (low, high if ".." in ylim else low)]
     except units.UnitError as error:
         raise LoomfmuError(f"ylim {ylim}: {error}; write LOW..HIGH, such as 0..1 or 0mm..50mm") from None
     if not ends[0] < ends[1]:

@@ -84,8 +84,8 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
         raise LoomfmuError(f"vary = {shown(text)} is not a variable such as 'shaft.speed'")
     key, equals, wanted = (part.strip() for part in text.partition("="))
     if equals:
-        first, dots, last = (part.strip() for part in wanted.partition(".."))
-        if not (dots and first and last):
+        first, last = units.ends_of(wanted)
+        if not (first and last):
             raise LoomfmuError(f"vary {text}: {shown(wanted)} is not a range; {FORM}")
         if from_ is not None or to is not None:
             raise LoomfmuError(f"vary {text}: the range is given twice; leave out from and to")

@@ -5,7 +5,7 @@ from typing import Any
 import distributed
 
 from ..errors import LoomfmuError
-from .pools import Died, Task
+from .pools import Task, WorkerDied
 
 ANSWER = 10.0  # s that a scheduler has to answer, and to find a worker
 
@@ -49,7 +49,7 @@ class Cluster:
         self._tasks[self._client.submit(task.function, *task.arguments, pure=False)] = task.key
 
     def finished(self) -> list[tuple[Any, Any]]:
-        """Keys and outcomes of tasks that are done; `Died` for one that its workers did not survive."""
+        """Keys and outcomes of tasks that are done; `WorkerDied` for one that its workers did not survive."""
         with self._client.as_current():
             done = distributed.wait(list(self._tasks), return_when="FIRST_COMPLETED").done
         return [(self._tasks.pop(future), self._outcome(future)) for future in done]
@@ -61,7 +61,7 @@ class Cluster:
             raise LoomfmuError(f"{self.address}: lost the dask scheduler ({future.status})")
         error = future.exception()
         killed = isinstance(error, distributed.KilledWorker)
-        return Died("the processes that ran it have ended") if killed else error
+        return WorkerDied("the processes that ran it have ended") if killed else error
 
     def close(self) -> None:
         """Take back what is under way and leave the cluster as it was."""

@@ -29,7 +29,7 @@ class Task:
     arguments: tuple[Any, ...]
 
 
-class Died(Exception):
+class WorkerDied(Exception):
     """The process that had a task has ended."""
 
 
@@ -133,7 +133,7 @@ class Processes:
             worker.connection.send(worker.task)
 
     def finished(self) -> list[tuple[Any, Any]]:
-        """Keys and outcomes of tasks that are done; `Died` for one whose worker has ended."""
+        """Keys and outcomes of tasks that are done; `WorkerDied` for one whose worker has ended."""
         done: list[tuple[Any, Any]] = []
         while not done:
             waiting = {worker.connection: worker for worker in self._workers if worker.task is not None}
@@ -167,7 +167,7 @@ class Processes:
             )
         assert worker.task is not None
         how = signal_name(-code) if code < 0 else f"status {code}"
-        return worker.task.key, Died(f"the process that ran it ended with {how}")
+        return worker.task.key, WorkerDied(f"the process that ran it ended with {how}")
 
     def close(self) -> None:
         """End all workers."""

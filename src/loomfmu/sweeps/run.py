@@ -17,7 +17,7 @@ from ..traces import TRACE
 from . import plan as plans
 from .place import check_place, cluster, local, resumable
 from .plan import SweepPlan
-from .pools import Died, Pool, Task
+from .pools import Pool, Task, WorkerDied
 from .schedule import run_batches
 from .sensitivity import Influences, csv_rows, influences
 from .worker import Batch, Job, job_of, run_trace
@@ -209,6 +209,8 @@ def _do(tasks: list[Task], pool: Pool, advance: Advance) -> dict[Any, str]:
         for row, outcome in pool.finished():
             under_way -= 1
             if isinstance(outcome, Exception):
-                failed[row] = str(outcome) if isinstance(outcome, LoomfmuError | Died) else described(outcome)
+                failed[row] = (
+                    str(outcome) if isinstance(outcome, LoomfmuError | WorkerDied) else described(outcome)
+                )
             advance(1)
     return dict(sorted(failed.items()))

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from ..cosim.scenes.scene import Scene
-from .pools import Died, Pool, Task
+from .pools import Pool, Task, WorkerDied
 from .worker import Batch, Job, failed, run_rows
 
 BATCH = 1.5  # s, what a batch should take: far above the cost of handing it over, little to lose
@@ -106,13 +106,13 @@ def run_batches(
             if isinstance(outcome, Batch):
                 schedule.measured(rows, outcome.seconds)
                 done.append((rows, outcome))
-            elif not isinstance(outcome, Died):
+            elif not isinstance(outcome, WorkerDied):
                 raise outcome
             elif schedule.died(rows):
                 done.append((rows, Batch([failed(job, scene, _reason(scene, outcome))], (), 0.0)))
 
 
-def _reason(scene: Scene, died: Died) -> str:
+def _reason(scene: Scene, died: WorkerDied) -> str:
     """Return why a row whose process has ended could not be run."""
     inside = scene.unprotected
     who = f", with {', '.join(inside)} in it; isolated = true says which call of which FMU" if inside else ""

@@ -18,7 +18,7 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design.buckling import fit_length_factor
 from loomfmu.machines import table
 from loomfmu.studies.fitting import fit as fitted
-from loomfmu.studies.fitting.report import show
+from loomfmu.studies.fitting.fitted_values import show
 
 SIMS = Path(__file__).parents[3] / "sims"
 HEADING = "time [s],belt.critical_force [N]"

@@ -15,7 +15,7 @@ from ...errors import LoomfmuError
 from .calls import ERROR, OK, WARNING, Call, Rollback, Silent
 from .messages import CALLS, DONE, PLACE, SIZE, TIME, VALUES, Answer
 from .ports import Value
-from .process import START, Died, Limits, Process
+from .process import START, Limits, Process, ProcessDied
 from .slave import SIZES, Slave
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class IsolatedSlave(Slave):
         self._getting: list[int] = []  # calls that fetch outputs
         self._fresh = False  # whether the outputs in the shared memory are those of the FMU
         self._failed = ""  # the function that failed last
-        self._died: Died | None = None
+        self._died: ProcessDied | None = None
 
     @property
     def alive(self) -> bool:
@@ -69,7 +69,7 @@ class IsolatedSlave(Slave):
                 pickle.dumps((method, arguments)), limits or self.limits, lambda: action
             )
             answer = self._taken_in(reply)
-        except Died as died:
+        except ProcessDied as died:
             self._died = died
             raise LoomfmuError(f"{self.name}: {died}") from None
         if answer.error:
@@ -82,7 +82,7 @@ class IsolatedSlave(Slave):
             answer = Answer(*pickle.loads(reply))
         except Exception:  # an FMU has written into the pipe
             self._process.end()
-            raise Died("it disturbs the connection to the master") from None
+            raise ProcessDied("it disturbs the connection to the master") from None
         self.messages[:] = answer.messages
         self._silent = {function: Silent(*each) for function, each in answer.silent.items()}
         self.fatal = answer.fatal
@@ -100,7 +100,7 @@ class IsolatedSlave(Slave):
                 lambda: self._under_way(batch),
             )
             answer = None if reply == DONE else self._taken_in(reply)
-        except Died as died:
+        except ProcessDied as died:
             self._died = died
             return ERROR
         if answer is None or answer.value is None:

@@ -53,7 +53,7 @@ class Limits:
         )
 
 
-class Died(LoomfmuError):
+class ProcessDied(LoomfmuError):
     """The process of an isolated FMU has ended, or had to be ended; the text says why."""
 
 
@@ -113,7 +113,7 @@ class Process:
         """Send a message and wait for the answer; `action` names what the FMU is doing meanwhile.
 
         Raises:
-            Died: there was no answer within the limits, or after Ctrl-C; the process has ended
+            ProcessDied: there was no answer within the limits, or after Ctrl-C; the process has ended
         """
         data = b""
         try:
@@ -147,9 +147,9 @@ class Process:
                 reason = limits.passed
             if reason:
                 self.end()
-                raise Died(reason + self._printed())
+                raise ProcessDied(reason + self._printed())
 
-    def _died(self, action: str) -> Died:
+    def _died(self, action: str) -> ProcessDied:
         """Return the error for a process that no longer answers, and end it."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._popen.wait(GRACE)
@@ -161,7 +161,7 @@ class Process:
             reason = f"{action} crashed its process ({signal_name(-status)})"
         else:
             reason = f"{action} ended its process (exit status {status})"
-        return Died(reason + self._printed())
+        return ProcessDied(reason + self._printed())
 
     def _printed(self) -> str:
         """The last line that the FMU printed, as the end of a message."""

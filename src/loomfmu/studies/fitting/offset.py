@@ -15,8 +15,8 @@ USUAL = {"shaft_angle": "-2deg..2deg", "time": "-2ms..2ms"}
 
 def offset_of(data: Measured, text: str) -> Span:
     """Return the offset of all places, within a range such as "-2ms..2ms". Raises LoomfmuError."""
-    first, dots, last = text.partition("..") if isinstance(text, str) else ("", "", "")
-    if not (dots and first.strip() and last.strip()):
+    first, last = units.ends_of(text) if isinstance(text, str) else ("", "")
+    if not (first and last):
         raise LoomfmuError(f"offset = {shown(text)} is not a range such as {USUAL[data.over]}")
     unit, display = ALONG[data.over], DISPLAY[data.over]
     read = partial(_read, unit=unit, over=data.over)
@@ -29,11 +29,11 @@ def offset_of(data: Measured, text: str) -> Span:
 
 def _read(given: str, unit: str, over: str) -> float:
     try:
-        value = units.parse(given.strip(), unit)
+        value = units.parse(given, unit)
     except units.UnitError as error:
         raise LoomfmuError(f"offset: {error}; the data are over {over}") from None
     if not math.isfinite(value):
         raise LoomfmuError(f"offset = {shown(given)} is not finite")
-    if units.is_plain(given.strip()) and value:
+    if units.is_plain(given) and value:
         raise LoomfmuError(f"offset = {shown(given)} has no unit; write a range such as {USUAL[over]}")
     return value
