@@ -44,7 +44,7 @@ class Chime:
     """Several strokes."""
 
     forces: list[float]
-    last: Stroke
+    loudness: Stroke  # as the function below
 
 
 def stroke(x: float) -> float:
@@ -54,7 +54,7 @@ def stroke(x: float) -> float:
 
 def loudness(chime: Chime) -> Stroke:
     """All together, as one."""
-    return Stroke(chime.forces[0] + chime.forces[1], chime.last.time)
+    return Stroke(chime.forces[0] + chime.forces[1], chime.loudness.time)
 
 
 @dataclass(slots=True)

@@ -117,7 +117,7 @@ class Place:
 
     at: list[float]
     rate: float
-    steps: int
+    step: int
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ def placed(two: Two, time: float) -> tuple[Place, list[float]]:
     place = two.first
     further = [place.at[n] + time * place.rate for n in range(len(place.at))]
     further[-1] = 1.0 if two.register[1] else 2.0
-    return Place(at=list(further), rate=inner(place.at, place.at), steps=place.steps + 1), further
+    return Place(at=list(further), rate=inner(place.at, place.at), step=place.step + 1), further
 
 
 def moved(time: float) -> tuple[Place, list[float]]:
@@ -188,6 +188,11 @@ class Vectors(Component):
         self.count = self.count + 1
         return [self.total + q[2 - n] for n in range(3)]
 
+    def weighed(self, place: Place) -> float:
+        """A method that changes nothing, and reads a field that is called as a method that does."""
+        _first, second, _third, _fourth = place.at
+        return place.rate * place.step + second
+
     def step(self, time: float, step_size: float) -> int:
         """Step."""
         q = list(self.held)
@@ -201,7 +206,7 @@ class Vectors(Component):
         d1, d2, d3 = self.drawn(further, flags)
         for number in range(3):
             q = [d1, d2, d3, time + number]
-            self.total += inner(place.at, q) + place.rate * place.steps
+            self.total += inner(place.at, q) + self.total * self.weighed(place)
             flags[number] = flags[number] or q[number] > 0.5
         first, last = shifted(q)
         written = [0.0] * 2

@@ -30,6 +30,18 @@ SHORTEST = 1e-15
 MARGIN, LIMIT, DEFLECTION = 0, 1, 2  # of which an extreme is searched
 
 
+@dataclass(frozen=True)
+class Way:
+    """Way of the head between two samples: step, rate at its start and second rate by the share of it [m]."""
+
+    step: float
+    rate: float
+    a0: float
+    a1: float
+    a2: float
+    a3: float
+
+
 @dataclass(slots=True)
 class BeltMonitor(BeltVariables):
     """Stability monitor of the rapier belt: margin against buckling, safe speed, deflection.
@@ -105,22 +117,12 @@ class BeltMonitor(BeltVariables):
         self.sampled_bend = self.joined_bend
         self.sampled_turning = self.joined_turning
 
-    def shape_at(
-        self,
-        which: int,
-        start_rate: float,
-        a0: float,
-        a1: float,
-        a2: float,
-        a3: float,
-        step: float,
-        share: float,
-    ) -> float:
+    def shape_at(self, which: int, way: Way, share: float) -> float:
         """Margin, speed limit or reversed deflection at a share of the way from the last sample."""
-        travel, second = joined_value(self.sampled_travel, start_rate, a0, a1, a2, a3, share)
-        second = second / (step * step)
+        travel, second = joined_value(self.sampled_travel, way.rate, way.a0, way.a1, way.a2, way.a3, share)
+        second = second / (way.step * way.step)
         tension = self.sampled_force + share * (self.yarn_tension - self.sampled_force)
-        tension = weft_load(tension, joined_rate(start_rate, a0, a1, a2, a3, share), self.taker)
+        tension = weft_load(tension, joined_rate(way.rate, way.a0, way.a1, way.a2, way.a3, share), self.taker)
         factor = self.length_factor
         if self.sampled_clearance != self.guide_clearance and not self.prescribe_length_factor:
             clearance = self.sampled_clearance + share * (self.guide_clearance - self.sampled_clearance)
@@ -131,8 +133,8 @@ class BeltMonitor(BeltVariables):
         here = margin(free_length, self.head_mass * second + tension, factor, self.bending_stiffness)
         return here if which == MARGIN else -elastica_deflection(1.0 - here, free_length)
 
-    def second_between(self, limit: bool, step: float) -> tuple[float, float, float, float]:
-        """Second derivative of the travel on the way from the last sample to this one, as from `joined`.
+    def way_between(self, limit: bool, step: float) -> Way:
+        """The way of the head from the last sample to this one.
 
         Where the samples come so close that the bump of the value drowns in their rounding, it is taken
         from how the bump of the rate has changed since the step before.
@@ -158,7 +160,8 @@ class BeltMonitor(BeltVariables):
             self.bump_by_time = by_rate
             self.bump_time = step
         by_value = above_noise(by_value, expected, value_noise)
-        return bent(second, end_second, by_rate, by_value)
+        a0, a1, a2, a3 = bent(second, end_second, by_rate, by_value)
+        return Way(step, rate, a0, a1, a2, a3)
 
     def search_between(self, limit: bool, duration: float) -> None:
         """Bring extremes up to the way from the last sample: of the speed limit, or of margin and deflection.
@@ -167,55 +170,38 @@ class BeltMonitor(BeltVariables):
         lowest value so far, and above 0, than five values differ is not searched.
         """
         step = self.joined_angle - self.sampled_angle if limit else duration
-        rate = step * (self.sampled_slope if limit else self.sampled_velocity)
-        a0, a1, a2, a3 = self.second_between(limit, step)
+        way = self.way_between(limit, step)
         if limit:
-            lowest, _place = self.lowest_of(
-                LIMIT, rate, a0, a1, a2, a3, step, 0.0, 1.0, self.lowest_speed_limit
-            )
+            lowest, _place = self.lowest_of(LIMIT, way, 0.0, 1.0, self.lowest_speed_limit)
             if lowest < self.lowest_speed_limit:
                 self.lowest_speed_limit = lowest
             return
         above = self.lowest_margin if self.lowest_margin > 0.0 else 0.0
-        lowest, place = self.lowest_of(MARGIN, rate, a0, a1, a2, a3, step, 0.0, 1.0, above)
+        lowest, place = self.lowest_of(MARGIN, way, 0.0, 1.0, above)
         if lowest < self.lowest_margin:
             self.lowest_margin = lowest
         if lowest < 0.0:
             # a belt is deflected while its margin is negative, which may be a tiny part of the step
-            start = self.edge(rate, a0, a1, a2, a3, step, place, 0.0)
-            end = self.edge(rate, a0, a1, a2, a3, step, place, 1.0)
-            most, _place = self.lowest_of(DEFLECTION, rate, a0, a1, a2, a3, step, start, end, 0.0)
+            start = self.edge(way, place, 0.0)
+            end = self.edge(way, place, 1.0)
+            most, _place = self.lowest_of(DEFLECTION, way, start, end, 0.0)
             if -most > self.largest_deflection:
                 self.largest_deflection = -most
 
-    def edge(
-        self, rate: float, a0: float, a1: float, a2: float, a3: float, step: float, inside: float, end: float
-    ) -> float:
+    def edge(self, way: Way, inside: float, end: float) -> float:
         """Share of the way towards an end up to which the margin stays negative."""
-        if self.shape_at(MARGIN, rate, a0, a1, a2, a3, step, end) < 0.0:
+        if self.shape_at(MARGIN, way, end) < 0.0:
             return end
         outside = end
         for _ in range(50):
             middle = 0.5 * (inside + outside)
-            if self.shape_at(MARGIN, rate, a0, a1, a2, a3, step, middle) < 0.0:
+            if self.shape_at(MARGIN, way, middle) < 0.0:
                 inside = middle
             else:
                 outside = middle
         return inside
 
-    def lowest_of(
-        self,
-        which: int,
-        rate: float,
-        a0: float,
-        a1: float,
-        a2: float,
-        a3: float,
-        step: float,
-        low: float,
-        high: float,
-        bar: float,
-    ) -> tuple[float, float]:
+    def lowest_of(self, which: int, way: Way, low: float, high: float, bar: float) -> tuple[float, float]:
         """Lowest value between two shares of the way, and its share.
 
         Five values find the neighbourhood, golden sections the place: the value at a minimum is then exact to
@@ -226,7 +212,7 @@ class BeltMonitor(BeltVariables):
         farthest = -1e300
         at = 0
         for number in range(5):
-            value = self.shape_at(which, rate, a0, a1, a2, a3, step, low + quarter * number)
+            value = self.shape_at(which, way, low + quarter * number)
             if value < nearest:
                 nearest = value
                 at = number
@@ -237,42 +223,31 @@ class BeltMonitor(BeltVariables):
             return nearest, place
         left = low + quarter * (at - 1) if at > 0 else low
         right = low + quarter * (at + 1) if at < 4 else high
-        value, share = self.golden(which, rate, a0, a1, a2, a3, step, left, right)
+        value, share = self.golden(which, way, left, right)
         if value < nearest:
             return value, share
         return nearest, place
 
-    def golden(
-        self,
-        which: int,
-        rate: float,
-        a0: float,
-        a1: float,
-        a2: float,
-        a3: float,
-        step: float,
-        low: float,
-        high: float,
-    ) -> tuple[float, float]:
+    def golden(self, which: int, way: Way, low: float, high: float) -> tuple[float, float]:
         """Lowest value between two shares of the way about one minimum, and its share."""
         golden = 0.6180339887498949
         left = high - golden * (high - low)
         right = low + golden * (high - low)
-        at_left = self.shape_at(which, rate, a0, a1, a2, a3, step, left)
-        at_right = self.shape_at(which, rate, a0, a1, a2, a3, step, right)
+        at_left = self.shape_at(which, way, left)
+        at_right = self.shape_at(which, way, right)
         for _ in range(40):
             if at_left < at_right:
                 high = right
                 right = left
                 at_right = at_left
                 left = high - golden * (high - low)
-                at_left = self.shape_at(which, rate, a0, a1, a2, a3, step, left)
+                at_left = self.shape_at(which, way, left)
             else:
                 low = left
                 left = right
                 at_left = at_right
                 right = low + golden * (high - low)
-                at_right = self.shape_at(which, rate, a0, a1, a2, a3, step, right)
+                at_right = self.shape_at(which, way, right)
         if at_left < at_right:
             return at_left, left
         return at_right, right

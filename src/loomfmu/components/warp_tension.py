@@ -22,6 +22,36 @@ from .terminals import FRAME
 from .threads import Threads
 
 
+@dataclass(frozen=True)
+class Way:
+    """The way of a thread between two samples, by the share of it.
+
+    Force at its start [N], `decay` and right side of its law, see `thread_force`; rate of the extension at
+    its start, and its second rate as from `joined` [m].
+    """
+
+    force: float
+    decay: float
+    rate: float
+    second: list[float]
+    drive: list[float]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A share of the way, with the force there and its integral up to it [N]."""
+
+    share: float
+    force: float
+    area: float
+
+
+def place_at(way: Way, share: float) -> Place:
+    """The place at a share of the way."""
+    force, area = thread_force(way.force, way.decay, way.drive, share)
+    return Place(share, force, area)
+
+
 @dataclass(slots=True)
 class WarpTension(Threads):
     """Warp tension: viscoelastic threads, stretched by the shed, and their load on the heald carrier.
@@ -124,62 +154,37 @@ class WarpTension(Threads):
         self.sampled_rate = rate
         self.sampled_second = second
 
-    def curve(
-        self, duration: float, extension: float, rate: float, second: float
-    ) -> tuple[float, float, float, float]:
-        """Second rate of the extension by the share of the way from the last sample to this one."""
-        return joined(
+    def way(self, duration: float, extension: float, rate: float, second: float) -> Way:
+        """The way from the last sample to this one."""
+        start_rate = duration * self.sampled_rate
+        a0, a1, a2, a3 = joined(
             self.sampled_extension,
-            duration * self.sampled_rate,
+            start_rate,
             duration * duration * self.sampled_second,
             extension,
             duration * rate,
             duration * duration * second,
         )
+        creep = self.creep_rate * duration
+        p = thread_drive(self.thread_stiffness, creep, self.sampled_extension, extension, a0, a1, a2, a3)
+        return Way(self.sampled_force, self.relaxation_rate * duration, start_rate, [a0, a1, a2, a3], list(p))
 
-    def drive(
-        self, duration: float, extension: float, a0: float, a1: float, a2: float, a3: float
-    ) -> list[float]:
-        """Return the drive of a thread from the last sample to this one, see `thread_drive`."""
-        return thread_drive(
-            self.thread_stiffness,
-            self.creep_rate * duration,
-            self.sampled_extension,
-            extension,
-            a0,
-            a1,
-            a2,
-            a3,
-        )
-
-    def work(
-        self,
-        duration: float,
-        p: list[float],
-        a0: float,
-        a1: float,
-        a2: float,
-        a3: float,
-        low: float,
-        force: float,
-        high: float,
-        end: float,
-    ) -> float:
+    def work(self, way: Way, low: Place, high: Place) -> float:
         """Work that stretches all threads over a part of the way: while taut, their power is a quintic."""
-        decay = self.relaxation_rate * duration
-        rate = duration * self.sampled_rate
         slack_at = -self.pretension
-        start = low
-        stop = high
-        if (force - slack_at) * (end - slack_at) < 0.0:
-            passed = thread_locate(False, slack_at, self.sampled_force, decay, p, low, high)
-            start = passed if force < slack_at else low
-            stop = high if force < slack_at else passed
+        start = low.share
+        stop = high.share
+        if (low.force - slack_at) * (high.force - slack_at) < 0.0:
+            passed = thread_locate(False, slack_at, way.force, way.decay, way.drive, low.share, high.share)
+            start = passed if low.force < slack_at else start
+            stop = stop if low.force < slack_at else passed
+        force = low.force if start == low.share else slack_at
         power, growth, bend = thread_power(
-            self.pretension, force if start == low else slack_at, decay, p, rate, a0, a1, a2, a3, start
+            self.pretension, force, way.decay, way.drive, way.rate, way.second, start
         )
+        force = high.force if stop == high.share else slack_at
         end_power, end_growth, end_bend = thread_power(
-            self.pretension, end if stop == high else slack_at, decay, p, rate, a0, a1, a2, a3, stop
+            self.pretension, force, way.decay, way.drive, way.rate, way.second, stop
         )
         return self.thread_count * joined_area(
             stop - start, power, growth, bend, end_power, end_growth, end_bend
@@ -190,77 +195,51 @@ class WarpTension(Threads):
 
         Where the force may turn more than once on the way, each eighth of it is looked at.
         """
-        a0, a1, a2, a3 = self.curve(duration, extension, rate, second)
-        p = self.drive(duration, extension, a0, a1, a2, a3)
-        decay = self.relaxation_rate * duration
-        panels = 1 if turns_once(p) else 8
-        low = 0.0
-        force = self.sampled_force
-        area = 0.0
+        way = self.way(duration, extension, rate, second)
+        panels = 1 if turns_once(way.drive) else 8
+        low = Place(0.0, way.force, 0.0)
         total = 0.0
         for panel in range(panels):
-            high = (panel + 1) / panels
-            end, end_area = thread_force(self.sampled_force, decay, p, high)
-            total = total + self.panel_area(decay, p, low, force, area, high, end, end_area)
-            self.sampled_work = self.sampled_work + self.work(
-                duration, p, a0, a1, a2, a3, low, force, high, end
-            )
+            high = place_at(way, (panel + 1) / panels)
+            total = total + self.panel_area(way, low, high)
+            self.sampled_work = self.sampled_work + self.work(way, low, high)
             low = high
-            force = end
-            area = end_area
-        self.sampled_force = force
+        self.sampled_force = low.force
         if duration > 0.0:
             self.elapsed = self.elapsed + duration
             self.mean_tension = self.mean_tension + (total - self.mean_tension) * duration / self.elapsed
 
-    def panel_area(
-        self,
-        decay: float,
-        p: list[float],
-        low: float,
-        force: float,
-        area: float,
-        high: float,
-        end: float,
-        end_area: float,
-    ) -> float:
+    def panel_area(self, way: Way, low: Place, high: Place) -> float:
         """Integral of the tension over a piece of the way on which the force turns at most once."""
-        growth = thread_growth(force, decay, p, low)
-        if growth * thread_growth(end, decay, p, high) < 0.0:
+        growth = thread_growth(low.force, way.decay, way.drive, low.share)
+        if growth * thread_growth(high.force, way.decay, way.drive, high.share) < 0.0:
             # it gets no farther than it would at the rate of the start
-            tension = self.pretension + force
-            bound = tension + growth * (high - low)
+            tension = self.pretension + low.force
+            bound = tension + growth * (high.share - low.share)
             if bound > self.highest_tension or bound < self.lowest_tension or bound * tension < 0.0:
-                turn = thread_locate(True, 0.0, self.sampled_force, decay, p, low, high)
-                there, there_area = thread_force(self.sampled_force, decay, p, turn)
-                before = self.piece_area(decay, p, low, force, area, turn, there, there_area)
-                return before + self.piece_area(decay, p, turn, there, there_area, high, end, end_area)
-        return self.piece_area(decay, p, low, force, area, high, end, end_area)
+                turn = place_at(
+                    way, thread_locate(True, 0.0, way.force, way.decay, way.drive, low.share, high.share)
+                )
+                before = self.piece_area(way, low, turn)
+                return before + self.piece_area(way, turn, high)
+        return self.piece_area(way, low, high)
 
-    def piece_area(
-        self,
-        decay: float,
-        p: list[float],
-        low: float,
-        force: float,
-        area: float,
-        high: float,
-        end: float,
-        end_area: float,
-    ) -> float:
+    def piece_area(self, way: Way, low: Place, high: Place) -> float:
         """Integral of the tension over a piece on which it passes zero at most once; notes its end."""
-        tension = self.pretension + force
-        end_tension = self.pretension + end
+        tension = self.pretension + low.force
+        end_tension = self.pretension + high.force
         self.note(end_tension)
         if tension <= 0.0 and end_tension <= 0.0:
             return 0.0
         if tension < 0.0 or end_tension < 0.0:
-            passed = thread_locate(False, -self.pretension, self.sampled_force, decay, p, low, high)
-            _force, passed_area = thread_force(self.sampled_force, decay, p, passed)
+            slack_at = -self.pretension
+            passed = place_at(
+                way, thread_locate(False, slack_at, way.force, way.decay, way.drive, low.share, high.share)
+            )
             if tension < 0.0:
-                return self.pretension * (high - passed) + end_area - passed_area
-            return self.pretension * (passed - low) + passed_area - area
-        return self.pretension * (high - low) + end_area - area
+                return self.pretension * (high.share - passed.share) + high.area - passed.area
+            return self.pretension * (passed.share - low.share) + passed.area - low.area
+        return self.pretension * (high.share - low.share) + high.area - low.area
 
     def note(self, tension: float) -> None:
         """Keep the highest and the lowest tension."""
@@ -278,11 +257,11 @@ class WarpTension(Threads):
         self.frame_work = self.sampled_work
         if lead > 0.0:
             extension, rate, second = self.sample(lead)
-            a0, a1, a2, a3 = self.curve(lead, extension, rate, second)
-            p = self.drive(lead, extension, a0, a1, a2, a3)
-            start = force
-            force, _area = thread_force(force, self.relaxation_rate * lead, p, 1.0)
-            self.frame_work = self.sampled_work + self.work(lead, p, a0, a1, a2, a3, 0.0, start, 1.0, force)
+            way = self.way(lead, extension, rate, second)
+            start = Place(0.0, force, 0.0)
+            end = place_at(way, 1.0)
+            self.frame_work = self.sampled_work + self.work(way, start, end)
+            force = end.force
             self.extension = extension
         tension = self.pretension + force
         self.slack = tension < 0.0

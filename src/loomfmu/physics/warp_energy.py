@@ -36,10 +36,7 @@ def thread_power(
     decay: float,
     p: list[float],
     rate: float,
-    a0: float,
-    a1: float,
-    a2: float,
-    a3: float,
+    second: list[float],
     share: float,
 ) -> tuple[float, float, float]:
     """Power that stretches a thread, tension times rate of the extension, and its first and second rate by u.
@@ -49,13 +46,13 @@ def thread_power(
     Args:
         pretension, force: T0 and F there [N]
         decay, p: as for `thread_force`
-        rate, a0 .. a3: rate of the extension by u at the start, and its second rate as from `joined` [m]
+        rate, second: rate of the extension by u at the start, and its second rate as from `joined` [m]
         share: u [1]
 
     Returns:
         power and rates [J]
 
-    >>> thread_power(1.0, 2.0, 0.0, [4.0] + [0.0] * 5, 5.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    >>> thread_power(1.0, 2.0, 0.0, [4.0] + [0.0] * 5, 5.0, [0.0] * 4, 0.5)
     (15.0, 20.0, 0.0)
     """
     tension = pretension + force
@@ -64,10 +61,11 @@ def thread_power(
     u = share
     growth = thread_growth(force, decay, p, u)
     bend = p[1] + u * (2.0 * p[2] + u * (3.0 * p[3] + u * (4.0 * p[4] + u * 5.0 * p[5]))) - decay * growth
-    _x, slope, second = moved_on(0.0, rate, a0, a1, a2, a3, u)
+    a0, a1, a2, a3 = second
+    _x, slope, bent = moved_on(0.0, rate, a0, a1, a2, a3, u)
     third = a1 + u * (2.0 * a2 + u * 3.0 * a3)
     return (
         tension * slope,
-        growth * slope + tension * second,
-        bend * slope + 2.0 * growth * second + tension * third,
+        growth * slope + tension * bent,
+        bend * slope + 2.0 * growth * bent + tension * third,
     )

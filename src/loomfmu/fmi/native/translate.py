@@ -17,7 +17,7 @@ from typing import Any
 from ...declaring.variables import Component, Variable, arrays_of, variables_of
 from ...errors import LoomfmuError
 from .. import source
-from .c_code import TYPES, Scope, Untranslatable, c_name, comment, literal
+from .c_code import TYPES, Scope, Untranslatable, c_name, comment, literal, of_self
 from .c_program import Program
 
 ENTRIES = ("initialize", "step")  # what the shell calls
@@ -139,7 +139,7 @@ def _imported(tree: ast.Module) -> list[str]:
 def _changed(method: str, methods: dict[str, ast.FunctionDef], seen: set[str]) -> set[str]:
     """The variables of the component that a method changes, those it calls included."""
     seen.add(method)
-    nodes = [node for node in ast.walk(methods[method]) if isinstance(node, ast.Attribute)]
+    nodes = [node for node in ast.walk(methods[method]) if isinstance(node, ast.Attribute) and of_self(node)]
     found = {node.attr for node in nodes if isinstance(node.ctx, ast.Store)}
     called = {node.attr for node in nodes if node.attr in methods and node.attr not in seen}
     return found.union(*(_changed(name, methods, seen) for name in called))
