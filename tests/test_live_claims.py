@@ -158,8 +158,15 @@ def both(page: Any, scene: Any, speed: float | None) -> list[tuple[dict[str, Any
     return list(zip(page.evaluate("loomfmu.live.verdicts"), rows, native, strict=True))
 
 
+LATER = [("motor", None), ("loom", 500.0)]  # of two speeds one is slow: a knob is turned on the motor
 CASES = [
-    pytest.param(name, speed, number, id=f"{name}-{speed or 'own'}-{number}-{claim['kind']}")
+    pytest.param(
+        name,
+        speed,
+        number,
+        id=f"{name}-{speed or 'own'}-{number}-{claim['kind']}",
+        marks=[pytest.mark.slow] if (name, speed) in LATER else [],
+    )
     for name, claims in (("loom", ON_THE_LOOM), ("motor", ON_A_MOTOR), ("short", ON_THE_LOOM))
     for speed in SCENES[name][1]
     for number, claim in enumerate(claims)
@@ -194,6 +201,7 @@ def test_the_page_says_what_the_run_says(said: Any, name: str, speed: float | No
         assert error == pytest.approx(its.error, rel=1e-3, abs=1e-8 * (abs(its.worst) + abs(its.bound)))
 
 
+@pytest.mark.slow
 def test_a_claim_that_coarser_steps_cannot_tell_is_not_judged(opened: Open, tmp_path: Path) -> None:
     """Its error was taken for 0, and the claim held, where a run says that it is undecided."""
     values = {"shaft.speed": "400 rpm", "steps_per_revolution": 1000, "revolutions": 1}

@@ -178,6 +178,7 @@ def test_only_what_a_value_reaches_is_stepped_again(opened: Open, tmp_path: Path
         verdicts_agree(page, result.claims)
 
 
+@pytest.mark.slow
 def test_values_that_an_fmu_rejects_leave_nothing_behind(opened: Open, tmp_path: Path) -> None:
     """What was rejected is stepped anew as soon as it can be, and what else was changed meanwhile."""
     phase, ratio = "weft.crank_phase", "damper.damping_ratio"

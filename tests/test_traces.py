@@ -411,6 +411,7 @@ writer.complete([])
 """
 
 
+@pytest.mark.slow
 def test_thousands_of_variables_of_many_instances(tmp_path: Path) -> None:
     in_a_process(MANY_INSTANCES, str(tmp_path / "many.h5"))
     with Trace(tmp_path / "many.h5") as trace:

@@ -37,6 +37,7 @@ def pair(directory: Path, revolutions: int) -> None:
         assert np.all(np.isfinite(trace["belt.margin"]))
 
 
+@pytest.mark.slow
 def test_short_runs_with_one_output(tmp_path: Path, fmu_cache: None) -> None:
     for _ in range(4):
         pair(tmp_path, 1)

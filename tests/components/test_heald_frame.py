@@ -84,6 +84,13 @@ def test_plain_weave_is_the_dobbys_own_lift():
         assert frame.moving
 
 
+def test_the_event_is_a_change_of_sign_at_each_slow_point_and_nowhere_else():
+    frame = frame_of([1, 0])
+    signs = [placed(frame, pi * (n + 0.5) / 4).slow_point_event > 0.0 for n in range(-32, 32)]
+    changes = [n for n, (before, after) in enumerate(itertools.pairwise(signs), start=-31) if before != after]
+    assert changes == [-24, -16, -8, 0, 8, 16, 24]  # eighths of a turn
+
+
 def test_motion_never_jumps():
     rng = random.Random(6)
     pegs = [rng.randint(0, 1) for _ in range(40)]

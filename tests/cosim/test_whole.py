@@ -170,6 +170,7 @@ def test_a_parameter_has_the_effect_of_set(
     same(found, traced(scene, tmp_path_factory.mktemp("set")))
 
 
+@pytest.mark.slow
 def test_what_turns_unevenly_can_be_chosen_in_the_fmu(tmp_path: Path, demo: Whole) -> None:
     scene = loaded(DEMO, shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
     instance = demo.instance(shaft__ramp_duration=0.1, shaft__ripple_amplitude=0.02)
@@ -302,6 +303,7 @@ def gates(directory: Path, last: float = 0.1) -> Scene:
     return scenes.parse(GATES.replace("LAST", str(last)), "double", directory=directory)
 
 
+@pytest.mark.slow
 def test_mechanisms_of_ones_own_and_tables_of_all_types(tmp_path: Path) -> None:
     scene = gates(tmp_path)
     one = Whole(exported(scene, tmp_path), tmp_path / "unpacked")

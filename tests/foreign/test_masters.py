@@ -20,6 +20,7 @@ ORDERS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.usefixtures("natives")
 @pytest.mark.parametrize("master", MASTERS)
 def test_mechanisms_at_their_own_speed_need_no_wire(tmp_path: Path, master: str) -> None:
@@ -36,6 +37,7 @@ def test_mechanisms_at_their_own_speed_need_no_wire(tmp_path: Path, master: str)
         )
 
 
+@pytest.mark.few(1)
 @pytest.mark.usefixtures("natives")
 @pytest.mark.parametrize("master", ["libcosim", "ecos", "OMSimulator"])
 def test_a_wired_loom_converges_to_ours_with_the_step(tmp_path: Path, master: str) -> None:

@@ -34,6 +34,7 @@ def binary(fmu: fmus.Fmu) -> Path:
     return fmu.directory / "binaries" / "linux64" / f"{fmu.name}.so"
 
 
+@pytest.mark.few(4)
 @every_fmu
 def test_it_is_valid(built, name):
     assert validate_fmu(str(built[name].path)) == []

@@ -128,6 +128,7 @@ def test_every_law_of_the_dobby(native, law):
         compare(component, instance)
 
 
+@pytest.mark.few(4)
 @every_fmu
 def test_long_runs(native, name):
     # states that live from step to step: a difference would grow

@@ -269,6 +269,7 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
     assert bound.get_label() == "bound 0.1" and set(bound.get_ydata()) == {0.1}
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [

@@ -66,6 +66,7 @@ def unlimited(name: str, expected: float, value: float, factor: float) -> bool:
     return value >= 0.999 * min(none, none * factor)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("direction", [1.0, -1.0], ids=["forwards", "backwards"])
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(

@@ -49,6 +49,7 @@ def test_what_a_task_raises_is_its_outcome(two: Processes) -> None:
         assert [repr(found[number]) for number in range(3)] == [f"ValueError('not {n}')" for n in range(3)]
 
 
+@pytest.mark.slow
 def test_the_end_of_a_process_is_the_outcome_of_its_task_alone(two: Processes) -> None:
     tasks = [Task(number, odd_tasks.pid, (number,)) for number in range(6)]
     tasks.insert(3, Task("end", odd_tasks.end, ()))

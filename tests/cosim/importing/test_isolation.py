@@ -71,6 +71,7 @@ inertia = "0.1 kg.m2"
 """
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("flavour", ["live", "native"])
 def test_ours_can_be_isolated_too_also_in_an_iterated_loop(flavour: str) -> None:
     found = [

@@ -44,6 +44,7 @@ def agree(trace: Trace, expected: dict[str, np.ndarray], tolerance: float) -> No
 # ---- the same results by every path
 
 
+@pytest.mark.few(2)
 @pytest.mark.no_cover
 @pytest.mark.parametrize(("steps", "revolutions"), [(90, 2), (1440, 1), (5760, 0.3)])
 @pytest.mark.parametrize("shaft", SHAFTS)
@@ -90,6 +91,7 @@ def test_the_belts_margin_and_the_dobbys_dwell_do_not_depend_on_the_step(tmp_pat
 # ---- time
 
 
+@pytest.mark.few(2)
 @pytest.mark.no_cover
 @pytest.mark.parametrize("steps", [1, 2, ROWS - 2, ROWS - 1, ROWS, ROWS + 1, 2 * ROWS, 2 * ROWS + 500])
 def test_every_step_is_recorded_once_whatever_the_blocks(tmp_path: Path, steps: int) -> None:

@@ -19,6 +19,7 @@ def boundary() -> Boundary:
     return found
 
 
+@pytest.mark.slow
 def test_each_row_is_the_limit_at_a_value_of_the_second_variable() -> None:
     found = boundary()
     assert found and found.values == pytest.approx([0.2e-3, 0.5e-3, 0.8e-3], rel=1e-15)

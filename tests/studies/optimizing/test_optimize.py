@@ -210,6 +210,7 @@ def test_the_result_is_the_same_on_any_number_of_processes_and_after_a_kill(
     assert Path("part/designs.csv").read_bytes() == Path("whole/designs.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_directory_of_another_study_is_refused(tmp_path: Path) -> None:
     path = study(tmp_path, SMALL, head=FAST + QUICK)
     optimize(path, processes=1, output="here")
