@@ -135,6 +135,7 @@ def test_its_sources_compile_without_a_warning(built3, gcc, name):
 # ---- co-simulation
 
 
+@pytest.mark.few(5)
 @every_fmu
 def test_co_simulation_gives_the_results_of_the_component(native3, name):
     rng = random.Random(3)
@@ -255,6 +256,7 @@ def test_derivatives_of_outputs(native3, name):
 # ---- model exchange
 
 
+@pytest.mark.few(4)
 @every_fmu
 def test_what_is_said_to_have_no_memory_has_none(name):
     """A step of no length after any history shows what it shows on a fresh component."""

@@ -73,7 +73,7 @@ def compare(component: Component, native: Any) -> None:
         assert same(found, wanted[name]), f"{name}: native {found!r}, component {wanted[name]!r}"
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(4)
 @every_fmu
 def test_random_parameters_inputs_and_steps(native, name):
     component = COMPONENTS[name]

@@ -26,7 +26,7 @@ def test_starts_are_the_declared_ones(native, name):
             assert found == variable.start and type(found) is variable.type, variable.name
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(3)
 @every_fmu
 def test_what_is_refused_is_refused_in_the_words_of_the_live_flavour(native, live, name):
     # one instance for each word: after an error an instance is of no more use

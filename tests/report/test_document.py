@@ -60,6 +60,7 @@ def test_the_cursor_follows_slider_keys_and_play(written: Path, opened: Open) ->
     assert where() == kept
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_nothing_stands_out_at_the_side_of_a_narrow_screen(written: Path, opened: Open, scheme: str) -> None:
     found = opened(written, NARROW, color_scheme=scheme)

@@ -94,6 +94,7 @@ def test_values_come_in_the_unit_that_people_read(tmp_path: Path) -> None:
     np.testing.assert_array_equal(unpacked(signal["curves"][0][1]), [250.0, np.nan])
 
 
+@pytest.mark.slow
 def test_a_long_trace_is_read_in_bounded_memory(tmp_path: Path) -> None:
     wave = np.sin(np.arange(1_000_000) * 0.01)
     trace = recorded(tmp_path / "long.h5", np.repeat(wave[:, None], 12, axis=1), np.zeros(1_000_000))

@@ -49,6 +49,7 @@ LOOPED = (
 )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("text", [LOOPED, MOTOR + SHAFT3 + WEFT])
 def test_results_are_equal_to_the_bit(tmp_path: Path, text: str) -> None:
     motor2(tmp_path), motor3(tmp_path)

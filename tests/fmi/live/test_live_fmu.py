@@ -50,6 +50,7 @@ def excite(live: Live, name: str, step: int) -> list[object]:
 # ---- a run alone, again, side by side
 
 
+@pytest.mark.few(5)
 @every_fmu
 def test_alone_with_defaults_it_gives_the_bits_of_its_component(name: str) -> None:
     result = fmpy.simulate_fmu(fmus.of_component(name).path, stop_time=REVOLUTION, output_interval=STEP)
@@ -64,6 +65,7 @@ def test_alone_with_defaults_it_gives_the_bits_of_its_component(name: str) -> No
             component.step(float(time), float(times[sample + 1] - time))
 
 
+@pytest.mark.few(5)
 @every_fmu
 def test_a_second_run_after_reset_repeats_the_first(live: Open, name: str) -> None:
     instance = live(name)
@@ -169,6 +171,7 @@ def resumed(instance: Live, name: str, drive: Callable[[int], dict[str, float]],
     instance.slave.freeFMUState(state)
 
 
+@pytest.mark.few(5)
 @every_fmu
 def test_a_restored_state_goes_on_with_the_same_bits(live: Open, name: str) -> None:
     instance = live(name).start()

@@ -169,7 +169,7 @@ def test_two_variables_give_a_boundary(capsys: pytest.CaptureFixture[str]) -> No
     assert main([*BOTH, "--output", "boundary.csv"]) == 0  # a table of its own is replaced
 
 
-@pytest.mark.few(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [SPEED, BOTH])
 def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
     pytest.importorskip("matplotlib")
