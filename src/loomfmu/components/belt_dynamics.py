@@ -167,7 +167,7 @@ class BeltDynamics(BeltDynamicsVariables):
         self.sampled_tension = self.yarn_tension
 
     def jumps(self, since: float) -> bool:
-        """Whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
+        """Return whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
         rates = fabs(self.sampled_velocity) + fabs(self.velocity)
         seconds = fabs(self.sampled_acceleration) + fabs(self.acceleration)
         change = self.travel - self.sampled_travel - 0.5 * since * (self.sampled_velocity + self.velocity)
@@ -382,7 +382,7 @@ class BeltDynamics(BeltDynamicsVariables):
         return load
 
     def follows(self, length: float) -> bool:
-        """Whether six modes can follow the bow of a belt of that free length."""
+        """Return whether six modes can follow the bow of a belt of that free length."""
         return self.bow_of != 1 or length <= MOST_WAVES * self.bow_length
 
     def show(self, belt: Belt, path: Path) -> int:

@@ -1,4 +1,4 @@
-"""What BeltDynamics is given, shows and keeps: its declarations."""
+"""Declarations of BeltDynamics: what it is given, shows and keeps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What HealdDamper is given, shows and keeps: its declarations."""
+"""Declarations of HealdDamper: what it is given, shows and keeps."""
 
 from dataclasses import dataclass
 from math import inf

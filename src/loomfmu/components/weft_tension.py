@@ -114,7 +114,7 @@ class WeftTension(WeftVariables):
         return self.show_ahead(brake, time, step_size)
 
     def braked(self) -> Brake:
-        """What brakes the yarn."""
+        """Brake and eyes, as their functions take them."""
         return Brake(
             self.gain,
             self.supply_tension,

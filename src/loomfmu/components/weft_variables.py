@@ -1,4 +1,4 @@
-"""What WeftTension is given, shows and keeps: its declarations."""
+"""Declarations of WeftTension: what it is given, shows and keeps."""
 
 from dataclasses import dataclass
 from math import inf

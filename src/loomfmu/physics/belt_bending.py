@@ -223,7 +223,7 @@ def bent_places(
 def bent_place(
     weight: float, slope: float, turning: float, bend: float
 ) -> tuple[float, float, float, float, float]:
-    """What a place of the belt adds to bending and shortening beyond the second order of its slope s.
+    """Return what a place of the belt adds to bending and shortening beyond the second order of its slope s.
 
     Args:
         weight: factor

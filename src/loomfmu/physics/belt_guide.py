@@ -14,7 +14,7 @@ HALVINGS = 50  # of an integration step: then the place is known to rounding
 
 
 def has_play(belt: Belt) -> bool:
-    """Whether the belt turns freely in its guide, up to a slope."""
+    """Return whether the belt turns freely in its guide, up to a slope."""
     return belt.leaning and belt.clearance > 0.0
 
 

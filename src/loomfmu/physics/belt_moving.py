@@ -65,7 +65,7 @@ class Instant:
 
 
 def may_clamp(belt: Belt) -> bool:
-    """Whether an end may be clamped at some time."""
+    """Return whether an end may be clamped at some time."""
     return belt.leaning or belt.guided
 
 
@@ -105,7 +105,7 @@ def crossing(path: Path, length: float) -> float:
 
 
 def stands(path: Path) -> bool:
-    """Whether neither the belt nor its load moves over the step."""
+    """Return whether neither the belt nor its load moves over the step."""
     for n in range(1, 6):
         if path.joined[n] != 0.0:
             return False

@@ -104,7 +104,7 @@ def moments_of_ends(belt: Belt, length: float, load: float, contact: int, found:
 
 
 def rests(belt: Belt, at: Instant, contact: int, q: list[float], v: list[float]) -> bool:
-    """Whether the belt is in equilibrium at an instant at which nothing moves."""
+    """Return whether the belt is in equilibrium at an instant at which nothing moves."""
     if size(v) != 0.0:
         return False
     found, _load = accelerations(belt, at, contact, q, v)

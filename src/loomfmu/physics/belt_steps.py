@@ -7,7 +7,7 @@ from .belt_ends import OTHER, OWN, FreeEnds, at_ends
 from .belt_modes import size
 from .belt_motion import accelerations, energy_and_powers
 from .belt_moving import Belt, Instant, Path, instant_at, length_at, pushed
-from .numerics.gauss import FIRST, INNER, LAST, OUTER, VALUES, at_stage, corrected, foreseen, held
+from .numerics.gauss import FIRST, LAST, RATES, VALUES, at_stage, corrected, foreseen, held
 
 MOST_REPEATS = 30  # of the sweep over the stages, until the accelerations of an integration step are settled
 SETTLED = 1e-11  # of the modes: what a sweep may still change
@@ -48,7 +48,7 @@ def suited(path: Path, share: float, end: float, size: float) -> float:
 
 
 def fits(path: Path, share: float, taken: float) -> bool:
-    """Whether the belt is longer than the shortest one at all stages of a step, and at its end."""
+    """Return whether the belt is longer than the shortest one at all stages of a step, and at its end."""
     near = length_at(path, share + FIRST * taken) > path.shortest
     near = near and length_at(path, share + 0.5 * taken) > path.shortest
     near = near and length_at(path, share + LAST * taken) > path.shortest
@@ -275,10 +275,9 @@ def worked(
     Of the compression, at the guide, lost by damping, and the sum of all, each positive.
     """
     work = [0.0] * 4
-    step = stages.duration
-    add_work(belt, stages.first, contact, 0, step, OUTER * step, q, v, a, loads, work)
-    add_work(belt, stages.second, contact, 1, step, INNER * step, q, v, a, loads, work)
-    add_work(belt, stages.third, contact, 2, step, OUTER * step, q, v, a, loads, work)
+    add_work(belt, stages.first, contact, 0, stages.duration, q, v, a, loads, work)
+    add_work(belt, stages.second, contact, 1, stages.duration, q, v, a, loads, work)
+    add_work(belt, stages.third, contact, 2, stages.duration, q, v, a, loads, work)
     return work
 
 
@@ -288,17 +287,17 @@ def add_work(
     contact: int,
     stage: int,
     step: float,
-    time: float,
     q: list[float],
     v: list[float],
     a: list[float],
     loads: list[float],
     work: list[float],
 ) -> None:
-    """Add the work of all powers at a stage over a time."""
+    """Add the work of all powers at a stage, by its weight in the step."""
     there, rates = at_stage(stage, step, q, v, a)
     second = [a[6 * stage + n] for n in range(6)]
     _energy, push, guide, loss = energy_and_powers(belt, at, contact, there, rates, second, loads[stage])
+    time = RATES[9 + stage] * step
     work[0] = work[0] + time * push
     work[1] = work[1] + time * guide
     work[2] = work[2] + time * loss

@@ -31,7 +31,7 @@ PEAK = 6
 
 @dataclass(frozen=True)
 class Brake:
-    """What brakes the yarn: gain of all eyes, tension from the package [N], mass that it unwinds [kg/m].
+    """Brake and eyes: gain of all eyes, tension from the package [N], mass that it unwinds [kg/m].
 
     Largest force of the brake [N], and its share of that at each point of the program.
     """
@@ -116,7 +116,7 @@ def place_at(way: Way, share: float) -> float:
 
 
 def next_point(way: Way, low: float, high: float) -> tuple[bool, float]:
-    """Whether the shaft passes points of the program between two shares, and the first one."""
+    """Return whether the shaft passes points of the program between two shares, and the first one."""
     start = place_at(way, low)
     end = place_at(way, high)
     sense = 1 if end > start else -1

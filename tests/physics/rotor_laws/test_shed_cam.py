@@ -28,7 +28,7 @@ def published():
 def test_spline_is_that_of_scipy(gaps, heights):
     places = np.concatenate([[0.0], np.cumsum(gaps)])
     exact = CubicSpline(places, heights, bc_type="not-a-knot")(places, 2)
-    found = not_a_knot(*places.tolist(), *heights)
+    found = not_a_knot(places.tolist(), list(heights))
     # rounding of second differences, over the largest, where the gaps differ by a factor of 60
     assert np.all(abs(found - exact) <= 1e-12 * max(abs(exact).max(), abs(np.array(heights)).max()))
 
@@ -36,7 +36,7 @@ def test_spline_is_that_of_scipy(gaps, heights):
 @given(st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4))
 def test_any_cubic_is_kept(coefficients):
     cubic = np.polynomial.Polynomial(coefficients)
-    found = not_a_knot(*ANGLES, *(float(cubic(x)) for x in ANGLES))
+    found = not_a_knot(list(ANGLES), [float(cubic(x)) for x in ANGLES])
     # heights up to 2000 rounded to 2e-13, over the smallest gap squared: 1
     assert found == pytest.approx([cubic.deriv(2)(x) for x in ANGLES], abs=1e-10)
 
@@ -44,7 +44,7 @@ def test_any_cubic_is_kept(coefficients):
 def test_published_spline():
     # 1e-12 of the largest: rounding
     exact = published()(ANGLES, 2)
-    found = not_a_knot(*ANGLES, *HEIGHTS)
+    found = not_a_knot(list(ANGLES), list(HEIGHTS))
     assert found == pytest.approx(exact, abs=1e-12 * abs(exact).max())
 
 

@@ -102,7 +102,7 @@ class RotorLaws(LawParameters):
         for index in range(5):
             if self.cam_angle[index + 1] - self.cam_angle[index] < 1.745e-4:
                 return 4
-        self.cam_bend = not_a_knot(*self.cam_angle, *self.cam_height)
+        self.cam_bend = not_a_knot(list(self.cam_angle), list(self.cam_height))
         self.find_top()
         if fabs(self.cam_height[5] - self.cam_height[0]) > 1e-9 or self.cam_span < 1e-9:
             return 5

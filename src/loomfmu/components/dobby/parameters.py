@@ -1,5 +1,6 @@
 """The parameters of the rotor laws of a dobby drive, and the points of their splines."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -143,7 +144,7 @@ class LawParameters(ShaftDriven):
         minimum=pi / 180.0,
         maximum=pi,
     )
-    cam_bend: tuple[float, ...] = array(
+    cam_bend: Sequence[float] = array(
         auxiliary("m", f"Second derivative of the cam's spline at control point {number}")
         for number in range(1, 7)
     )

@@ -9,20 +9,7 @@ from math import pi
 SPLINE_CAM = 7
 
 
-def not_a_knot(
-    x1: float,
-    x2: float,
-    x3: float,
-    x4: float,
-    x5: float,
-    x6: float,
-    y1: float,
-    y2: float,
-    y3: float,
-    y4: float,
-    y5: float,
-    y6: float,
-) -> tuple[float, float, float, float, float, float]:
+def not_a_knot(x: list[float], y: list[float]) -> list[float]:
     """Second derivatives at six points of the cubic spline with "cubic ends", Appendix 2.
 
     The first two pieces are one cubic, and so are the last two. With h the distances between the points
@@ -33,15 +20,18 @@ def not_a_knot(
     with `M1 = M2 + (h1/h2)(M2 - M3)` and `M6 = M5 + (h5/h4)(M5 - M4)`; solved by elimination.
 
     Args:
-        x1 to x6: places, increasing
-        y1 to y6: values there
+        x: places, increasing
+        y: values there
 
     Returns:
         second derivatives M1 to M6
 
-    >>> [round(bend, 12) for bend in not_a_knot(0, 1, 2, 4, 5, 6, 0, 1, 8, 64, 125, 216)]  # the third power
+    >>> places = [0, 1, 2, 4, 5, 6]
+    >>> [round(bend, 12) for bend in not_a_knot(places, [place**3 for place in places])]
     [0.0, 6.0, 12.0, 24.0, 30.0, 36.0]
     """
+    x1, x2, x3, x4, x5, x6 = x
+    y1, y2, y3, y4, y5, y6 = y
     h1 = x2 - x1
     h2 = x3 - x2
     h3 = x4 - x3
@@ -67,7 +57,7 @@ def not_a_knot(
     m4 = (r4 - h4 * m5) / q4
     m3 = (r3 - h3 * m4) / q3
     m2 = (r2 - u2 * m3) / q2
-    return m2 + h1 / h2 * (m2 - m3), m2, m3, m4, m5, m5 + h5 / h4 * (m5 - m4)
+    return [m2 + h1 / h2 * (m2 - m3), m2, m3, m4, m5, m5 + h5 / h4 * (m5 - m4)]
 
 
 def cam_phase(x: float, top: float) -> tuple[float, float]:
