@@ -12,6 +12,7 @@ from loomfmu.physics.belt_ends import end_shape
 from loomfmu.physics.belt_modes import Bow
 from loomfmu.physics.belt_motion import accelerations, ends_at, energy_and_powers
 from loomfmu.physics.belt_moving import Belt, instant
+from loomfmu.physics.belt_steps import MOST_STEPS, pieces
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(100)
 X, Y, W = 0.5 * (1.0 + NODES), 0.5 * (1.0 - NODES), 0.5 * WEIGHTS
@@ -130,3 +131,10 @@ def test_the_energy_changes_by_the_powers(clamped, shape, swing, size, velocity,
     held, push, guide, loss = energy(0.0, load)
     through = abs(push) + abs(guide) + abs(loss) + abs(held) / step
     assert growth == pytest.approx(push + guide - loss, abs=1e-7 * through)  # of the differences
+
+
+@pytest.mark.parametrize(
+    ("duration", "number"), [(0.0, 1), (5e-4, 1), (5.1e-4, 2), (1e-3, 2), (2e-3, 4), (1e9, MOST_STEPS)]
+)
+def test_a_long_step_is_taken_in_pieces_of_half_a_millisecond(duration, number):
+    assert pieces(duration) == number
