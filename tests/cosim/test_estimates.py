@@ -583,3 +583,71 @@ def test_steps_that_an_accuracy_chose_say_so_too() -> None:
     text = SETTLING.format(revolutions=2, bound='"5.4 kN"')
     (found,) = evaluate(parse(text.replace("steps_per_revolution = 180", "accuracy = 1e-3"))).claims
     assert found.note.startswith("not settled: about 559")
+
+
+ANOTHER_SHAFT = """
+{length}
+[weft]
+machine = "WL680-3600"
+[belt]
+component = "BeltMonitor"
+machine = "WL680-3600"
+{shaft}
+[[claims]]
+kind = "lowest_margin"
+bound = 0.99
+"""
+OF_DRIVE = """[drive]
+component = "MainShaft"
+speed = "600 rev/min"
+[wires]
+""" + "".join(
+    f'"{name}.shaft_{each}" = "drive.{each}"\n"belt.{other}" = "weft.{other}"\n' * (name == "weft")
+    + f'"belt.shaft_{each}" = "drive.{each}"\n' * (name == "weft")
+    for name in ("weft", "belt")
+    for each, other in (("angle", "travel"), ("velocity", "velocity"), ("acceleration", "acceleration"))
+)
+IN_SECONDS, FEW_STEPS = 'duration = "0.02 s"\nstep = "0.0002 s"', "revolutions = 1\nsteps_per_revolution = 80"
+OF_TABLE = "".join(
+    f'"{each}.shaft_angle" = [[0, 0], [1, "7200 deg"]]\n"{each}.shaft_velocity" = [[0, "2000 rpm"]]\n'
+    for each in ("weft", "belt")
+)
+CUT = "[wires]\n" + "".join(
+    f'"{name}.shaft_{each}" = false\n'
+    for name in ("weft", "belt")
+    for each in ("angle", "velocity", "acceleration")
+)
+
+
+@pytest.mark.parametrize(
+    ("length", "shaft", "why"),
+    [
+        (IN_SECONDS, OF_DRIVE, "drive.angle turns by only 0.2 revolutions, and the claim takes a whole one"),
+        (FEW_STEPS, f'[shaft]\nspeed = "100 rpm"\n{CUT}[inputs]\n{OF_TABLE}', "the steps are too long"),
+    ],
+)
+def test_the_shaft_that_a_claim_takes_is_the_one_that_moves_what_it_judges(
+    length: str, shaft: str, why: str
+) -> None:
+    """In the first scene the belt was never at risk in the part of a revolution that its shaft turned."""
+    (found,) = evaluate(parse(ANOTHER_SHAFT.format(length=length, shaft=shaft))).claims
+    assert found.word == "undecided" and why in found.note
+
+
+def test_a_table_that_its_own_rate_contradicts_between_rows_decides_nothing() -> None:
+    """A measured motion with steps between its rows: the monitor saw accelerations that nothing has."""
+    turns = np.linspace(0.0, 1.0, 37)
+    travel, velocity = 1.0 - np.cos(2.0 * np.pi * turns), 20.0 * np.pi * np.sin(2.0 * np.pi * turns)
+    text = (
+        '[shaft]\nspeed = "600 rpm"\n[belt]\nmachine = "WL680-3600"\n[inputs]\n'
+        + "".join(
+            f'"belt.{name}" = {np.column_stack([turns, values]).tolist()}\n'
+            for name, values in (("travel", travel), ("velocity", velocity))
+        )
+        + '[[claims]]\nkind = "lowest_margin"\nbound = -1e9\n'
+    )
+    on_rows, between = (
+        evaluate(parse(text, overrides={"steps_per_revolution": steps})).claims[0] for steps in (36, 360)
+    )
+    assert "is not its rate" not in on_rows.note
+    assert between.word == "undecided" and "where inputs.belt.velocity is not its rate" in between.note

@@ -61,7 +61,8 @@ def test_an_unfinished_revolution_counts_by_what_the_run_shows_of_it():
         for each in (1.9, 2.5)
     )
     assert (loaded.word, whole.word) == ("FAILS", "FAILS")
-    assert loaded.revolution == 2 and loaded.worst == pytest.approx(whole.worst, rel=0.05)
+    # over the highest speed, not over the mean that the whole revolution will have: never too much
+    assert loaded.revolution == 2 and 0.9 * whole.worst < loaded.worst < whole.worst
 
 
 def test_a_run_without_a_whole_revolution_is_not_judged():

@@ -15,9 +15,9 @@ from ..declaring.variables import EXTREMES, MOTION
 from ..errors import listed
 from ..traces.signals import Floats, Integers
 from .claims.claim import Claim
-from .master.grid import SAME, passed_by, period
+from .master.grid import SAME, contradicted, passed_by, period
+from .planning.movements import Movements
 from .planning.requested import signals_of
-from .planning.windows import followed, longest_step, may_pass_by
 from .scenes.graph import Wire, step_order
 from .scenes.keys import ITERATED
 from .scenes.scene import Scene
@@ -95,6 +95,7 @@ class Dependence:
 
     def __init__(self, scene: Scene, claims: Sequence[Claim]):
         self._scene, self.claims = scene, claims
+        self._movements = Movements(scene)
 
     @cached_property
     def _upstream(self) -> list[set[str]]:
@@ -187,26 +188,27 @@ class Dependence:
     def _passing(self) -> list[str]:
         """The instances upstream of claims that some steps may be too long for."""
         names = dict.fromkeys(name for each in self._upstream for name in sorted(each))
-        return [name for name in names if may_pass_by(self._scene, name)]
+        return [name for name in names if self._movements.may_pass_by(name)]
 
     def _components(self, names: Collection[str]) -> list[Any]:
         return [self._scene.instances[name].fmu.component for name in names]
 
     @cached_property
-    def angles(self) -> dict[str, str]:
-        """The signals of the angles of the shafts that instances follow for which steps may be too long."""
-        found = {name: followed(self._scene, name) for name in self._passing}
-        return {name: signal for name, signal in found.items() if signal}
+    def angles(self) -> dict[str, set[str]]:
+        """The signals of the angles by which instances move for which steps may be too long."""
+        return {name: {*self._movements.angles(name)} for name in self._passing}
 
     def unshown(self, scene: Scene, runs: Sequence[Judged] = ()) -> dict[int, str]:
         """The claims, counted from 0, of which coarser runs say nothing, and why; `runs` show speeds."""
         found = dict[int, str]()
-        passed = passed_by(scene)
+        passed = passed_by(scene) | contradicted(scene)
         speeds = {
-            name: max((each.speeds[angle] for each in runs if angle in each.speeds), default=None)
-            for name, angle in self.angles.items()
+            name: max(
+                (run.speeds[angle] for run in runs for angle in angles & run.speeds.keys()), default=None
+            )
+            for name, angles in self.angles.items()
         }
-        shown = {name: longest_step(scene, name, speeds.get(name)) for name in self._passing}
+        shown = {name: self._movements.longest_step(scene, name, speeds[name]) for name in self._passing}
         for number, names in enumerate(self._upstream):
             longest, why = min((shown[name] for name in names if name in shown), default=(math.inf, ""))
             if not longest:

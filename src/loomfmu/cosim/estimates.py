@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -70,7 +71,12 @@ class Estimates:
         self.claims, self._run, self._signals = claims, run, signals
         self._dependence = Dependence(scene, claims)
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
-        self.beside = (*self._dependence.counters, *dict.fromkeys(self._dependence.angles.values()))
+        self.beside = (*self._dependence.counters, *self._angles)
+
+    @property
+    def _angles(self) -> dict[str, None]:
+        """The signals of all angles whose speeds matter."""
+        return dict.fromkeys(chain.from_iterable(self._dependence.angles.values()))
 
     def coarser(self, scene: Scene, grid: Grid, wanted: Collection[int]) -> Coarser:
         """Judge some claims, counted from 0, on coarser steps than those of a grid."""
@@ -128,8 +134,7 @@ class Estimates:
         ]
         counters = self._dependence.counters
         counted = {each: Count(trace.time, trace[each]) for each in counters if each in trace}
-        angles = dict.fromkeys(self._dependence.angles.values())
-        return Judged(worst, counted, {each: _fastest(trace, each) for each in angles if each in trace})
+        return Judged(worst, counted, {each: _fastest(trace, each) for each in self._angles if each in trace})
 
     def of(
         self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser

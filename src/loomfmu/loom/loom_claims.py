@@ -146,7 +146,7 @@ class NipHolds(Claim):
 class LocksInTime(Claim):
     """The pattern locks follow their law and let go within the time that they have.
 
-    Both hold up to a speed of the shaft that the lock computes, so the shaft's highest speed is judged.
+    Both hold up to a speed of its shaft that the lock computes, so the highest speed of that shaft is judged.
     """
 
     lock: str = argument(Name(), "lock")
@@ -154,11 +154,19 @@ class LocksInTime(Claim):
     needs = ("lock.in_time", "lock.torque_margin", "lock.speed_limit")
     sense, unit = AT_MOST, SPEED
 
+    def signals(self, scene: Wired) -> list[str]:
+        return [*super().signals(scene), *filter(None, [self._velocity(scene)])]
+
+    def _velocity(self, run: Wired) -> str:
+        """The velocity of the lock's shaft; "" if it turns by itself."""
+        given = f"{self.lock}.shaft_velocity"
+        return run.wires.get(given, given if given in run else "")
+
     def question(self, trace: Signals) -> Question:
-        velocity, margin = "shaft.velocity", f"{self.lock}.torque_margin"
+        velocity, margin = self._velocity(trace), f"{self.lock}.torque_margin"
         forms = [
             self.form("highest speed of the shaft", velocity),
             Form("torque margin", margin, ONE, AT_LEAST),  # of a lock that does not follow the shaft
         ]
         signals = [f"{self.lock}.speed_limit", f"{self.lock}.in_time", margin]
-        return Question("locks", forms, [*signals, velocity if velocity in trace else ""], [0.0])
+        return Question("locks", forms, [*signals, velocity], [0.0])

@@ -159,7 +159,7 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         found = loom.evaluate(settings, errors=job.errors)
         found.check_end()
         values = [found.trace[signal][-1].item() for signal in job.values]
-        values += [_finite(each.worst) for each in found.measured]
+        values += map(_measured, found.measured)
     except (OSError, MemoryError):  # of the machine, not of the row
         raise
     except Interrupted:
@@ -182,6 +182,13 @@ def _row(job: Job, loom: Prepared, settings: dict[str, Any]) -> tuple[list[Any],
         if not verdict.holds and first is None:
             first = called(claim, verdict)
     return [*values, found.holds, first, "; ".join(found.warnings) or None, None], found.claims
+
+
+def _measured(verdict: Verdict) -> float | None:
+    """The number of a measure. Raises LoomfmuError where the steps do not show it."""
+    if math.isinf(verdict.error):
+        raise LoomfmuError(f"{verdict.signal}: {verdict.note}")
+    return _finite(verdict.worst)
 
 
 def failed(job: Job, scene: Scene, reason: str) -> list[Any]:

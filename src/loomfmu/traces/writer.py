@@ -111,10 +111,13 @@ class TraceWriter:
         angle.dims[0].attach_scale(time)
         found: dict[str, Any] = {}
         datasets = []
+        driven = {(each.instance, each.variable) for each in self.channels}  # inputs have names of links
         for channel in self.channels:
             if channel.instance not in found:
                 group = found[channel.instance] = file.create_group(channel.instance)
-                group["time"], group["shaft_angle"] = time, angle  # links: xarray needs the time there
+                group["time"] = time  # a link, which xarray needs there; of the angle, too
+                if (channel.instance, "shaft_angle") not in driven:
+                    group["shaft_angle"] = angle
                 # NeXus: h5web opens the group on a plot of its first variable
                 plot = {"NX_class": "NXdata", "signal": channel.variable, "axes": "time"}
                 annotate(group, {**plot, **groups.get(channel.instance, {})})

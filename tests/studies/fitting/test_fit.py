@@ -85,6 +85,22 @@ def test_values_that_made_the_data_are_found_again(tmp_path: Path) -> None:
     assert loomfmu.evaluate(SIMS / "wl680_3600.toml", set=fixed | found.values)
 
 
+def test_an_offset_compares_the_last_whole_revolution_and_no_other(tmp_path: Path) -> None:
+    """The one before is another pick of a plain weave. A run that does not cover the shifts is refused."""
+    fixed = {"damper_1.free_travel": "300 mm", "steps_per_revolution": 360, "revolutions": 2}
+    run = loomfmu.evaluate(SIMS / "wl680_3600.toml", set=fixed, values=["damper_1.displacement"]).trace
+    last = slice(360, None)
+    degrees, values = np.degrees(run.shaft_angle[last]) - 360.0, run["damper_1.displacement"][last]
+    rows = [(a, 1e3 * v) for a, v in zip(degrees, values, strict=True)]
+    data = written(tmp_path, rows, "shaft_angle [deg],damper_1.displacement [mm]")[1]
+    how = {"vary": "damper_1.damping_ratio=0..0.5", "offset": "-3deg..3deg"}
+    with pytest.raises(LoomfmuError, match="with an offset of 3 deg, but the run goes from 0 to 720 deg"):
+        fit(SIMS / "wl680_3600.toml", data, set=fixed, **how)
+    found = fit(SIMS / "wl680_3600.toml", data, set=fixed | {"revolutions": 2.1}, **how)
+    assert found.parameters[1].value == pytest.approx(0.0, abs=1e-9)
+    assert found.curves[0].rms < 1e-9
+
+
 LENGTHS = np.linspace(0.3, 0.9, 61)
 
 

@@ -16,6 +16,7 @@ from ...errors import LoomfmuError
 from ...fmi.native.libraries import needed_library
 from ...traces import Signals, Verdict
 from ..standard import standard
+from .movers import shafts_of
 
 SOURCE = Path(__file__).with_name("native") / "judge.c"
 ROOM = 16  # for the times that a function finds, at first
@@ -80,10 +81,12 @@ class Question(NamedTuple):
         """
         forms = [(number(form.signal), form.sense, form.judges(trace)) for form in self.forms]
         signals = [number(signal) for signal in self.signals]
-        weave = standard().weave_of({signal.partition(".")[0] for signal in self.signals}, trace)
+        owners = {signal.partition(".")[0] for signal in self.signals}
+        weave = standard().weave_of(owners, trace)
+        shafts = [number(angle) for angle in shafts_of(owners, trace.wires, trace) if angle in trace]
         rule = library().rule_of(self.rule.encode())
         found: list[float | str] = [rule, len(forms), *chain.from_iterable(forms)]
-        for part in (signals, self.numbers, weave):
+        for part in (signals, self.numbers, weave, shafts):
             found += (len(part), *part)
         return found
 

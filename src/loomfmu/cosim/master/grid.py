@@ -11,6 +11,7 @@ from ..scenes.scene import Scene
 Floats = NDArray[np.float64]
 DENSE = 1.2  # communication points for each equal step
 LEFT = 0.01  # of the range of a table: what steps that meet none of its rows may leave out
+AGREE = 1e-6  # of the range of a table: how far it may be from what its rate gives
 SAME = 1e-6  # of a step: what a kink may be away from a communication point
 
 
@@ -109,6 +110,30 @@ def passed_by(scene: Scene) -> dict[str, str]:
         if np.any(off > LEFT * np.ptp(np.array(drive.values, dtype=float))):
             rows = f"rows of inputs.{drive.instance}.{drive.variable} lie between the steps"
             found[drive.instance] = f"{rows}, which {equal} needs to be equal; take steps that meet all rows"
+    return found
+
+
+def contradicted(scene: Scene) -> dict[str, str]:
+    """The instances with steps between rows of an input, which its rate, driven as well, contradicts there.
+
+    Between rows both lie on straight lines, which agree only where the rate is constant.
+    """
+    found = dict[str, str]()
+    driven = {(each.instance, each.variable): each for each in scene.drives}
+    for (name, variable), drive in driven.items():
+        rate = driven.get((name, scene.instances[name].fmu.ports[variable].rate or ""))
+        if rate is None:
+            continue
+        times = np.array([0.0, *_rows(scene, [*drive.periods, *rate.periods]), scene.steps * scene.step_size])
+        values, rates = (each.along(times / period(scene)) for each in (drive, rate))
+        moved, places = np.diff(values), times / scene.step_size
+        between = np.ceil(places[1:] - SAME) - np.floor(places[:-1] + SAME) > 1.0
+        off = np.maximum(*(np.abs(moved - np.diff(times) * each) for each in (rates[:-1], rates[1:])))
+        if np.any(between & (off > AGREE * np.ptp(values))):
+            found[name] = (
+                f"steps lie between rows of inputs.{name}.{variable}, where inputs.{name}.{rate.variable} is"
+                " not its rate; give a row for each step, in both"
+            )
     return found
 
 

@@ -44,8 +44,9 @@ class Plan:
 
     @property
     def wires(self) -> dict[str, str]:
-        """The output that each wired input takes its values from."""
-        return {".".join(each.sink): ".".join(each.source) for each in self.pruned.scene.wires}
+        """The output that each wired input takes its values from, be it of a shaft that needs no FMU."""
+        wires = (each for each in self.scene.wires if each.sink[0] in self.pruned.scene.instances)
+        return {".".join(each.sink): ".".join(each.source) for each in wires}
 
     @property
     def fmus(self) -> dict[str, str]:

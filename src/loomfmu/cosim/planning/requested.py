@@ -9,6 +9,7 @@ from ...declaring.variables import MOTION, TIME, Beside, variables_of
 from ...errors import LoomfmuError, suggestion
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, place_of, read
+from ..claims.movers import shafts_of
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
@@ -130,18 +131,19 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
 
 def judged_by(scene: Scene, claims: Iterable[Claim] | None = None) -> list[str]:
     """The signals that claims, by default the scene's, need, what holds extremes of these, and all rates."""
-    wanted = []
+    wanted, outputs = [], Outputs(scene)
     for claim in claims_of(scene) if claims is None else claims:
         signals = signals_of(scene, claim)
         held = (output_port(scene, each, "claim").beside for each in signals)
         names = [each.lowest if claim.sense > 0 else each.highest for each in held]
         owners = [each.partition(".")[0] for each in signals]
         wanted += signals + [f"{o}.{name}" for o, name in zip(owners, names, strict=True) if name]
+        wanted += shafts_of(owners, outputs.wires, outputs)
     return with_rates(scene, wanted)
 
 
 class Outputs:
-    """The outputs of a scene and its wires: what a claim sees of it before the run."""
+    """The outputs of a scene, its driven inputs and its wires: what a claim sees of it before the run."""
 
     def __init__(self, scene: Scene):
         self._scene = scene
@@ -158,10 +160,11 @@ class Outputs:
 
     @cached_property
     def _names(self) -> dict[str, None]:
-        """The outputs, in the order of the scene."""
+        """The outputs, in the order of the scene, and the driven inputs."""
         instances = self._scene.instances.items()
         ports = ((name, port) for name, each in instances for port in each.fmu.ports.values())
-        return {f"{name}.{port.name}": None for name, port in ports if port.causality == "output"}
+        outputs = {f"{name}.{port.name}": None for name, port in ports if port.causality == "output"}
+        return outputs | {f"{drive.instance}.{drive.variable}": None for drive in self._scene.drives}
 
     def __contains__(self, signal: object) -> bool:
         return signal in self._names

@@ -16,18 +16,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...declaring.variables import MOTION, Component, variables_of
+from ...declaring.variables import MOTION, variables_of
 from ...errors import LoomfmuError
 from ...traces import Recording
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
-from ..scenes.instances import Instance
 from ..scenes.scene import Scene
-from ..scenes.shafts import shaft_inputs, turns_others
+from ..scenes.shafts import turns_others
+from .movements import Movements
 from .plan import InMemory
 from .pruning import prune
-from .requested import SHAFT_ANGLE, claims_of, shaft_angle, signals_of, with_rates
+from .requested import claims_of, shaft_angle, signals_of, with_rates
 
 Floats = NDArray[np.float64]
 Scout = Callable[[Scene, Sequence[str], Grid], InMemory]
@@ -39,8 +39,6 @@ REACH = 0.125  # of the steps by which a lowest point was found: it is known bet
 DEEP = 0.2  # of a signal's range above its lowest sample: a minimum there may be the lowest
 RIPPLE = 1e-6  # of a signal's range: what samples about a minimum that is one differ by
 APART = 1.0 / 7200.0  # of a revolution: points closer than that are one
-EVENT = 4.0  # steps that show an event of a mechanism
-SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
 NARROW = 0.2  # of an equal step, where that is less: equal steps stay, but for those next to a landing
 
 
@@ -131,91 +129,11 @@ def _unequal(needed: Scene) -> str:
 
 def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move and how the shaft's speed changes, and why."""
-    fine = period(scene) / scene.steps_per_period
+    fine, movements = period(scene) / scene.steps_per_period, Movements(scene)
     yield period(scene) / scene.coarse_steps_per_revolution, ""
     for each in scene.instances:
-        longest, why = longest_step(scene, each)
+        longest, why = movements.longest_step(scene, each)
         yield longest or fine, why
-
-
-def may_pass_by(scene: Scene, name: str) -> bool:
-    """Return whether steps may be too long to show how an instance moves, whatever the values."""
-    component = scene.instances[name].fmu.component
-    if component is None:
-        return False
-    own = component.shortest_event.__func__, component.longest_step.__func__  # type: ignore[attr-defined]
-    usual = Component.shortest_event.__func__, Component.longest_step.__func__  # type: ignore[attr-defined]
-    return own != usual or component.longest_turn < math.inf or _apart(scene, name)[0] < math.inf
-
-
-def longest_step(scene: Scene, name: str, speed: float | None = None) -> tuple[float, str]:
-    """The longest step that shows how an instance moves [s], and why; 0 where none is known.
-
-    `speed` is the highest one of the shaft that it follows [rad/s], where a run has shown that.
-    """
-    instance = scene.instances[name]
-    component = instance.fmu.component
-    if component is None:
-        return math.inf, ""
-    turn, event = component.shortest_event(instance.effect)
-    by_event = turn / EVENT, f"{event} of {name} takes {math.degrees(turn):.4g} deg"
-    limit = f"allows steps of at most {math.degrees(component.longest_turn):.4g} deg"
-    declared = (
-        component.longest_turn,
-        f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
-    )
-    speeds = [each for each in (speed, _mean_speed(scene, name)) if each is not None]
-    fastest = max(speeds, default=None)
-    turns = [by_event, declared] if fastest is None else [by_event, declared, _apart(scene, name)]
-    return min(component.longest_step(instance.effect), _taking(*min(turns), fastest))
-
-
-def _apart(scene: Scene, name: str) -> tuple[float, str]:
-    """The turn of a shaft that is not the main one, whose angle claims look at themselves."""
-    instance = scene.instances[name]
-    follows = bool(shaft_inputs(instance.fmu.component, instance.fmu.ports))
-    other = follows and followed(scene, name).partition(".")[0] != "shaft"
-    why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
-    return math.radians(SHOWN) if other else math.inf, why
-
-
-def followed(scene: Scene, name: str) -> str:
-    """The signal of the shaft's angle that an instance follows; empty for one that turns by itself.
-
-    What follows no shaft moves with what the main shaft moves.
-    """
-    instance = scene.instances[name]
-    if inputs := shaft_inputs(instance.fmu.component, instance.fmu.ports):
-        angle = name, inputs[0]
-        return next((".".join(wire.source) for wire in scene.wires if wire.sink == angle), "")
-    turned = "shaft" in scene.instances and name != "shaft" and "angle" in scene.instances["shaft"].fmu.ports
-    return SHAFT_ANGLE if turned and _own_speed(instance) is None else ""
-
-
-def _taking(turn: float, why: str, speed: float | None) -> tuple[float, str]:
-    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
-    if math.isinf(turn) or speed == 0.0:  # it stands
-        return math.inf, why
-    if speed is None:
-        return 0.0, f"{why}, and the speed of the shaft is not known"
-    return turn / speed, why
-
-
-def _mean_speed(scene: Scene, name: str) -> float | None:
-    """The mean speed of the shaft that an instance follows [rad/s]; None where it is not known."""
-    passed = set[str]()
-    while name not in passed:
-        passed.add(name)
-        name = followed(scene, name).partition(".")[0] or name
-    return _own_speed(scene.instances[name])
-
-
-def _own_speed(instance: Instance) -> float | None:
-    """The speed that an instance is given [rad/s]; None where it has none."""
-    port = instance.fmu.ports.get("speed")
-    if port is None or port.causality == "output":
-        return None
-    return abs(float(instance.values.get("speed", port.start or 0.0)))
 
 
 def _check(scene: Scene) -> None:

@@ -92,17 +92,18 @@ def _places(data: Measured, axis: Floats, offset: float) -> Floats:
     if data.over == "shaft_angle":
         one, unit = math.radians(1.0), "deg"
         low, high = float(np.min(places)), float(np.max(places))
-        # angles within a revolution: the last one, in which what was at rest at the start has settled
-        turns = math.floor((axis[-1] - max(data.shifts[1], 0.0)) / TURN + ROUNDING) - 1
+        # angles within a revolution: the last whole one, in which what was at rest at the start has settled;
+        # one before it may be another pick of the weave
+        turns = math.floor(axis[-1] / TURN + ROUNDING) - 1
         if low >= 0.0 and high <= TURN * (1.0 + ROUNDING) and TURN * (turns + ROUNDING) >= axis[0]:
             places = TURN * turns + places
-    shifted = places + offset
     slack = ROUNDING * max(abs(axis[0]), abs(axis[-1]))
-    if shifted.min() < axis[0] - slack or shifted.max() > axis[-1] + slack:
-        measured = f"{places.min() / one:.6g} to {places.max() / one:.6g} {unit}"
-        moved = f", with an offset of {offset / one:.6g} {unit}" if offset else ""
-        raise LoomfmuError(
-            f"{data.path}: measured from {measured}{moved}, but the run goes from {axis[0] / one:.6g} to"
-            f" {axis[-1] / one:.6g} {unit}"
-        )
-    return np.asarray(np.clip(shifted, axis[0], axis[-1]))
+    for shift in (offset, *data.shifts):  # all that the fit may try, before it does
+        if places.min() + shift < axis[0] - slack or places.max() + shift > axis[-1] + slack:
+            measured = f"{places.min() / one:.6g} to {places.max() / one:.6g} {unit}"
+            moved = f", with an offset of {shift / one:.6g} {unit}" if shift else ""
+            raise LoomfmuError(
+                f"{data.path}: measured from {measured}{moved}, but the run goes from {axis[0] / one:.6g} to"
+                f" {axis[-1] / one:.6g} {unit}; let it go on for longer"
+            )
+    return np.asarray(np.clip(places + offset, axis[0], axis[-1]))

@@ -99,7 +99,7 @@ EXPORT(rule_of) int rule_of(const char *name)
     return rule;
 }
 
-static struct call call_of(const double *list, const char *words)
+static struct call call_of(struct run *run, const double *list, const char *words)
 {
     struct call call = {.rule = (int)list[0], .words = words};
     call.forms = (ptrdiff_t)list[1];
@@ -113,13 +113,16 @@ static struct call call_of(const double *list, const char *words)
     list = call.number + call.numbers;
     call.pegs = (ptrdiff_t)list[0];
     call.peg = list + 1;
+    list = call.peg + call.pegs;
+    run->moving = (ptrdiff_t)list[0];
+    run->movers = list + 1;
     return call;
 }
 
 /* Judge a question, with a note of its own. Returns false where no memory is left. */
 EXPORT(judge) bool judge(struct run *run, const double *question, const char *words, struct verdict *verdict)
 {
-    const struct call call = call_of(question, words);
+    const struct call call = call_of(run, question, words);
     struct answer answer = {.bound = call.number[0], .worst = NAN, .time = NAN, .holds = NAN, .off = NAN};
     BEGIN(run, false);
     answer.fails_for_good = true;
@@ -137,7 +140,7 @@ EXPORT(settle)
 bool settle(struct run *run, const double *question, struct verdict *verdict, double spread, double noise, double share,
             double scatter)
 {
-    const struct call call = call_of(question, "");
+    const struct call call = call_of(run, question, "");
     const struct form form = form_of(&call, (int)verdict->form);
     const double sense = form.sense;
     BEGIN(run, false);
@@ -158,7 +161,7 @@ bool settle(struct run *run, const double *question, struct verdict *verdict, do
 /* What a verdict may be off by whatever the steps; NaN where no memory is left. */
 EXPORT(model_error) double model_error(struct run *run, const double *question, const struct verdict *verdict)
 {
-    const struct call call = call_of(question, "");
+    const struct call call = call_of(run, question, "");
     BEGIN(run, NAN);
     return left_by_model(run, &call, verdict);
 }
@@ -176,7 +179,7 @@ static ptrdiff_t handed(struct times found, double *times, ptrdiff_t room)
 /* Times at which a question looks. */
 EXPORT(landings) ptrdiff_t landings(struct run *run, const double *question, double *times, ptrdiff_t room)
 {
-    const struct call call = call_of(question, "");
+    const struct call call = call_of(run, question, "");
     BEGIN(run, -1);
     return handed(looks(run, &call), times, room);
 }

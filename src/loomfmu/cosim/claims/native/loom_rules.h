@@ -26,7 +26,9 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
             continue;
         struct extreme low = noted_extreme(run, answer, velocity, 1.0, &within);
         struct extreme high = noted_extreme(run, answer, velocity, -1.0, &within);
-        double fluctuation = (high.value - low.value) * (turn.end - turn.start) / turned;
+        /* the mean of an unfinished revolution is not known, but no larger than its highest speed will be */
+        double mean = whole ? TURN / (turn.end - turn.start) : larger(fabs(high.value), fabs(low.value));
+        double fluctuation = mean > 0.0 ? (high.value - low.value) / mean : 0.0;
         if (!(fluctuation <= answer->worst)) {
             answer->worst = fluctuation;
             answer->time = low.time;

@@ -50,6 +50,8 @@ struct run {
     struct signal *signals;
     int count, space;
     int shaft; /* the number of the main shaft's angle, or -1 */
+    const double *movers; /* of the question: the angles, by number, of the shafts that move what it is about */
+    ptrdiff_t moving;
     struct room *kept, *scratch;
     const char *note; /* of the last verdict */
 #ifndef __wasm__

@@ -19,18 +19,26 @@ static bool too_coarse(const struct motion *turning)
     return turning->longest > FARTHEST * (1.0 + SAME);
 }
 
-/* A note on a run of less than so many revolutions of the shaft; empty for others. */
+/* A note on a run of less than so many revolutions of a shaft that matters; empty for others.
+ *
+ * Where none is known to move what the question is about, the main shaft matters. */
 static const char *turns_less(struct run *run, double wanted, const char *why)
 {
-    struct motion *turning = shaft_of(run);
-    const double turned = turning == NULL ? INFINITY : (turning->highest - turning->lowest) / TURN;
-    if (turned >= wanted - STANDS)
-        return "";
-    const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
-    return text(run, "the shaft turns by only %s revolution%s, %s", number, strcmp(number, "1") == 0 ? "" : "s", why);
+    const ptrdiff_t shafts = run->moving > 0 ? run->moving : run->shaft >= 0;
+    for (ptrdiff_t place = 0; place < shafts; place++) {
+        const int shaft = run->moving > 0 ? (int)run->movers[place] : run->shaft;
+        struct motion *turning = curve(run, shaft);
+        const double turned = (turning->highest - turning->lowest) / TURN;
+        if (turned >= wanted - STANDS)
+            continue;
+        const char *which = shaft == run->shaft ? "the shaft" : run->signals[shaft].name;
+        const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
+        return text(run, "%s turns by only %s revolution%s, %s", which, number, strcmp(number, "1") == 0 ? "" : "s", why);
+    }
+    return "";
 }
 
-/* A note on a run in which the shaft turns less than a revolution; empty for others. */
+/* A note on a run in which a shaft that matters turns less than a revolution; empty for others. */
 static const char *short_run(struct run *run)
 {
     return turns_less(run, 1.0, "and the claim takes a whole one");

@@ -17,7 +17,8 @@ struct form { /* of a verdict: its signal, -1 for what is computed of several */
     bool as_it_is; /* its number is one of its signal, which otherwise only names where to look */
 };
 
-/* A question: a rule with its forms, signals and numbers, and the pegs of the weave. judging.py says how it is written. */
+/* A question: a rule with its forms, signals and numbers, and the pegs of the weave; the run has the shafts that matter.
+ * judging.py says how it is written. */
 struct call {
     int rule;
     ptrdiff_t forms, signals, numbers, pegs;

@@ -1,0 +1,116 @@
+"""Movements of instances: the shafts that turn them, and the longest steps that show what they do."""
+
+import math
+from functools import cached_property
+
+from ...components import COMPONENTS
+from ...declaring.variables import Component
+from ..claims.movers import shafts_of
+from ..scenes.instances import Instance
+from ..scenes.scene import Scene
+from ..scenes.shafts import shaft_inputs
+from .requested import SHAFT_ANGLE, Outputs
+
+EVENT = 4.0  # steps that show an event of a mechanism
+SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
+ANGLE, SPEED = "rad", "rad/s"
+
+
+class Movements:
+    """How the instances of a scene move, as far as its wires tell."""
+
+    def __init__(self, scene: Scene):
+        self._instances, self._outputs = scene.instances, Outputs(scene)
+        self._angles: dict[str, tuple[str, ...]] = {}
+
+    def angles(self, name: str) -> tuple[str, ...]:
+        """The signals of the angles by which an instance moves; none if it turns by itself.
+
+        What follows no shaft moves with the shafts that move what it follows, a mechanism of one's own with
+        all angles that it takes, too.
+        """
+        if name not in self._angles:
+            self._angles[name] = self._found(name)
+        return self._angles[name]
+
+    def _found(self, name: str) -> tuple[str, ...]:
+        instance, wires = self._instances[name], self._outputs.wires
+        component, ports = instance.fmu.component, instance.fmu.ports.values()
+        given = [*shaft_inputs(component, instance.fmu.ports)[:1]]
+        if not given and component not in COMPONENTS.values():
+            given = [each.name for each in ports if each.causality == "input" and each.unit == ANGLE]
+        inputs = [f"{name}.{each}" for each in given]
+        taken = [wires.get(each, each) for each in inputs if each in wires or each in self._outputs]
+        if not inputs and _own_speed(instance) is None:
+            others = shafts_of([name], wires, self._outputs) or self._main
+            taken = [each for each in others if each.partition(".")[0] != name]
+        return tuple(dict.fromkeys(taken))
+
+    @cached_property
+    def _main(self) -> tuple[str, ...]:
+        """The main shaft, if there is one."""
+        return (SHAFT_ANGLE,) if SHAFT_ANGLE in self._outputs else ()
+
+    def may_pass_by(self, name: str) -> bool:
+        """Return whether steps may be too long to show how an instance moves, whatever the values."""
+        component = self._instances[name].fmu.component
+        if component is None:
+            return False
+        own = component.shortest_event.__func__, component.longest_step.__func__  # type: ignore[attr-defined]
+        usual = Component.shortest_event.__func__, Component.longest_step.__func__  # type: ignore[attr-defined]
+        return own != usual or component.longest_turn < math.inf or self._apart(name)[0] < math.inf
+
+    def longest_step(self, scene: Scene, name: str, speed: float | None = None) -> tuple[float, str]:
+        """The longest step that shows how an instance moves [s], and why; 0 where none is known.
+
+        `scene` has the values; `speed` is the highest one of the angles by which it moves [rad/s], where a
+        run has shown that.
+        """
+        instance = scene.instances[name]
+        component = instance.fmu.component
+        if component is None:
+            return math.inf, ""
+        turn, event = component.shortest_event(instance.effect)
+        by_event = turn / EVENT, f"{event} of {name} takes {math.degrees(turn):.4g} deg"
+        limit = f"allows steps of at most {math.degrees(component.longest_turn):.4g} deg"
+        declared = (
+            component.longest_turn,
+            f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
+        )
+        speeds = [each for each in (speed, self._mean_speed(scene, name)) if each is not None]
+        fastest = max(speeds, default=None)
+        turns = [by_event, declared] if fastest is None else [by_event, declared, self._apart(name)]
+        return min(component.longest_step(instance.effect), _taking(*min(turns), fastest))
+
+    def _apart(self, name: str) -> tuple[float, str]:
+        """The turn of a shaft that is not the main one, whose angle claims look at themselves."""
+        fmu = self._instances[name].fmu
+        other = bool(shaft_inputs(fmu.component, fmu.ports)) and self.angles(name) != (SHAFT_ANGLE,)
+        why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+        return math.radians(SHOWN) if other else math.inf, why
+
+    def _mean_speed(self, scene: Scene, name: str, passed: tuple[str, ...] = ()) -> float | None:
+        """The mean speed of the shafts by which an instance moves [rad/s]; None where it is not known."""
+        angles = self.angles(name)
+        if not angles:
+            return _own_speed(scene.instances[name])
+        turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
+        speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
+        return max((each for each in speeds if each is not None), default=None)
+
+
+def _taking(turn: float, why: str, speed: float | None) -> tuple[float, str]:
+    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
+    if math.isinf(turn) or speed == 0.0:  # it stands
+        return math.inf, why
+    if speed is None:
+        return 0.0, f"{why}, and the speed of the shaft is not known"
+    return turn / speed, why
+
+
+def _own_speed(instance: Instance) -> float | None:
+    """The speed that an instance is given [rad/s]; None where it has none."""
+    port = instance.fmu.ports.get("speed")
+    if port is None or port.causality == "output" or port.unit != SPEED:
+        return None
+    return abs(float(instance.values.get("speed", port.start or 0.0)))
