@@ -120,8 +120,10 @@ def target_of(plan: Plan, path: Path, overwrite: bool, report: bool) -> Path:
     size = largest(plan.grid.steps + 1, kinds.count("Real"), len(kinds) - kinds.count("Real"))
     if report and size > LARGE_TRACE:
         printed.complain(f"{path}: the trace takes up to {size_text(size)}; record = [...] keeps less")
-    for left in abandoned(path) if report else ():
-        printed.complain(f"{left}: left by a killed process; deleted when this run is complete")
+    interrupted = [partial_of(path)] if partial_of(path).exists() else []
+    for left in (*interrupted, *abandoned(path)) if report else ():
+        how = "an interrupted run" if left in interrupted else "a killed process"
+        printed.complain(f"{left}: left by {how}; deleted when this run is complete")
     try:
         check_room(path, size)
         return path.absolute()
