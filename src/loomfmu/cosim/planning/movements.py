@@ -17,7 +17,7 @@ ANGLE, SPEED = "rad", "rad/s"
 
 
 class Movements:
-    """How the instances of a scene move, as far as its wires tell."""
+    """The movements of the instances of a scene, as far as its wires tell."""
 
     def __init__(self, scene: Scene):
         self._instances, self._outputs = scene.instances, Outputs(scene)
