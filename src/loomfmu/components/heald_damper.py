@@ -225,7 +225,7 @@ class HealdDamper(DamperVariables):
         return 0
 
     def quickness(self, stiffness: float, damping: float, lift: float) -> float:
-        """Rate at which the carrier moves by itself, with its threads [1/s]: a piece is short against that."""
+        """Rate at which the carrier moves by itself with its threads [1/s]: a piece is short against it."""
         if self.thread_count == 0:
             return sqrt(stiffness) + damping
         warp = self.warp()
