@@ -29,7 +29,6 @@ pattern = "10"
 WEAKLY_COUPLED = 1  # oms_system_wc
 
 
-@pytest.mark.few(5)
 @pytest.mark.usefixtures("natives")
 def test_they_give_the_bits_of_fmi_2(tmp_path: Path) -> None:
     for name in PARTS.values():
