@@ -167,7 +167,7 @@ class BeltDynamics(BeltDynamicsVariables):
         self.sampled_tension = self.yarn_tension
 
     def jumps(self, since: float) -> bool:
-        """Return whether the travel jumps over a time since the last sample: whether its rates do not explain it."""
+        """Return whether the travel jumps over a time since the last sample, more than its rates explain."""
         rates = fabs(self.sampled_velocity) + fabs(self.velocity)
         seconds = fabs(self.sampled_acceleration) + fabs(self.acceleration)
         change = self.travel - self.sampled_travel - 0.5 * since * (self.sampled_velocity + self.velocity)

@@ -1,4 +1,4 @@
-"""What BeltMonitor is given, shows and keeps: its declarations."""
+"""Declarations of BeltMonitor: what it is given, shows and keeps."""
 
 from dataclasses import dataclass
 from math import inf

@@ -1,4 +1,4 @@
-"""How the belt leans on its guide, in which it turns freely up to a slope, and when that changes."""
+"""Contact of the belt with its guide, in which it turns freely up to a slope, and the changes of it."""
 
 from math import fabs
 

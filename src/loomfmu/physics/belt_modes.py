@@ -11,7 +11,7 @@ from math import cos, fabs, pi, sin
 
 @dataclass(frozen=True)
 class Bow:
-    """How a belt is crooked: the belt itself (1) or the span (2), by how much, and half a wave [m, m]."""
+    """Bow of the belt itself (1) or of the span (2): its height and half a wave [m, m]."""
 
     of: int
     height: float

@@ -29,7 +29,7 @@ def shape_at(x: float, a: list[float], end: float, head: float) -> tuple[float, 
 def shape_extremes(
     length: float, a: list[float], end: float, head: float
 ) -> tuple[float, float, float, float]:
-    """Where the belt is farthest from its line, how far, how steep it is and how much it is bent at most.
+    """Place where the belt is farthest from its line, how far, its largest slope and curvature.
 
     The place is found to rounding; slope and curvature are the largest of 25 places.
 

@@ -237,7 +237,7 @@ def hold_ends(
 
 
 def yielding(belt: Belt, at: Instant, kind: int, load: float, square: float) -> list[float]:
-    """How far end slopes of the odd modes (kind 1) or the even ones (2) yield to moments at the stages."""
+    """Yield of the end slopes of odd modes (kind 1) or even ones (2) to moments at the stages."""
     y = [0.0] * 9
     for number in range(kind, belt.modes + 1, 2):
         wave = number * pi
@@ -251,7 +251,7 @@ def yielding(belt: Belt, at: Instant, kind: int, load: float, square: float) -> 
 
 
 def slopes(belt: Belt, at: Instant, kind: int, load: float, square: float, off: list[float]) -> list[float]:
-    """How far end slopes of the modes of a kind yield to what accelerations are off by, see `yielding`."""
+    """Yield of the end slopes of the modes of a kind to what accelerations are off by, see `yielding`."""
     s1, s2, s3 = 0.0, 0.0, 0.0
     for number in range(kind, belt.modes + 1, 2):
         wave = number * pi

@@ -1,4 +1,4 @@
-"""Where along a piece of its motion the heald carrier changes contact, and where its load turns round.
+"""Changes of contact of the heald carrier along a piece of its motion, and turns of its load.
 
 A piece is short against the carrier's own motion, `sqrt(k) t + c t` up to 0.5, but not against that of its
 frame: within it a load may turn round four times, a contact begin and end again. See `damper.propagate`.
@@ -201,7 +201,7 @@ class Stop:
 def contact_change(
     contact: int, stop: Stop, swing: Swing, most_acceleration: float, most_jerk: float, duration: float
 ) -> tuple[float, int]:
-    """When the carrier's contact with a stop first changes, and the contact that follows.
+    """Time at which the carrier's contact with a stop first changes, and the contact that follows.
 
     Args:
         contact: 0 free; 1 or -1 pressing on the upper or lower stop; 2 or -2 let go by a stop that it

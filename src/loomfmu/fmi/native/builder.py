@@ -172,7 +172,7 @@ def with_shell(translated: Translation, model: str, fmi: int) -> dict[str, str]:
 
 
 def identity(component: type[Component]) -> str:
-    """What a native FMU depends on, as a name for a cache: the component, the shell and the tools."""
+    """Return a name for a cache, by all that a native FMU needs: the component, the shell and the tools."""
     digest = hashlib.sha256(guid(component).encode())
     for file in (*sorted(SHELL.iterdir()), *sorted(Path(__file__).parents[1].rglob("*.py"))):
         digest.update(file.read_bytes())

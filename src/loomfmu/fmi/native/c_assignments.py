@@ -109,7 +109,7 @@ class Assignments:
         yield f"{indent}}}"
 
     def _place(self, target: ast.expr, kind: Kind) -> tuple[str, Kind]:
-        """How a value is put where it goes, and the type it has there: nowhere if nothing reads it."""
+        """Return the text that puts a value in its place, and its type there: none if nothing reads it."""
         if isinstance(target, ast.Attribute) and of_self(target):
             code = self.expressions.of(target)
             return f"{code.text} = %s", code.type
@@ -129,7 +129,7 @@ class Assignments:
         return f"{c_name(target.id)} = %s", known
 
     def _element(self, target: ast.Subscript) -> tuple[str, str]:
-        """How an element is written: of an array that is a local or an argument."""
+        """Return the text that writes an element of an array that is a local or an argument."""
         if isinstance(target.value, ast.Name) and target.value.id not in self.scope.locals:
             raise Untranslatable(target, f"{ast.unparse(target)} cannot be assigned to")
         place, kind, size = self.expressions.place(target.value)

@@ -1,4 +1,4 @@
-"""What C text is made of: types, names, numbers, and how functions are called.
+"""Parts of C text: types, names, numbers and the signatures of functions.
 
 Python's `float` is `double` here, its `int` is `int64_t`.
 """
@@ -88,7 +88,7 @@ class Signature:
 
 @dataclass
 class Scope:
-    """What the names of a function mean: its locals, the component's variables, functions and constants."""
+    """Meaning of the names in a function: its locals, the component's variables, functions and constants."""
 
     component: str
     functions: dict[str, Declared]
@@ -138,7 +138,7 @@ class Scope:
 
 
 def sizes(kinds: Iterable[Kind]) -> str:
-    """What tells types apart that are annotated alike: the sizes of their arrays."""
+    """Tell types apart that are annotated alike, by the sizes of their arrays."""
     found = ""
     for kind in kinds:
         if isinstance(kind, Array):
@@ -223,7 +223,7 @@ def _results(function: ast.FunctionDef, known: dict[str, str]) -> tuple[str, ...
 
 
 def fits(kind: Kind, annotated: str) -> bool:
-    """Whether a type is what an annotation of `Declared` says."""
+    """Return whether a type is what an annotation of `Declared` says."""
     if isinstance(kind, Array):
         return ARRAYS.get(annotated) == kind.element
     return annotated == (kind.name if isinstance(kind, Record) else kind)

@@ -46,7 +46,7 @@ class FunctionWriter(Assignments):
 
     @property
     def signature(self) -> Signature:
-        """How C calls it. Raises Untranslatable if it never returns what it declares."""
+        """Return its signature in C. Raises Untranslatable if it never returns what it declares."""
         results = tuple(kind for kind in self.results if kind is not None)
         if len(results) < len(self.results):
             raise Untranslatable(self.function, "a function without the return that is declared")
@@ -235,7 +235,7 @@ class FunctionWriter(Assignments):
 
 
 def _set_in(body: list[ast.stmt], name: str) -> bool:
-    """Whether statements set a name."""
+    """Return whether statements set a name."""
     nodes = (node for statement in body for node in ast.walk(statement))
     return any(
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store) for node in nodes

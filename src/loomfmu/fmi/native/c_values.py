@@ -112,7 +112,7 @@ class Values:
         ]
 
     def is_ours(self, node: ast.AST) -> bool:
-        """Whether an expression calls one of our functions or methods."""
+        """Return whether an expression calls one of our functions or methods."""
         if not isinstance(node, ast.Call):
             return False
         called = node.func
@@ -186,7 +186,7 @@ class Values:
         return Code(_member(record.text, c_name(node.attr)), dict(record.type.fields)[node.attr])
 
     def place(self, array: ast.expr) -> tuple[str, str, int]:
-        """Where the elements of an array stand in C, their type and number."""
+        """Return the place of the elements of an array in C, their type and number."""
         scope, name = self.scope, array.id if isinstance(array, ast.Name) else ""
         if of_self(array) in scope.arrays:
             members = scope.arrays[of_self(array)]

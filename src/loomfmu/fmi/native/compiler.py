@@ -153,7 +153,7 @@ def _call(arguments: list[str], directory: Path, name: str) -> None:
 
 
 def _required() -> Path:
-    """Where the compiler is installed. Raises LoomfmuError if it is not."""
+    """Return the path of the compiler. Raises LoomfmuError if it is not installed."""
     found = compiler()
     if found is None:
         raise LoomfmuError(f"this needs a compiler, which is not installed: {install('native')}")

@@ -47,7 +47,7 @@ def module_of(source: Path) -> bytes:
 
 
 def _shipped(source: Path, platform: str) -> Path:
-    """Where the library of a platform lies in a package that brings it."""
+    """Return the path of the library of a platform in a package that brings it."""
     suffix = platforms.PLATFORMS.get(platform, platforms.HERE).suffix
     return platforms.SHIPPED / platform / f"{source.stem}{suffix}"
 
@@ -63,7 +63,7 @@ def _seal(source: Path, library: bytes) -> bytes:
 
 
 def _is_of(library: Path, source: Path) -> bool:
-    """Whether a library that the package brings was built of this source, and not been changed since."""
+    """Return whether a library that the package brings is of this source, and unchanged since."""
     try:
         return _seal_of(library).read_bytes() == _seal(source, library.read_bytes())
     except OSError:

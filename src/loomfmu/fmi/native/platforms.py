@@ -15,7 +15,7 @@ COMPILER = "ziglang"
 
 @dataclass(frozen=True)
 class Platform:
-    """What a shared library is called on a platform, and how it is compiled and linked.
+    """Name of a shared library on a platform, and the arguments that compile and link it.
 
     `targets` has the compiler's name for each processor, with the name of its folder in FMI 3.
     """
@@ -66,13 +66,13 @@ def platform_of(target: str) -> Platform:
 
 @cache
 def compiler() -> Path | None:
-    """Where the compiler is installed, if it is."""
+    """Return the path of the compiler, if it is installed."""
     found = find_spec(COMPILER)
     return None if found is None or found.origin is None else Path(found.origin).parent
 
 
 def stamp(package: str) -> str:
-    """What changes when an installed package is installed anew; asking for its version takes far longer."""
+    """Return a stamp that changes when a package is installed anew; its version takes far longer."""
     found = find_spec(package)
     if found is None or found.origin is None:
         return ""

@@ -79,7 +79,7 @@ static const char *const categories[CATEGORIES] = {{{categories}}};
 
 @dataclass(frozen=True)
 class Part:
-    """What the shell starts and steps: its functions in C, and how many problems it reports."""
+    """Return the C of what the shell starts and steps, and the number of problems that it reports."""
 
     initialize: str
     step: str

@@ -121,7 +121,7 @@ def _fields(record: ast.ClassDef) -> dict[str, str]:
 
 
 def _constants(tree: ast.Module) -> dict[str, Any]:
-    """What the module names: numbers, and tuples of numbers."""
+    """Return the constants of the module: numbers, and tuples of numbers."""
     found: dict[str, Any] = {
         name: getattr(math, name) for name in _imported(tree) if isinstance(getattr(math, name), float)
     }
@@ -132,7 +132,7 @@ def _constants(tree: ast.Module) -> dict[str, Any]:
 
 
 def _imported(tree: ast.Module) -> list[str]:
-    """What the module imports from math."""
+    """Return the names that the module imports from math."""
     return [name.name for node in tree.body if isinstance(node, ast.ImportFrom) for name in node.names]
 
 
