@@ -52,8 +52,8 @@ def leave_cases_to_the_slow(items: list[pytest.Item]) -> None:
     """Of the cases of a test marked `few` mark all but a number, drawn by its name, as slow."""
     cases: dict[tuple[str, object], list[pytest.Item]] = {}
     for item in items:
-        if few := item.get_closest_marker("few"):
-            given = item.callspec.params.get(few.kwargs.get("each"))
+        if (few := item.get_closest_marker("few")) and (case := getattr(item, "callspec", None)):
+            given = case.params.get(few.kwargs.get("each"))
             cases.setdefault((item.nodeid.split("[")[0], given), []).append(item)
     for (name, _given), drawn in cases.items():
         count = min(drawn[0].get_closest_marker("few").args[0], len(drawn))
