@@ -77,6 +77,8 @@ def test_a_difference_is_found_where_it_begins_and_where_it_is_largest(tmp_path:
     assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", absolute={"belt.?": "31 mm"})
     assert loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", ignore=["belt.x"])
     assert not loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", absolute={"belt.x": "29 mm"})
+    with pytest.raises(LoomfmuError, match=r"ignore = \['\*'\] leaves out all signals"):
+        loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5", ignore=["*"])
 
 
 def test_a_value_that_one_trace_lacks_is_a_difference_and_one_that_both_lack_is_not(tmp_path: Path) -> None:

@@ -56,7 +56,7 @@ def test_a_folded_dataset_has_whole_revolutions(result: loomfmu.Result) -> None:
     # the samples themselves: nothing is interpolated
     np.testing.assert_array_equal(folded["belt.margin"].values.ravel(), result.trace["belt.margin"][:720])
     np.testing.assert_array_equal(folded["belt.at_risk"].values.ravel(), result.trace["belt.at_risk"][:720])
-    for wrong in (-3, 0.5):
+    for wrong in (-3, 0, 0.5):
         with pytest.raises(
             LoomfmuError, match=f"fold = {wrong} must be true or a number of angles, 1 or more"
         ):

@@ -80,6 +80,8 @@ def compare(
     one, two = traces = _opened(first), _opened(second)
     allowed = Tolerance(_share(tolerance), dict(absolute or {}))
     kept = [_kept(trace, ignore) for trace in traces]
+    if ignore and not any(kept):
+        raise LoomfmuError(f"ignore = {shown(ignore)} leaves out all signals, so there is nothing to compare")
     values = [_kept(trace.parameters, ignore) for trace in traces]
     allowed.check([*SHARED, *(name for names in (*kept, *values) for name in names)])
     meeting = meet(one, two, over)

@@ -42,7 +42,7 @@ def dataset(signals: Signals, names: Sequence[str], fold: bool | int) -> Any:
     time = {"units": "s", "long_name": "time"}
     coordinates: dict[str, Any]
     variables: dict[str, Any]
-    if not fold:
+    if fold is False:
         coordinates = {
             "time": ("time", signals.time, time),
             "shaft_angle": ("time", signals.shaft_angle, angle),
