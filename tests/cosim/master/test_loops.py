@@ -181,7 +181,6 @@ def test_iterated_in_c_it_gives_the_same_bits(inertia: float | None, flavour: st
         np.testing.assert_array_equal(ours, theirs)
 
 
-@pytest.mark.few(2)
 @needs_compiler
 def test_fmus_of_fmi_3_are_iterated_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
     text = LOOP.format(coupling="iterated", inertia=LIGHT, steps=360, revolutions=1)
