@@ -179,6 +179,9 @@ def test_an_array_of_another_type_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "bell.py"
     path.write_text(text.replace("KIND", "int"))
     assert load.component(str(path))(peg_2=5).peg == (1, 5)
+    listed = text.replace("tuple[KIND, ...]", "Sequence[int]")  # of one that is set from a list
+    path.write_text(listed.replace("from typing", "from collections.abc import Sequence\nfrom typing"))
+    assert load.component(str(path))(peg_2=5).peg == (1, 5)
     path.write_text(text.replace("KIND", "float"))
     with pytest.raises(
         LoomfmuError, match=r"line 14: peg_1 is declared tuple\[float, \.\.\.\], but its start"

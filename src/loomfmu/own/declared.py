@@ -83,10 +83,12 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
 def _of_variable(component: type[Component], variable: Variable) -> str:
     name, annotation = variable.name, component.__dataclass_fields__[variable.name].type
     declared = annotation.__name__ if isinstance(annotation, type) else str(annotation)
-    wanted = f"tuple[{variable.type.__name__}, ...]" if variable.element else variable.type.__name__
+    wanted = (variable.type.__name__,)
+    if variable.element:
+        wanted = (f"tuple[{wanted[0]}, ...]", f"collections.abc.Sequence[{wanted[0]}]")
     if name in KEYS or name == "time" or not NAME.fullmatch(name):
         return f"a variable cannot be called {name}: scenes and traces use that name"
-    if declared != wanted:
+    if declared not in wanted:
         return (
             f"{name} is declared {declared}, but its start {variable.start!r} is of type"
             f" {variable.type.__name__}"

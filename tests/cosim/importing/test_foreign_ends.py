@@ -107,7 +107,7 @@ def test_no_claim_holds_on_what_there_is_unless_the_scene_allows_an_end(
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("claim", ["", CLAIM.format("weft.travel", 10.0)])
+@pytest.mark.parametrize("claim", ["", CLAIM.format("motor.flange_w", 1e3)])
 def test_evaluate_tells_it_too(ending: tuple[Path, str], claim: str) -> None:
     place, end = ending
     found = evaluate(scenes.parse(SECOND + claim, "m", directory=place))
