@@ -15,15 +15,21 @@ def total(name: str, column: str) -> str:
 
 def sentence() -> str:
     """The figures on verdicts in one sentence, as the documents have it."""
-    of_all = {name: int(count) for name, count in table("verdicts")[-1].items() if count.isdecimal()}
-    shown = {name: f"{count:,}" if count else "none" for name, count in of_all.items()}
-    wrong = of_all["false_holds"] + of_all["false_fails"]
-    verb = "is" if of_all["too_small"] == 1 else "are"
-    return (
-        f"Of {shown['verdicts']} verdicts on {shown['scenes']} random scenes {wrong or 'none'} are wrong,"
-        f' {shown["false_holds"]} of them a false "holds" and {shown["wrong_from_1440"]} with 1440 steps in'
-        f" a revolution or more; {shown['too_small']} of {shown['errors']} errors {verb} too small."
-    )
+    counts = {name: int(count) for name, count in table("verdicts")[-1].items() if count.isdecimal()}
+    said = {name: f"{count:,}" if count else "none" for name, count in counts.items()}
+    wrong = counts["false_holds"] + counts["false_fails"]
+    verdicts = f"Of {said['verdicts']} verdicts on {said['scenes']} random scenes "
+    if wrong:
+        verdicts += f'{wrong} {_is(wrong)} wrong, {said["false_holds"]} of them a false "holds" and'
+        verdicts += f" {said['wrong_from_1440']} with 1440 steps in a revolution or more"
+    else:
+        verdicts += "none is wrong"
+    small = counts["too_small"]
+    return f"{verdicts}, and {said['too_small']} of {said['errors']} errors {_is(small)} too small."
+
+
+def _is(count: int) -> str:
+    return "are" if count > 1 else "is"
 
 
 def share(criterion: str) -> float:
