@@ -651,3 +651,26 @@ def test_a_table_that_its_own_rate_contradicts_between_rows_decides_nothing() ->
     )
     assert "is not its rate" not in on_rows.note
     assert between.word == "undecided" and "where inputs.belt.velocity is not its rate" in between.note
+
+
+def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it() -> None:
+    """The belt buckles where its margin, 3e-6 with 76 steps and an error of 2e-4, is below 0."""
+    text = """
+steps_per_revolution = {}
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+[shaft]
+speed = "{} rev/min"
+[[claims]]
+kind = "below"
+signal = "belt.buckled"
+bound = 0.5
+"""
+    (undecided,) = evaluate(parse(text.format(76, 681.806), "buckled")).claims
+    assert undecided.word == "undecided"
+    assert undecided.note.startswith("decided by the sign of belt.lowest_margin, 3.4")
+    assert [evaluate(parse(text.format(76, speed), "buckled")).claims[0].word for speed in (600, 700)] == [
+        "holds",
+        "FAILS",
+    ]

@@ -37,7 +37,7 @@ def chosen(
     An error counts as a share of the claim's bound, or of its worst value where the bound is 0. Raises
     LoomfmuError where the accuracy is not reached.
     """
-    wanted, everything = scene.accuracy or 0.0, range(len(scene.claims))
+    wanted, everything = scene.accuracy or 0.0, range(len(estimates.claims))
     before: list[Judged] = []
     reached = f"no number of steps that was tried fits revolutions = {scene.periods:g}"
     for steps in tried_steps(scene.periods):
@@ -52,17 +52,15 @@ def chosen(
             if crowded(coarsest):  # those that were tried before are hardly coarser
                 coarser = estimates.coarser(tried, uniform(tried), everything)
             estimated = estimates.of(tried, trace, verdicts, coarser)
-            errors = [
-                _share(verdict, claim.noise)
-                for verdict, claim in zip(estimated, estimates.claims, strict=True)
-            ]
+            errors = [_share(estimated[each], estimates.claims[each].noise) for each in estimates.asked]
             number, error = max(enumerate(errors), key=lambda each: each[1])
             if error <= wanted:
                 text = (
                     f"chose {steps} steps in a revolution: estimated error {error:.1g}, accuracy {wanted:g}"
                 )
                 return Choice(tried, replace(coarser, longer=estimates.longer(tried, everything)), text)
-            name, signal = called(scene.claims[number], verdicts[number]), verdicts[number].signal
+            signal = verdicts[number].signal
+            name = called(scene.claims[number], verdicts[number]) if number < len(scene.claims) else signal
             if estimated[number].error <= estimates.claims[number].left_by_model(trace, verdicts[number]):
                 raise LoomfmuError(
                     f"accuracy = {wanted:g} cannot be reached: with any steps, the error of {name!r} is at"

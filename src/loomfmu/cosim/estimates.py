@@ -7,7 +7,7 @@ velocity, would lie at the same share of a step in all of them, and equal errors
 """
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -62,16 +62,27 @@ class Coarser:
 class Estimates:
     """Errors of the verdicts on one scene.
 
-    `run` runs it, with other values, on any grid, and keeps so many `signals`.
+    `run` runs it, with other values, on any grid, and keeps so many `signals`. `deciders` are the claims
+    whose numbers decide by their signs what other claims judge: the places of both.
     """
 
     def __init__(
-        self, scene: Scene, claims: Sequence[Claim], run: Callable[[Scene, Grid], Signals], signals: int
+        self,
+        scene: Scene,
+        claims: Sequence[Claim],
+        run: Callable[[Scene, Grid], Signals],
+        signals: int,
+        deciders: Mapping[int, int],
     ):
-        self.claims, self._run, self._signals = claims, run, signals
+        self.claims, self._run, self._signals, self._deciders = claims, run, signals, deciders
         self._dependence = Dependence(scene, claims)
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
         self.beside = (*self._dependence.counters, *self._angles)
+
+    @property
+    def asked(self) -> range:
+        """The claims, counted from 0, that somebody asked for: all but those that decide others."""
+        return range(len(self.claims) - len(self._deciders))
 
     @property
     def _angles(self) -> dict[str, None]:
@@ -167,6 +178,11 @@ class Estimates:
                 found[number] = _noted(
                     found[number], f"{name} may do more within a step than it shows at its ends"
                 )
+        for number, decider in self._deciders.items():
+            value = found[decider]
+            if decider in coarser.wanted and not abs(value.worst) > value.error:
+                about = f"{value.signal}, {value.shown(value.worst, 4)}, numerical error {value.shown_error}"
+                unshown.setdefault(number, f"decided by the sign of {about}")
         for number, why in unshown.items():
             found[number] = _undecided(found[number], why)
         return tuple(found)

@@ -22,7 +22,15 @@ from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted
 from .planning.plan import InMemory, Stepping, build_needed, early_end, explained, record
-from .planning.requested import check_bounds, claims_of, judged_by, recorded, shaft_angle, with_rates
+from .planning.requested import (
+    check_bounds,
+    claims_of,
+    deciding,
+    judged_by,
+    recorded,
+    shaft_angle,
+    with_rates,
+)
 from .planning.windows import window_grid
 from .provenance import attributes
 from .reading import check_set, checked
@@ -45,12 +53,18 @@ class Pattern:
         self.values = Values(scene)
         self.claims = claims_of(scene)
         wanted = with_rates(scene, [*shaft_angle(scene), *values])
-        self._all = [*self.claims, *measures]
+        deciding_of = {number: deciding(scene, claim) for number, claim in enumerate(self.claims)}
+        # a yes-or-no output is as sure as the number whose sign it is, which is estimated with the claims
+        deciders = {number: measure(signal) for number, signal in deciding_of.items() if signal}
+        self._all = [*self.claims, *measures, *deciders.values()]
         if self._all:
             judging.library()  # before the run, which could not be judged without
         needed = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
         self._steppings: dict[tuple[str, ...], Stepping] = {}
-        self._estimates = Estimates(scene, self._all, self._on, len(needed))
+        first = len(self.claims) + len(measures)
+        places = {number: first + place for place, number in enumerate(deciders)}
+        self._measured = slice(len(self.claims), first)
+        self._estimates = Estimates(scene, self._all, self._on, len(needed), places)
         self.judged = tuple(dict.fromkeys([*needed, *self._estimates.beside]))
         self._steps = 0  # in a revolution, as they were chosen last
 
@@ -94,20 +108,19 @@ class Pattern:
         grid = self.grid(scene, self.judged)
         found = self._in_memory(scene, self.judged, grid)
         verdicts = self._judged(found.recording)
-        wanted: Collection[int] = range(len(verdicts)) if errors == "all" else ()
-        if errors == "near":
-            wanted = self._estimates.near(scene, found.recording, verdicts)
+        near = self._estimates.near(scene, found.recording, verdicts)
+        wanted: Collection[int] = {"all": range(len(verdicts)), "near": near, "none": ()}[errors]
         coarser = known or self._estimates.coarser(scene, grid, wanted)
         verdicts = self._estimates.of(scene, found.recording, verdicts, coarser)
-        count = len(self.claims)
         return Evaluation(
             scene,
-            verdicts[:count],
+            verdicts[: len(self.claims)],
             (*scene.notes, *found.warnings),
             explained(found.plan),
             found.steps,
             found.recording,
-            verdicts[count:],
+            verdicts[self._measured],
+            frozenset(near),
             early=found.early,
             chosen=chosen,
         )
@@ -139,7 +152,7 @@ class Pattern:
         target = target_of(plan, path, overwrite, progress)
         replaced = written_at(target)
         about = attributes(plan, flavour, target.parent)  # paths hold before an FMU changes the directory
-        everything = range(len(self.claims))
+        everything = range(len(self._all))
         coarser = known
         if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself

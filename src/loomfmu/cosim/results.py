@@ -96,8 +96,10 @@ class Result(Judged):
 class Evaluation(Judged):
     """A finished run with its trace in memory: `trace["belt.margin"]` are the signal's values in SI.
 
-    `measured` has what was to be measured: its number as the worst value, and its error.
+    `measured` has what was to be measured: its number as the worst value, and its error. `near` are the
+    claims, counted from 0, that are so near their bounds that a numerical error may matter.
     """
 
     trace: Recording
     measured: tuple[Verdict, ...] = ()
+    near: frozenset[int] = frozenset()

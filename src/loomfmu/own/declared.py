@@ -83,9 +83,8 @@ def _of_variables(component: type[Component]) -> Iterator[Fault]:
 def _of_variable(component: type[Component], variable: Variable) -> str:
     name, annotation = variable.name, component.__dataclass_fields__[variable.name].type
     declared = annotation.__name__ if isinstance(annotation, type) else str(annotation)
-    wanted = (variable.type.__name__,)
-    if variable.element:
-        wanted = (f"tuple[{wanted[0]}, ...]", f"collections.abc.Sequence[{wanted[0]}]")
+    one = variable.type.__name__
+    wanted = [f"tuple[{one}, ...]", f"collections.abc.Sequence[{one}]"] if variable.element else [one]
     if name in KEYS or name == "time" or not NAME.fullmatch(name):
         return f"a variable cannot be called {name}: scenes and traces use that name"
     if declared not in wanted:

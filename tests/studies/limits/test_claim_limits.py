@@ -309,6 +309,37 @@ at_most = "0.4 m/s"
     assert "'hardest blow (play_1.hardest_blow)' is undecided: " in str(found)
 
 
+def test_a_claim_is_undecided_away_from_its_bound_where_other_steps_count_other_blows() -> None:
+    """Nearest to the bound, at 314.7 rev/min, the claim holds; at 323.9 rev/min it is undecided."""
+    text = """
+revolutions = 4
+steps_per_revolution = 720
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+dampers = true
+warps = true
+play = true
+[damper]
+spring_stiffness = 3880.2
+free_travel = "14.15 mm"
+[play]
+restitution = 0.50
+play = "2.34 mm"
+[[claims]]
+kind = "below"
+signal = "play_1.hardest_blow"
+bound = 0.40747687907510827
+"""
+    found = limit(parse(text, "blows"), vary="shaft.speed=314.6743rpm..327.01457rpm", points=5)
+    (part,) = found.ranges
+    assert (part.low, part.high) == (found.span.low, pytest.approx(320.844435 * RPM))
+    assert "At 323.9295 rev/min 'highest value (play_1.hardest_blow)' is undecided: play_1.blows" in str(
+        found
+    )
+
+
 def test_a_claim_that_is_undecided_in_part_of_the_range_does_not_hold_everywhere() -> None:
     found = limit(DEMO, vary="shaft.speed=400rpm..500rpm", set={"steps_per_revolution": 90}, points=3)
     one, *others = (replace(each, limits=()) for each in found.claims)

@@ -178,6 +178,20 @@ def signals_of(scene: Scene, claim: Claim) -> list[str]:
     return claim.signals(Outputs(scene))
 
 
+def deciding(scene: Scene, claim: Claim) -> str:
+    """The output whose sign decides a yes-or-no output that a claim is on; empty where there is none."""
+    for signal in signals_of(scene, claim):
+        instance, _, name = signal.partition(".")
+        component = scene.instances[instance].fmu.component
+        known = {each.name: each for each in variables_of(component)} if component else {}
+        own = known.get(name)
+        if own and own.type is bool and (own.lowest_of or own.highest_of):
+            extremes = own.lowest_of, own.highest_of
+            held = (each for each in known.values() if (each.lowest_of, each.highest_of) == extremes)
+            return next((f"{instance}.{each.name}" for each in held if each.type is float), "")
+    return ""
+
+
 def shaft_angle(scene: Scene) -> list[str]:
     """The signal of the shaft's angle, by which places are given; none in a scene without a shaft."""
     return [SHAFT_ANGLE] if "shaft" in scene.instances else []

@@ -139,7 +139,8 @@ def _doubt(
 ) -> tuple[float, str] | None:
     """Return where a claim, counted from 0, is undecided among values at which it seems to hold, and why.
 
-    It is asked where it is nearest to its bound, but not as near to a limit as that may be off.
+    It is asked wherever it is near its bound, and where it is nearest, but not as near to a limit as that
+    may be off.
     """
     clear = [
         value
@@ -148,9 +149,12 @@ def _doubt(
     ]
     if not clear:
         return (inside[0], "the range is narrower than the numerical error of its limits") if inside else None
-    value = min(clear, key=runs.distance(number))
-    verdict = runs.estimated(value)[number]
-    return None if verdict.holds else (value, verdict.note or f"numerical error {verdict.shown_error}")
+    nearest = min(clear, key=runs.distance(number))
+    for value in sorted({nearest, *(each for each in clear if number in runs.near(each))}):
+        verdict = runs.estimated(value)[number]
+        if not verdict.holds:
+            return value, verdict.note or f"numerical error {verdict.shown_error}"
+    return None
 
 
 def _sure(number: int, runs: _Runs, inside: Sequence[float]) -> list[Stretch]:

@@ -187,8 +187,10 @@ def conclusion(found: Limits) -> Iterator[str]:
     for stretch in found.ranges:
         yield _sentence(stretch, found)
     if not found.ranges:
-        never = [each.claim for each in found.claims if not each.ranges]
-        why = f": {_names(never)} hold{'s' * (len(never) == 1)} nowhere" if never else ""
+        never = [each for each in found.claims if not each.ranges]
+        sure = " for sure" if any(each.doubts for each in never) else ""
+        verb = f"hold{'s' * (len(never) == 1)} nowhere{sure}"
+        why = f": {_names([each.claim for each in never])} {verb}" if never else ""
         yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
         yield 'Where a claim "jumps", it counts something, or is undecided or without a value on one side.'
