@@ -6,11 +6,12 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from small_scenes import HEAD, LOOM, SHAFT, scene
+from small_scenes import CLAIM, HEAD, LOOM, SHAFT, scene
 
 from loomfmu.cli import main
 from loomfmu.cosim.importing import fmus
 
+SPEED = "shaft.speed=580rpm..700rpm"
 WIF = Path(__file__).parents[2] / "sims" / "weaves" / "twill_2_2.wif"
 
 
@@ -102,3 +103,27 @@ def umask() -> int:
     found = os.umask(0)
     os.umask(found)
     return found
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (["limit", "scene.toml", "--vary", SPEED, "--points", "3", "--output", "found.csv"], "holds up to"),
+        (["tolerances", "scene.toml", "--vary", SPEED, "--picture", "found.svg"], "worst"),
+        (["fit", "scene.toml", "data.csv", "--vary", SPEED, "--output", "found.toml"], "shaft.speed"),
+    ],
+)
+def test_what_was_found_is_shown_even_if_the_disk_is_full(
+    command: list[str], said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene(HEAD + LOOM + '[shaft]\nspeed = "600 rev/min"\n' + CLAIM.format(bound=0.1))
+    Path("data.csv").write_text("time [s],belt.margin [1]\n0.02,1.0\n0.025,0.3\n0.027,0.4\n")
+
+    def full(_descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    assert main(command) == 2
+    printed = capsys.readouterr()
+    assert said in printed.out
+    assert printed.err.endswith(f"loomfmu: {command[-1]}: cannot be written (No space left on device)\n")

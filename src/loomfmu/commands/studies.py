@@ -91,10 +91,12 @@ def limit(options: argparse.Namespace) -> int:
         progress=True,
         **{name: count for name, count in counts.items() if count is not None},
     )
-    if output is not None:  # before anything is printed
-        limit_tables.write(found, output, inputs, options.force)
-    warn(found.warnings)
-    limit_tables.show(found)
+    try:  # first the file: the reader of our output may have had enough
+        if output is not None:
+            limit_tables.write(found, output, inputs, options.force)
+    finally:
+        warn(found.warnings)
+        limit_tables.show(found)
     if output is not None:
         say(f"written: {output}")
     return 0 if found else 1
@@ -134,10 +136,12 @@ def tolerances(options: argparse.Namespace) -> int:
     if picture is not None:  # before the runs, not after them
         pictures.check(picture, inputs, options.force)
     found = find(options.scene, vary=options.vary, set=pairs(options.overrides), progress=True)
-    if picture is not None:
-        pictures.save(draw(found), picture, found.title, inputs, options.force)
-    warn(found.warnings)
-    show(found)
+    try:
+        if picture is not None:
+            pictures.save(draw(found), picture, found.title, inputs, options.force)
+    finally:
+        warn(found.warnings)
+        show(found)
     if picture is not None:
         say(f"written: {picture}")
     return 0 if found else 1
@@ -242,13 +246,15 @@ def fit(options: argparse.Namespace) -> int:
         offset=options.offset,
         loss=options.loss,
     )
-    if output is not None:
-        found.write(output, options.force)
-    if picture is not None:
-        from ..studies.fitting.picture import draw
+    try:
+        if output is not None:
+            found.write(output, options.force)
+        if picture is not None:
+            from ..studies.fitting.picture import draw
 
-        pictures.save(draw(found), picture, found.title, inputs, options.force)
-    warn(found.warnings)
-    show(found)
+            pictures.save(draw(found), picture, found.title, inputs, options.force)
+    finally:
+        warn(found.warnings)
+        show(found)
     say(*(f"written: {path}" for path in (output, picture) if path is not None))
     return 0 if found else 1
