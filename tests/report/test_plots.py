@@ -282,6 +282,7 @@ def test_a_range_shows_a_dip_beside_the_bound_of_its_claim(
         (["belt.margin", "--output", "demo.h5"], "use .svg, .png or .pdf"),
         (["belt.margin", "--ylim", "1"], "ylim 1: the range is empty; write LOW..HIGH, such as 0..1 or"),
         (["belt.margin", "--ylim", "0mm..1mm"], "'0mm' is in mm, which does not fit a number without a unit"),
+        (["belt.margin", "--ylim", "1000..2000"], "ylim: no value of belt.margin is within; they are "),
         (["belt.margin", "heald_1.lift", "--ylim", "0..1"], "are in different panels; plot them apart"),
     ],
 )

@@ -148,6 +148,13 @@ def _limits(ylim: str, trace: Trace, panels: Sequence[Sequence[str]]) -> tuple[f
     return ends[0] / factor, ends[1] / factor
 
 
+def _check_shown(limits: tuple[float, float], values: tuple[float, float], name: str) -> None:
+    """Refuse limits beyond all values, which would leave the picture empty."""
+    if limits[1] < values[0] or limits[0] > values[1]:
+        ends = "..".join(f"{value:.4g}" for value in values)
+        raise LoomfmuError(f"ylim: no value of {name} is within; they are {ends}")
+
+
 def _bounds(trace: Trace, names: Sequence[str]) -> dict[str, float]:
     """The bounds of the claims on signals, or on their held extremes, in the unit that is shown."""
     judged = {each: name for name in names for each in (name, *map(partial(trace.beside, name), HELD))}
@@ -178,6 +185,8 @@ def _figure(
             for trace, label in zip(traces, labels(traces), strict=True)
         ]
         plotting.draw(axes, curves, over, fold)
+        if limits:
+            _check_shown(limits, axes.dataLim.intervaly, names[0])
         bounds = _bounds(traces[0], names)
         for text, bound in bounds.items():
             axes.axhline(bound, color=BOUND, linestyle=":", linewidth=1.5, label=text)

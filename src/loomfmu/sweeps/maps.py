@@ -30,7 +30,13 @@ STYLE: Any = {
 }
 NO_RESULT = "#d0d0d0"
 RED = "#D55E00"
-DASHES: Any = ("-", "--", ":", "-.")
+# of limits: a later one is thinner, so that both are seen where they coincide
+LIMITS: Any = (
+    {"color": "black", "linestyle": "-", "linewidth": 5.0},
+    {"color": RED, "linestyle": "--", "linewidth": 2.5},
+    {"color": "#E69F00", "linestyle": ":", "linewidth": 2.5},
+    {"color": "#CC79A7", "linestyle": "-.", "linewidth": 1.5},
+)
 LEVELS = 14
 TITLE, LEGEND = 80, 95  # letters in a line that is as wide as the picture
 
@@ -165,9 +171,9 @@ class _Picture:
         for number, (claim, distances) in enumerate(self.distances):
             beyond = self._on_grid(distances, x, y)
             if np.any(beyond > 0.0) and np.any(beyond <= 0.0):
-                dashes = DASHES[number % len(DASHES)]
-                (self._boundary if smooth else self._edges)(x, y, beyond, dashes)
-                self._legend(f"{claim}: limit", color="black", linestyle=dashes)
+                style = LIMITS[number % len(LIMITS)]
+                (self._boundary if smooth else self._edges)(x, y, beyond, style)
+                self._legend(f"{claim}: limit", **style)
         if np.isnan(grid).any():
             self._legend("could not be run", color=NO_RESULT, linewidth=8)
         self._ticks(x, y)
@@ -177,26 +183,22 @@ class _Picture:
         grid[y.index, x.index] = values
         return grid
 
-    def _boundary(self, x: _Scale, y: _Scale, beyond: Floats, dashes: Any) -> None:
+    def _boundary(self, x: _Scale, y: _Scale, beyond: Floats, style: dict[str, Any]) -> None:
         """The line along which a claim's worst value is its bound."""
         level = np.ma.masked_invalid(_crossing(beyond))
         self.axes.contour(
-            x.places, y.places, level, levels=[0.0], colors="black", linestyles=dashes, linewidths=1.8
+            x.places, y.places, level, levels=[0.0], **{f"{name}s": of for name, of in style.items()}
         )
 
-    def _edges(self, x: _Scale, y: _Scale, beyond: Floats, dashes: Any) -> None:
+    def _edges(self, x: _Scale, y: _Scale, beyond: Floats, style: dict[str, Any]) -> None:
         """The edges between cells where a claim holds and cells where it fails."""
         fails, known = beyond > 0.0, ~np.isnan(beyond)
         flips = (fails[:, 1:] != fails[:, :-1]) & known[:, 1:] & known[:, :-1]
         for row, column in np.argwhere(flips):
-            self.axes.vlines(
-                x.edges[column + 1], y.edges[row], y.edges[row + 1], "black", dashes, linewidth=2
-            )
+            self.axes.vlines(x.edges[column + 1], y.edges[row], y.edges[row + 1], **style)
         flips = (fails[1:] != fails[:-1]) & known[1:] & known[:-1]
         for row, column in np.argwhere(flips):
-            self.axes.hlines(
-                y.edges[row + 1], x.edges[column], x.edges[column + 1], "black", dashes, linewidth=2
-            )
+            self.axes.hlines(y.edges[row + 1], x.edges[column], x.edges[column + 1], **style)
 
     # ---- one axis of a grid
 
@@ -222,15 +224,15 @@ class _Picture:
         """Lines where a claim's verdict flips between two points."""
         for number, (claim, distances) in enumerate(self.distances):
             beyond = _crossing(distances[rows])
-            dashes = DASHES[number % len(DASHES)]
+            style = LIMITS[number % len(LIMITS)]
             places = np.flatnonzero((beyond[1:] > 0.0) != (beyond[:-1] > 0.0))
             places = places[~np.isnan(beyond[places]) & ~np.isnan(beyond[places + 1])]
             for place in places:
                 share = beyond[place] / (beyond[place] - beyond[place + 1])
                 where = at[place] + share * (at[place + 1] - at[place])
-                self.axes.axvline(where, color="black", linestyle=dashes)
+                self.axes.axvline(where, **style)
             if len(places):
-                self._legend(f"{claim}: limit", color="black", linestyle=dashes)
+                self._legend(f"{claim}: limit", **style)
 
     def _mark(self, x: Floats, y: Floats) -> None:
         """Crosses where a claim fails."""
