@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import os
 import pickle
 import re
@@ -11,6 +12,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -471,7 +473,7 @@ def test_what_is_abandoned_keeps_what_was_written(tmp_path: Path) -> None:
 
 def test_samples_that_come_in_pieces_are_kept_in_place(tmp_path: Path) -> None:
     channels = [Channel("a", "x", "m", "m", "X", 0), Channel("a", "n", "1", "1", "N", 0, real=False)]
-    values = np.random.default_rng(1).random(2 * ROWS + 500)
+    values = np.sort(np.random.default_rng(1).random(2 * ROWS + 500))
     counts = np.arange(len(values), dtype="i4")[:, None]
     writer = TraceWriter(tmp_path / "run.h5", {"title": "t"}, channels, {})
     for start in range(0, len(values), 100):  # as a run does whose steps take long: every few steps
@@ -489,12 +491,12 @@ def test_writers_of_one_output_do_not_meet(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     writers = [TraceWriter(path, {"title": f"run {n}"}, [], {}) for n in range(3)]
     for number, writer in enumerate(writers):
-        times = np.full(number + 1, float(number))
+        times = number + np.arange(number + 1.0)
         writer.append(times, times, times[:, None], np.zeros((len(times), 1), dtype="i4"))
     traces = [writers[n].complete([]) for n in (0, 2)]
     assert (title(path), Trace(path).rows) == ("run 2", 3)  # the last one to finish
     for number, trace in zip((0, 2), traces, strict=True):  # each result keeps its own
-        np.testing.assert_array_equal(trace.time, np.full(number + 1, float(number)))
+        np.testing.assert_array_equal(trace.time, number + np.arange(number + 1.0))
     kept = writers[1].abandon("interrupted")
     assert kept == tmp_path / "run.h5.partial" and title(kept) == "run 1"
 
@@ -940,6 +942,42 @@ def test_a_damaged_block_is_named(result: loomfmu.Result, tmp_path: Path) -> Non
     path.write_bytes(damaged)
     with Trace(path) as trace, pytest.raises(LoomfmuError, match="/belt/margin cannot be read"):
         _ = trace["belt.margin"]
+
+
+@pytest.mark.parametrize("command", ["show", "plot", "diagram"])
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda time, _: time.__setitem__(7, 0.0), "after "),
+        (lambda time, _: time.__setitem__(7, math.nan), "comes nan s"),
+        (lambda _, belt: belt["margin"].resize((300,)), "belt.margin has 300 samples, time has"),
+    ],
+)
+def test_samples_that_no_run_gives_are_refused(
+    result: loomfmu.Result,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    command: str,
+    change: Callable[[Any, Any], None],
+    why: str,
+) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(result.path.read_bytes())
+    with h5py.File(path, "r+") as file:
+        change(file["time"], file["belt"])
+    named = ["belt.margin"] if command == "plot" else []
+    assert cli.main([command, str(path), *named]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"loomfmu: {path}: the file is damaged (") and why in said
+
+
+def test_a_unit_that_no_run_writes_is_named_with_its_file(result: loomfmu.Result, tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(result.path.read_bytes())
+    with h5py.File(path, "r+") as file:
+        file["weft/travel"].attrs["UNIT"] = file["weft/travel"].attrs["DISPLAY_UNIT"] = "furlong"
+    with pytest.raises(LoomfmuError, match=r"run\.h5: weft\.travel: unknown unit 'furlong'"):
+        Trace(path).displayed("weft.travel")
 
 
 def test_reading_needs_nothing_but_numpy_and_h5py() -> None:

@@ -80,6 +80,11 @@ MISTAKES = {
         "rate is in m/s, but its error sound in m",
     ),
     "an extreme of nothing": ('"Rate")', '"Rate", lowest_of="soun")', "lowest_of = 'soun' .* mean 'sound'"),
+    "a count of blows that is none": (
+        "    pitch: float",
+        '    bounces: ClassVar[str] = "sound"\n    pitch: float',
+        "line 14: bounces = 'sound' is not an output that counts",
+    ),
     "an extreme that keeps nothing": (
         '    rate: float = output("m/s", "Rate")',
         '    keeps: ClassVar[str] = NOTHING\n    rate: float = output("m/s", "Rate", lowest_of="sound")',

@@ -162,6 +162,10 @@ def _of_traits(component: type[Component]) -> Iterator[Fault]:
     for name in component.windows:
         if name not in outputs:
             yield Fault("windows", f"windows: {name!r} is not an output{suggestion(name, outputs)}")
+    counts = [v.name for v in variables_of(component) if v.causality == "output" and v.type is int]
+    if component.bounces and component.bounces not in counts:
+        hint = suggestion(component.bounces, counts)
+        yield Fault("bounces", f"bounces = {component.bounces!r} is not an output that counts{hint}")
 
 
 def _of_problems(component: type[Component]) -> Iterator[Fault]:

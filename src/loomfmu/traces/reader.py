@@ -130,13 +130,13 @@ class Trace(Signals):
 
     def check(self) -> None:
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""
-
         with self._file.opened() as file:
             attributes(file)
             for signal in (*SHARED, *self):
                 attributes(self._item(file, signal))
             for name in {signal.partition(".")[0] for signal in self}:
                 attributes(member(file, name))
+            _ = self.rows, self.time
 
     @contextmanager
     def _dataset(self, signal: str) -> Iterator[Any]:
@@ -163,12 +163,21 @@ class Trace(Signals):
     def rows(self) -> int:
         """Number of samples when first read; of a run that was cut off, those that all signals have."""
         with self._file.opened() as file:
-            return min(len(self._item(file, signal)) for signal in (*SHARED, *self))
+            rows = {signal: len(self._item(file, signal)) for signal in (*SHARED, *self)}
+        fewest = min(rows, key=rows.__getitem__)
+        if self.judged and rows[fewest] < rows["time"]:
+            raise self._damaged(f"{fewest} has {rows[fewest]} samples, time has {rows['time']}")
+        return rows[fewest]
 
     @cached_property
     def time(self) -> Floats:
         """Time of the samples [s]."""
-        return self.read("time")
+        time: Floats = self.read("time")
+        rises = np.diff(time) > 0.0
+        if not np.all(rises):
+            place = int(np.argmin(rises))
+            raise self._damaged(f"after {time[place]:g} s comes {time[place + 1]:g} s")
+        return time
 
     @cached_property
     def shaft_angle(self) -> Floats:
@@ -226,9 +235,7 @@ class Trace(Signals):
                 raise ValueError(f"{shown(stored)} is not a list")
             return [Verdict.of(each) for each in stored]
         except (AttributeError, LookupError, RecursionError, TypeError, UnitError, ValueError) as error:
-            raise LoomfmuError(
-                f"{self.given}: the file is damaged (its claims are not verdicts: {error})"
-            ) from None
+            raise self._damaged(f"its claims are not verdicts: {error}") from None
 
     @property
     def overrides(self) -> dict[str, Any]:
@@ -250,6 +257,16 @@ class Trace(Signals):
         with self._file.opened() as file:
             names = dict.fromkeys(signal.partition(".")[0] for signal in self)
             return {name: str(member(file, name).attrs.get("fmu", "")) for name in names}
+
+    def _damaged(self, why: str) -> LoomfmuError:
+        return LoomfmuError(f"{self.given}: the file is damaged ({why})")
+
+    def displayed(self, signal: str) -> tuple[float, str]:
+        """Return the unit that people read and the factor from it to the recorded values."""
+        try:
+            return super().displayed(signal)
+        except UnitError as error:
+            raise LoomfmuError(f"{self.given}: {signal}: {error}") from None
 
     def unit(self, signal: str) -> str:
         """Unit of a signal."""
