@@ -20,7 +20,9 @@ from driving import (
 
 from loomfmu import units
 from loomfmu.components import COMPONENTS
-from loomfmu.cosim.scenes import usual_wires
+from loomfmu.cosim.importing.facts import facts_of
+from loomfmu.cosim.scenes.keys import stem
+from loomfmu.cosim.scenes.wiring import usual_wires
 from loomfmu.declaring.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 from loomfmu.errors import numbered
 from loomfmu.loom.standard_loom import COMPONENT_OF
@@ -64,10 +66,10 @@ def test_what_is_said_of_variables_names_variables(component):
 
 @every_component
 def test_every_usual_source_is_an_output_of_the_standard_loom(component):
-    for name, source in usual_wires.wires({"damper_1": component}).items():
+    for name, source in usual_wires({"damper_1": facts_of(component)}).items():
         sink = name.removeprefix("damper_1.")
         owner, variable = source.split(".")
-        feeding = COMPONENTS[COMPONENT_OF[usual_wires.stem(owner)]]
+        feeding = COMPONENTS[COMPONENT_OF[stem(owner)]]
         units_of = {v.name: v.unit for v in declared(feeding) if v.causality == "output"}
         assert units_of[variable] == next(v.unit for v in declared(component) if v.name == sink)
 

@@ -12,8 +12,9 @@ from looms import RPM
 from scipy.integrate import solve_ivp
 
 from loomfmu.components import COMPONENTS, DrivenShaft, WeftInsertion
+from loomfmu.cosim.importing.facts import facts_of
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.usual_wires import gathered
+from loomfmu.cosim.scenes.wiring import gathered
 from loomfmu.declaring.variables import variables_of
 from loomfmu.errors import LoomfmuError
 from loomfmu.machines import parameters
@@ -397,11 +398,11 @@ def test_a_torque_of_the_step_before_wants_a_shaft_that_outweighs_the_masses():
 
 
 MECHANISMS = {
-    "shaft": DrivenShaft,
-    "weft": COMPONENTS["WeftInsertion"],
-    "belt": COMPONENTS["BeltMonitor"],
-    "heald_1": COMPONENTS["HealdFrame"],
-    "reed": COMPONENTS["ReedBeatUp"],
+    "shaft": facts_of(DrivenShaft),
+    "weft": facts_of(COMPONENTS["WeftInsertion"]),
+    "belt": facts_of(COMPONENTS["BeltMonitor"]),
+    "heald_1": facts_of(COMPONENTS["HealdFrame"]),
+    "reed": facts_of(COMPONENTS["ReedBeatUp"]),
 }
 
 
@@ -433,11 +434,11 @@ def test_where_the_wire_of_a_torque_is_cut_its_work_does_not_count():
 
 
 def test_more_mechanisms_than_places_are_refused():
-    frames = {f"heald_{n}": COMPONENTS["HealdFrame"] for n in range(1, 34)}
+    frames = {f"heald_{n}": facts_of(COMPONENTS["HealdFrame"]) for n in range(1, 34)}
     with pytest.raises(
         LoomfmuError, match="has free inputs for 32 mechanisms, but 33 have an output shaft_t"
     ):
-        gathered("shaft", {"shaft": DrivenShaft} | frames, {})
+        gathered("shaft", {"shaft": facts_of(DrivenShaft)} | frames, {})
 
 
 def test_a_scene_takes_it_for_its_shaft():

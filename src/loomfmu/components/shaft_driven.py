@@ -89,3 +89,8 @@ class ShaftDriven(Component):
             self.shaft_velocity + self.shaft_acceleration * step_size,
             self.shaft_acceleration,
         )
+
+
+# input of a mechanism on a shaft, its angle first -> output of the shaft that it follows
+FOLLOWED = dict(zip(ShaftDriven.terminals[0].variables, SHAFT.members, strict=True))
+FOLLOWING = "follow_shaft"  # whether a class on ShaftDriven follows a shaft, or turns by itself

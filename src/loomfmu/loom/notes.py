@@ -6,7 +6,7 @@ from typing import Any
 
 from ..cosim.scenes.graph import Wire
 from ..cosim.scenes.instances import Instance
-from ..cosim.scenes.usual_wires import members, stem
+from ..cosim.scenes.keys import members, stem
 from ..errors import listed
 from . import standard_loom
 

@@ -2,11 +2,9 @@
 
 from collections.abc import Container, Iterable, Mapping
 
-from ...components.shaft_driven import ShaftDriven
-from ...components.terminals import SHAFT
+from ...components.shaft_driven import FOLLOWED
 
-FOLLOWING = ShaftDriven.terminals[0].variables  # the inputs of what follows a shaft, its angle first
-ANGLE = SHAFT.members[0]  # the output of a shaft
+ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
 
 
 def shafts_of(
@@ -22,7 +20,7 @@ def shafts_of(
         if name in passed:
             continue
         passed.add(name)
-        given, own = f"{name}.{FOLLOWING[0]}", f"{name}.{ANGLE}"
+        given, own = f"{name}.{ANGLE_INPUT}", f"{name}.{ANGLE}"
         if own in signals:  # it is a shaft
             found[own] = None
             continue
@@ -30,6 +28,6 @@ def shafts_of(
             found[wires.get(given, given)] = None
         for sink, source in wires.items():
             owner, _dot, variable = sink.rpartition(".")
-            if owner == name and variable not in FOLLOWING:
+            if owner == name and variable not in FOLLOWED:
                 waiting.append(source.partition(".")[0])
     return tuple(found)

@@ -14,6 +14,7 @@ import fmpy
 
 from ...cache.entries import UNPACKED, folder
 from ...components import COMPONENTS
+from ...components.shaft_driven import FOLLOWED
 from ...declaring.variables import MOTION, Component
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...extras import install
@@ -32,6 +33,7 @@ from .built import (
     is_our_build,
 )
 from .descriptions import declared_ports, is_ours, ports_of, unsupported_outputs
+from .facts import Facts, facts_of
 from .ports import Port, Value
 
 __all__ = ["FLAVOURS", "Flavour", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
@@ -78,6 +80,18 @@ class Fmu:
     def keeps(self) -> str:
         """The kind of state that it keeps; of a third-party FMU the fullest, so that every step counts."""
         return self.component.keeps if self.component else MOTION
+
+    @property
+    def facts(self) -> Facts | None:
+        """Facts of its component; None if that is not known."""
+        return facts_of(self.component) if self.component else None
+
+    @property
+    def shaft_inputs(self) -> tuple[str, ...]:
+        """The inputs by which it follows a shaft; its inputs tell where its component is not known."""
+        if self.facts:
+            return self.facts.shaft_inputs
+        return tuple(FOLLOWED) if FOLLOWED.keys() <= self.ports.keys() else ()
 
     @property
     def built(self) -> bool:

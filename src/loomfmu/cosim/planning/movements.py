@@ -8,7 +8,6 @@ from ...declaring.variables import Component
 from ..claims.movers import shafts_of
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
-from ..scenes.shafts import shaft_inputs
 from .requested import SHAFT_ANGLE, Outputs
 
 EVENT = 4.0  # steps that show an event of a mechanism
@@ -36,7 +35,7 @@ class Movements:
     def _found(self, name: str) -> tuple[str, ...]:
         instance, wires = self._instances[name], self._outputs.wires
         component, ports = instance.fmu.component, instance.fmu.ports.values()
-        given = [*shaft_inputs(component, instance.fmu.ports)[:1]]
+        given = [*instance.fmu.shaft_inputs[:1]]
         if not given and component not in COMPONENTS.values():
             given = [each.name for each in ports if each.causality == "input" and each.unit == ANGLE]
         inputs = [f"{name}.{each}" for each in given]
@@ -84,8 +83,7 @@ class Movements:
 
     def _apart(self, name: str) -> tuple[float, str]:
         """The turn of a shaft that is not the main one, whose angle claims look at themselves."""
-        fmu = self._instances[name].fmu
-        other = bool(shaft_inputs(fmu.component, fmu.ports)) and self.angles(name) != (SHAFT_ANGLE,)
+        other = self._instances[name].fmu.shaft_inputs and self.angles(name) != (SHAFT_ANGLE,)
         why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
         return math.radians(SHOWN) if other else math.inf, why
 

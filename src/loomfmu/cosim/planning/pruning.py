@@ -8,12 +8,12 @@ Third-party FMUs always run: they may be there for what they do, such as to log 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from ...components.shaft_driven import FOLLOWED, FOLLOWING, ShaftDriven
 from ...declaring.upstream import sources_of, upstream
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
-from ..scenes.shafts import FOLLOWED, follows, turning
 from .requested import claims_of
 
 
@@ -140,7 +140,10 @@ def _follows(scene: Scene, name: str, shaft: str) -> bool:
     wanted = {sink: (shaft, variable) for sink, variable in FOLLOWED.items()}
     from_shaft = {sink: source for sink, source in taken.items() if source[0] == shaft}
     fmu = follower.fmu
-    return fmu.trusted and follows(fmu.component, follower.values) and from_shaft == wanted
+    turnable = (
+        issubclass(fmu.component or ShaftDriven, ShaftDriven) and follower.values.get(FOLLOWING) is True
+    )
+    return fmu.trusted and turnable and from_shaft == wanted
 
 
 def _constant(shaft: Instance) -> ConstantShaft:
@@ -152,7 +155,8 @@ def _turning(instance: Instance, shaft: ConstantShaft | None) -> Instance:
     """An instance; if it follows a shaft that is left out, it turns by itself instead."""
     if shaft is None:
         return instance
-    return altered(instance, values=instance.values | turning(shaft.speed, shaft.start_angle))
+    own = {FOLLOWING: False, "speed": shaft.speed, "start_angle": shaft.start_angle}
+    return altered(instance, values=instance.values | own)
 
 
 def _skipped(

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
-from ...declaring.variables import MOTION, TIME, Beside, variables_of
+from ...declaring.variables import MOTION, TIME, Beside
 from ...errors import LoomfmuError, suggestion
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, place_of, read
@@ -13,7 +13,7 @@ from ..claims.movers import shafts_of
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
-from ..scenes.usual_wires import left_out
+from ..scenes.wiring import left_out
 
 SHAFT_ANGLE = "shaft.angle"
 MOST = 5  # names that a warning lists
@@ -40,12 +40,12 @@ def beside_of(scene: Scene, signal: str) -> Beside:
     on are constant, or the one that it follows is driven.
     """
     instance, _, variable = signal.partition(".")
-    port, component = output_port(scene, signal, "record"), scene.instances[instance].fmu.component
+    port, facts = output_port(scene, signal, "record"), scene.instances[instance].fmu.facts
     wired = {wire.sink[1] for wire in scene.wires if wire.sink[0] == instance}
     driven = {drive.variable for drive in scene.drives if drive.instance == instance}
     steady = variable in driven
-    if component is not None and component.keeps != MOTION and variable not in driven:
-        declared = next(each for each in variables_of(component) if each.name == variable)
+    if facts is not None and facts.component.keeps != MOTION and variable not in driven:
+        declared = facts.variables[variable]
         needed = {TIME} if declared.depends is None else {*declared.depends}
         steady = not needed & {TIME, *wired, *(driven - {declared.follows})}
     return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
@@ -66,7 +66,7 @@ def checked_claims(scene: Scene) -> Scene:
     Refuses, before the run, a claim that could not be judged after it.
     """
     notes = [*scene.notes, *_unrecorded(scene)]
-    components = {name: each.fmu.component for name, each in scene.instances.items() if each.fmu.component}
+    known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
     wired = {".".join(wire.sink) for wire in scene.wires}
     for table, claim in zip(scene.claims, claims_of(scene), strict=True):
         where = place_of(table)
@@ -77,7 +77,7 @@ def checked_claims(scene: Scene) -> Scene:
             notes += [
                 f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
                 f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
-                for sink, source in left_out(components, wired, signal).items()
+                for sink, source in left_out(known, wired, signal).items()
             ]
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)

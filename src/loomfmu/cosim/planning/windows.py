@@ -16,14 +16,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...declaring.variables import MOTION, variables_of
+from ...declaring.variables import MOTION
 from ...errors import LoomfmuError
 from ...traces import Recording
 from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
-from ..scenes.shafts import turns_others
 from .movements import Movements
 from .plan import InMemory
 from .pruning import prune
@@ -122,7 +121,7 @@ def _unequal(needed: Scene) -> str:
         component = instance.fmu.component
         if component is None:
             return f"{name} is a third-party FMU, whose results may depend on the steps"
-        if component.keeps == MOTION and turns_others(component):
+        if component.keeps == MOTION and instance.fmu.facts and instance.fmu.facts.turns_others:
             return f"{name} integrates"
     return ""
 
@@ -168,14 +167,8 @@ def _equal(scene: Scene, longest: float) -> Floats:
 
 
 def _extremes_of(scene: Scene, instance: str) -> dict[str, tuple[str, float]]:
-    """Outputs that hold an extreme, or whose extreme is held: whose it is, and 1 for its lowest, else -1."""
-    component = scene.instances[instance].fmu.component
-    found: dict[str, tuple[str, float]] = {}
-    for variable in variables_of(component) if component else ():
-        for followed, sign in ((variable.lowest_of, 1.0), (variable.highest_of, -1.0)):
-            if followed:
-                found |= {variable.name: (followed, sign), followed: (followed, sign)}
-    return found
+    facts = scene.instances[instance].fmu.facts
+    return facts.extremes if facts else {}
 
 
 def _latched(scene: Scene, signals: Iterable[str]) -> list[str]:
@@ -254,8 +247,8 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
     """Land on the edges of each window and the extreme within; until samples show it, on points around it."""
     instance, _, variable = signal.partition(".")
     followed, sign = _extremes_of(scene, instance)[variable]
-    component = scene.instances[instance].fmu.component
-    if component is None or not component.windows:
+    facts = scene.instances[instance].fmu.facts
+    if facts is None or not facts.component.windows:
         _deepest(places, trace, f"{instance}.{followed}", sign)
         return
     for low, high in _windows(trace, scene, instance):
@@ -267,7 +260,7 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
         seen = slice(inside[0], inside[-1] + 1)
         spacing = (high - low) / (INSIDE + 1)
         values = sign * trace[f"{instance}.{followed}"][seen]
-        if any(each.pole for each in variables_of(component) if each.name == followed):
+        if facts.variables[followed].pole:
             # what it stands for, a load, has none
             values = -(values**-2.0)
         for time in _lowest_points(trace.time[seen], values):

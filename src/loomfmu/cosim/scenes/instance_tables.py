@@ -5,16 +5,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...components import COMPONENTS
 from ...errors import LoomfmuError, shown, suggestion
 from ...own import load
 from ...own.declared import FILES, PARAMETER_SETS
 from ..importing import fmus
+from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
-from . import shafts
 from .instances import Instance
-from .keys import KEYS, check_name
-from .usual_wires import is_numbered, stem
+from .keys import KEYS, check_name, is_numbered, stem
 
 SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
@@ -76,8 +76,8 @@ def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     component = str(table.get("component", standard().COMPONENT_OF.get(stem(name))))
     if "fmu" not in table:
         fmu = _of_component(name, component, directory)
-        if name == "shaft" and not (fmu.component and shafts.turns_others(fmu.component)):
-            known = " or a ".join(shafts.shafts())
+        if name == "shaft" and not (fmu.facts and fmu.facts.turns_others):
+            known = " or a ".join(name for name, each in COMPONENTS.items() if facts_of(each).turns_others)
             raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {known}")
         return fmu
     if "component" in table:

@@ -6,21 +6,19 @@ from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
-from ...declaring.variables import AT_STEP_END, Component, Variable, variables_of
+from ...declaring.variables import AT_STEP_END, Variable
 from ...errors import LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
+from ..importing.facts import facts_of
 from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
 from .graph import Wire
-from .keys import KEYS
+from .keys import KEYS, stem
 from .tables import truth
-from .usual_wires import stem
 
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 
 Copied = TypeVar("Copied")
-
-_declared: dict[type[Component], Mapping[str, Variable]] = {}  # by name
 
 
 @dataclass
@@ -123,10 +121,7 @@ class Instance:
 
     def _declared(self) -> Mapping[str, Variable]:
         """The variables of our component; one that is not known here has those of its kind."""
-        component = self.fmu.component or ShaftDriven
-        if component not in _declared:
-            _declared[component] = {each.name: each for each in variables_of(component)}
-        return _declared[component] if self.fmu.ours else {}
+        return (self.fmu.facts or facts_of(ShaftDriven)).variables if self.fmu.ours else {}
 
     def effective(self, fed: Collection[str] = ()) -> dict[str, Value]:
         """Its parameters and inputs at the start, without inputs that are fed and values without effect."""

@@ -1,7 +1,7 @@
 """The keys of a scene: its own, and what its instances may be called."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from ...errors import LONGEST_NAME, LoomfmuError, shown
@@ -51,3 +51,20 @@ def check_name(name: str) -> None:
         raise LoomfmuError(f"instance name {shown(name)} has {len(name)} characters; at most {LONGEST_NAME}")
     if name in TAKEN:
         raise LoomfmuError(f"instance name {name!r} is taken: every trace has a {name} of its own")
+
+
+def stem(instance: str) -> str:
+    """An instance's name without its number: `heald_3` is a `heald`."""
+    return re.sub(r"_\d+$", "", instance)
+
+
+def is_numbered(instance: str) -> bool:
+    """Return whether an instance's name ends with a number, as `heald_3` does."""
+    return stem(instance) != instance
+
+
+def members(key: str, given: Iterable[str]) -> list[str]:
+    """The numbered instances that a name without number stands for."""
+    if key in given:
+        return []
+    return [name for name in given if stem(name) == key]

@@ -4,13 +4,12 @@ from collections.abc import Container, Iterable, Sequence
 from typing import Any
 
 from ... import machines
+from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, listed
 from ..standard import standard
-from . import shafts
 from .drives import Drive
 from .graph import Wire
 from .instances import Instance
-from .usual_wires import gathers
 
 
 def of_scene(
@@ -24,10 +23,10 @@ def of_scene(
     yield from _mixed(instances, wires)
     fed = {wire.sink for wire in wires} | {(drive.instance, drive.variable) for drive in drives}
     for name, each in instances.items() if "shaft" in instances else ():
-        inputs = shafts.shaft_inputs(each.fmu.component, each.fmu.ports)
+        inputs = each.fmu.shaft_inputs
         if inputs and not any((name, variable) in fed for variable in inputs):
             yield f"{name} runs at its own constant speed: its shaft inputs are not wired to the shaft"
-        if not inputs and each.fmu.component and shafts.turns_alone(each.fmu.component):
+        if each.fmu.facts and each.fmu.facts.turns_alone:
             yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
     yield from _loads(instances, wires)
     yield from standard().mirrored(instances, wires)
@@ -73,7 +72,7 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
     for wire in wires:
         sinks.setdefault(wire.source, {}).setdefault(wire.sink[0], []).append(".".join(wire.sink))
     for name, each in instances.items():
-        torque = gathers(each.fmu.component) if each.fmu.component else ""
+        torque = each.fmu.facts.gathers if each.fmu.facts else ""
         if not torque:
             continue
         for other, mechanism in instances.items():
@@ -90,8 +89,10 @@ def still(
     instances: dict[str, Instance], wires: dict[str, Any], fed: Container[tuple[str, str]]
 ) -> Iterable[str]:
     """Warnings about mechanisms whose motion is cut off and has no other source or value."""
+    followed = standard().SOURCES.keys() - {SHAFT.name}
     for name, each in instances.items():
-        for inputs in shafts.motions(each.fmu.component) if each.fmu.component else ():
+        motions = [end for end in each.fmu.facts.taken if end.name in followed] if each.fmu.facts else []
+        for inputs in (end.variables for end in motions):
             cut = all(wires.get(f"{name}.{key}") is False for key in inputs)
             if cut and not any((name, key) in fed or key in each.values for key in inputs):
                 yield f"{name} does not move: {listed(inputs)} are cut and have no value"

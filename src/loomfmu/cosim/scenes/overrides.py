@@ -6,12 +6,11 @@ from typing import Any
 
 from ... import machines
 from ...components import COMPONENTS
-from ...declaring.variables import variables_of
 from ...errors import LoomfmuError, listed, shown, suggestion
+from ..importing.facts import facts_of
 from .instance_tables import fmu_of
 from .instances import Instance
-from .keys import TIMES, WHOLE
-from .usual_wires import members, stem
+from .keys import TIMES, WHOLE, members, stem
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
@@ -91,7 +90,7 @@ def _nearest(key: str, given: Iterable[str], component: Callable[[str], str]) ->
     variables: dict[str, list[str]] = {}  # of each of our instances, those that can be set
     for name in given:
         if component(name) in COMPONENTS:
-            declared = variables_of(COMPONENTS[component(name)])
+            declared = facts_of(COMPONENTS[component(name)]).variables.values()
             variables[name] = [variable.name for variable in declared if variable.settable]
     for name in variables:
         if key in (name, stem(name)):

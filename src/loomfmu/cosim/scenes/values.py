@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ...components.shaft_driven import FOLLOWING
 from ...errors import LoomfmuError
 from ...machines import TAKERS
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from .instances import Instance, altered
 from .overrides import components, overridden
 from .scene import Scene
-from .shafts import FOLLOWING
 from .times import Times, check_times
 
 NOT_VALUES = (*PARAMETER_SETS, *FILES, ISOLATED)

@@ -1,14 +1,21 @@
-"""The sources of a scene's inputs: wires from outputs, and tables."""
+"""The sources of a scene's inputs: wires that it spells out and those that it need not, and tables."""
 
 from collections import ChainMap
+from collections.abc import Collection, Container, Mapping
 from typing import Any
 
+from ...components import COMPONENTS
+from ...declaring.variables import Terminal, Variable
 from ...errors import LoomfmuError, shown, suggestion
+from ..importing.facts import ALL, Facts, facts_of
 from ..importing.ports import mismatch
-from . import usual_wires
+from ..standard import standard
 from .drives import Drive, drive, split
 from .graph import Wire
 from .instances import Instance
+from .keys import is_numbered, members, stem
+
+Known = Mapping[str, Facts]  # of the instances whose component is known, by their names
 
 
 def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None) -> list[Wire]:
@@ -19,19 +26,19 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     spelt = dotted(spelt_out)
-    components = {name: each.fmu.component for name, each in instances.items() if each.fmu.component}
-    usual = usual_wires.wires(components)
+    known = {name: each.fmu.facts for name, each in instances.items() if each.fmu.facts}
+    usual = usual_wires(known)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     values = {
         f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
     }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | spelt
-    usual_wires.check_sources(components, usual, tables)
-    for name in components:
-        sources |= usual_wires.gathered(name, components, ChainMap(tables, sources))
+    _check_sources(known, usual, tables)
+    for name in known:
+        sources |= gathered(name, known, ChainMap(tables, sources))
     taken = {str(each) for each in (*sources.values(), *spelt.values())}
-    sources |= usual_wires.fed_back(components, taken)
-    sources |= usual_wires.fed_along(components, sources | spelt)
+    sources |= _fed_back(known, taken)
+    sources |= _fed_along(known, sources | spelt)
     for sink, source in spelt.items():
         if source is False:
             if sources.pop(sink, None) is None:
@@ -91,3 +98,168 @@ def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> 
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
         drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
     return drives
+
+
+# ---- wires that a scene need not spell out
+
+
+def usual_wires(known: Known) -> dict[str, str]:
+    """Return the usual wires to inputs such as `belt.travel`, by the declarations of all instances.
+
+    Terminals go to the instance that the standard loom has for them, others to the only one that offers them.
+    """
+    offered: dict[tuple[str, int], dict[str, tuple[str, ...]]] = {}
+    for name, facts in known.items():
+        for end in facts.offered:
+            offered.setdefault((end.kind, len(end.variables)), {})[name] = end.variables
+    found: dict[str, str] = {}
+    for name, facts in known.items():
+        number = name.removeprefix(stem(name))
+        for v in facts.inputs:
+            if v.source and not v.source_for and not v.source.startswith(ALL):
+                found[f"{name}.{v.name}"] = v.source.replace("_#", number)
+        for terminal in facts.taken:
+            offering = offered.get((terminal.name, len(terminal.variables)), {})
+            if terminal.name in standard().SOURCES:
+                usual = [each.replace("_#", number) for each in standard().SOURCES[terminal.name]]
+                owner = next((each for each in usual if each in offering and each != name), usual[-1])
+                # another vendor's FMU in its place has outputs of the same names
+                outputs = offering.get(owner, ()) if owner in known else _usual(terminal, owner)
+            else:
+                owner, outputs = next(iter(offering.items())) if len(offering) == 1 else ("", ())
+            pairs = zip(terminal.variables, outputs, strict=False)
+            found |= {f"{name}.{sink}": f"{owner}.{output}" for sink, output in pairs}
+    return found
+
+
+def _check_sources(known: Known, usual: Mapping[str, str], given: Container[str]) -> None:
+    """Refuse an input whose source is absent: it would keep its start. `given` have another one.
+
+    `usual` are the wires of a standard loom. Our own mechanisms, and all terminals, do without what such a
+    loom leaves out, but not without the number of a source, nor without one that has another name here. A
+    terminal is left to the scene that gives one of its inputs.
+    """
+    absent = {sink: source for sink, source in usual.items() if source.partition(".")[0] not in known}
+    variables = [(name, v) for name, facts in known.items() for v in facts.variables.values()]
+    declared = {f"{name}.{v.name}": v.source for name, v in variables}
+    spelt = {_owners(sink, source) for sink, source in absent.items() if sink in given and not declared[sink]}
+    for sink, source in absent.items():
+        name, owner = _owners(sink, source)
+        of_terminal = not declared[sink]
+        if sink in given or (of_terminal and (name, owner) in spelt):
+            continue
+        unnumbered = not is_numbered(name) and "_#" in (declared[sink] or "")
+        others = members(owner, known) if unnumbered else _renamed(name, owner, known)
+        ours = known[name].component in COMPONENTS.values()
+        if others or not (ours or of_terminal):
+            missing = f"{name} has no number" if unnumbered else f"there is no instance {owner!r}"
+            like = "" if unnumbered else suggestion(owner, known)
+            hint = f"; did you mean {others[0]!r}?" if others and not unnumbered else like
+            raise LoomfmuError(
+                f"{sink}: its source is {declared[sink] or source}, but {missing}{hint};"
+                f" name it in [wires], or set {sink}"
+            )
+
+
+def _owners(sink: str, source: str) -> tuple[str, str]:
+    """The instances at both ends of a wire."""
+    return sink.partition(".")[0], source.partition(".")[0]
+
+
+def _renamed(name: str, owner: str, known: Known) -> list[str]:
+    """Return the instances that may replace an absent one of the standard loom, under other names."""
+    wanted = standard().COMPONENT_OF.get(stem(owner))
+    found = (other for other, facts in known.items() if facts.component.__name__ == wanted)
+    return [other for other in found if other != name and stem(other) not in standard().COMPONENT_OF]
+
+
+def _fed_back(known: Known, taken: Collection[str]) -> dict[str, str]:
+    """Wires that bring an instance what its own outputs cause, such as the load on a frame.
+
+    They close a loop: each is made only where an output of `taken`, the sources of all wires, depends on it.
+    """
+    found: dict[str, str] = {}
+    for name, v in _caused(known):
+        if f"{name}.{v.source_for}" in taken:
+            usual = _usual_sources(name, v)
+            there = [source for source in usual if source.partition(".")[0] in known]
+            found |= {f"{name}.{v.name}": source for source in there[:1]}
+    return found
+
+
+def _fed_along(known: Known, sources: Mapping[str, Any]) -> dict[str, str]:
+    """Wires to inputs that go with another input, from the instance that this one is wired to.
+
+    Such as the work done on what loads a frame. `sources` are the sources of all wired inputs. Each is made
+    only where it reaches an output that is taken.
+    """
+    taken = set(map(str, sources.values()))
+    found: dict[str, str] = {}
+    for name, v in _caused(known):
+        owner = str(sources.get(f"{name}.{v.source_for}", "")).partition(".")[0]
+        outputs = known[name].outputs.values()
+        reached = [f"{name}.{o.name}" for o in outputs if o.depends is None or v.name in o.depends]
+        if owner in known and not taken.isdisjoint(reached):
+            there = [source for source in _usual_sources(name, v) if source.partition(".")[0] == owner]
+            found |= {f"{name}.{v.name}": source for source in there[:1]}
+    return found
+
+
+def left_out(known: Known, wired: Collection[str], signal: str) -> dict[str, str]:
+    """Inputs that an output depends on, but that are not wired although they could be, and from where."""
+    owner, _, output = signal.partition(".")
+    if owner not in known:
+        return {}
+    outputs, variable = known[owner].outputs, known[owner].variables.get(output)
+    depends = variable.depends if variable else ()
+    found: dict[str, str] = {}
+    for v in known[owner].caused:
+        sink = f"{owner}.{v.name}"
+        if sink not in wired and v.source_for in outputs and (depends is None or v.name in depends):
+            there = [source for source in _usual_sources(owner, v) if source.partition(".")[0] in known]
+            if there:
+                found[sink] = there[0]
+    return found
+
+
+def _caused(known: Known) -> list[tuple[str, Variable]]:
+    """The inputs that are wired only for the sake of something else, and their instances."""
+    return [(name, v) for name, facts in known.items() for v in facts.caused]
+
+
+def _usual_sources(name: str, variable: Variable) -> list[str]:
+    """Return the outputs that an input is usually wired to, in order of preference."""
+    return (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
+
+
+def gathered(name: str, known: Known, given: Mapping[str, Any]) -> dict[str, str]:
+    """Wires of an instance whose arrays take an output of every instance that has it, at the next free place.
+
+    `given` are the inputs that have a source or a value, or false where their wire is cut. The first array
+    decides: where its wire is cut, or wired by hand, the others have none at this place.
+    """
+    arrays = known[name].gathering
+    if not arrays:
+        return {}
+    first, *others = [(array[0].source or "").removeprefix(ALL) for array in arrays]
+    places = [[f"{name}.{v.name}" for v in place] for place in zip(*arrays, strict=True)]
+    free = [place for place in places if not any(given.get(sink, False) is not False for sink in place)]
+    wired = [given.get(sink) for place in places for sink in place]
+    outputs = {other: facts.outputs for other, facts in known.items()}
+    offering = [other for other in known if first in outputs[other] and f"{other}.{first}" not in wired]
+    if len(offering) > len(free):
+        raise LoomfmuError(
+            f"{name} has free inputs for {len(free)} mechanisms, but {len(offering)} have an output {first}"
+        )
+    wires = {}
+    for other, (sink, *further) in zip(offering, free, strict=False):
+        wires[sink] = f"{other}.{first}"
+        if given.get(sink) is not False:
+            pairs = zip(further, others, strict=True)
+            wires |= {to: f"{other}.{output}" for to, output in pairs if output in outputs[other]}
+    return wires
+
+
+def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
+    """The outputs that a terminal is wired to in a standard loom."""
+    return facts_of(COMPONENTS[standard().COMPONENT_OF[stem(owner)]]).offers(terminal.name).variables
