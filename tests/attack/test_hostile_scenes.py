@@ -18,7 +18,7 @@ MANY = 3000
 
 def read(path: Path) -> None:
     """All that is done with a scene before its first step, and its way into a package."""
-    scene = checked_claims(scenes.load(path))
+    scene = checked_claims(scenes.load(path)).scene
     if len(scene.instances) < 100:
         ssp.contents(scene, "live")
 

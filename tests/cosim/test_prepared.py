@@ -15,7 +15,7 @@ import loomfmu
 from loomfmu import Evaluation, LoomfmuError, evaluate, prepare, run
 from loomfmu.cosim import prepared
 from loomfmu.cosim.importing import pool
-from loomfmu.cosim.planning.requested import claims_of
+from loomfmu.cosim.planning.requested import Requested
 from loomfmu.cosim.scenes import scene as scenes
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
@@ -86,7 +86,7 @@ def test_values_alone_are_not_read_anew(loom: loomfmu.Prepared, monkeypatch: pyt
     def refused(*_arguments: Any) -> None:
         raise AssertionError("the scene is read")
 
-    monkeypatch.setattr(prepared, "checked", refused)
+    monkeypatch.setattr(prepared, "requested", refused)
     for given in VALUES:
         loom.evaluate(given)
 
@@ -192,8 +192,8 @@ def test_an_evaluation_can_be_sent_to_another_process(loom: loomfmu.Prepared) ->
     stroke = "heald_1.stroke"
     assert copied.trace.parameter(stroke) == found.trace.parameter(stroke)
     # what is judged on it is read where it lies now, not where it lay in the other process
-    assert [claim.judge(copied.trace).worst for claim in claims_of(copied.scene)] == [
-        claim.judge(found.trace).worst for claim in claims_of(found.scene)
+    assert [claim.judge(copied.trace).worst for claim in Requested(copied.scene).claims] == [
+        claim.judge(found.trace).worst for claim in Requested(found.scene).claims
     ]
 
 

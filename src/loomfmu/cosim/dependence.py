@@ -17,7 +17,7 @@ from ..traces.signals import Floats, Integers
 from .claims.claim import Claim
 from .master.grid import SAME, contradicted, passed_by, period
 from .planning.movements import Movements
-from .planning.requested import signals_of
+from .planning.requested import Requested
 from .scenes.graph import Wire, step_order
 from .scenes.keys import ITERATED
 from .scenes.scene import Scene
@@ -93,14 +93,14 @@ class Judged(NamedTuple):
 class Dependence:
     """The FMUs that the claims of one scene depend on, and what follows for the errors of their verdicts."""
 
-    def __init__(self, scene: Scene, claims: Sequence[Claim]):
-        self._scene, self.claims = scene, claims
-        self._movements = Movements(scene)
+    def __init__(self, requested: Requested, claims: Sequence[Claim]):
+        self._scene, self.claims = requested.scene, claims
+        self._requested, self._movements = requested, Movements(requested)
 
     @cached_property
     def _upstream(self) -> list[set[str]]:
         """The instances on which the signals of each claim depend."""
-        signals = (signals_of(self._scene, each) for each in self.claims)
+        signals = (claim.signals(self._requested) for claim in self.claims)
         owners = ({signal.partition(".")[0] for signal in each} for each in signals)
         return [set(upstream(each, self._sources)) for each in owners]
 

@@ -22,6 +22,7 @@ from .claims.claim import Claim
 from .dependence import Count, Dependence, Judged, Method
 from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
+from .planning.requested import Requested
 from .scenes.instances import altered
 from .scenes.keys import WINDOWS
 from .scenes.scene import Scene
@@ -68,16 +69,16 @@ class Estimates:
 
     def __init__(
         self,
-        scene: Scene,
+        requested: Requested,
         claims: Sequence[Claim],
         run: Callable[[Scene, Grid], Signals],
         signals: int,
         deciders: Mapping[int, int],
     ):
         self.claims, self._run, self._signals, self._deciders = claims, run, signals, deciders
-        self._dependence = Dependence(scene, claims)
+        self._dependence = Dependence(requested, claims)
         # what is kept of a run, beside what claims need, to tell whether steps are short enough
-        self.beside = (*self._dependence.counters, *self._angles)
+        self.shown = (*self._dependence.counters, *self._angles)
 
     @property
     def asked(self) -> range:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -22,19 +23,11 @@ from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted
 from .planning.plan import InMemory, Stepping, build_needed, early_end, explained, record
-from .planning.requested import (
-    check_bounds,
-    claims_of,
-    deciding,
-    judged_by,
-    recorded,
-    shaft_angle,
-    with_rates,
-)
+from .planning.requested import Requested, check_bounds
 from .planning.windows import window_grid
 from .provenance import attributes
-from .reading import check_set, checked
-from .recorded import bar, finish, kept, own_path, target_of, writer_of, written_at
+from .reading import check_set, requested
+from .recorded import finish, kept_readable, own_path, progress_of, target_of, writer_of, written_at
 from .results import Evaluation, Result
 from .scenes.instances import altered
 from .scenes.keys import WINDOWS
@@ -48,47 +41,46 @@ MOST_PATTERNS = 8  # that are kept ready, such as one for each machine
 class Pattern:
     """A scene that is read, wired and planned, for runs that differ in values alone."""
 
-    def __init__(self, scene: Scene, values: Sequence[str], measures: Sequence[Claim] = ()):
-        self.scene = scene
-        self.values = Values(scene)
-        self.claims = claims_of(scene)
-        wanted = with_rates(scene, [*shaft_angle(scene), *values])
-        deciding_of = {number: deciding(scene, claim) for number, claim in enumerate(self.claims)}
+    def __init__(self, requested: Requested, values: Sequence[str], measures: Sequence[Claim] = ()):
+        self.scene, self.claims, self._requested = requested.scene, requested.claims, requested
+        self.values = Values(requested.scene)
+        deciding = {number: requested.decider(claim) for number, claim in enumerate(self.claims)}
         # a yes-or-no output is as sure as the number whose sign it is, which is estimated with the claims
-        deciders = {number: measure(signal) for number, signal in deciding_of.items() if signal}
+        deciders = {number: measure(signal) for number, signal in deciding.items() if signal}
         self._all = [*self.claims, *measures, *deciders.values()]
         if self._all:
             judging.library()  # before the run, which could not be judged without
-        needed = tuple(dict.fromkeys([*wanted, *judged_by(scene, self._all)]))
+        needed = requested.needed(self._all, values)
         self._steppings: dict[tuple[str, ...], Stepping] = {}
         first = len(self.claims) + len(measures)
         places = {number: first + place for place, number in enumerate(deciders)}
         self._measured = slice(len(self.claims), first)
-        self._estimates = Estimates(scene, self._all, self._on, len(needed), places)
-        self.judged = tuple(dict.fromkeys([*needed, *self._estimates.beside]))
+        self._estimates = Estimates(requested, self._all, self._on, len(needed), places)
+        self.judged = tuple(dict.fromkeys([*needed, *self._estimates.shown]))
         self._steps = 0  # in a revolution, as they were chosen last
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""
         key = tuple(signals)
         if key not in self._steppings:
-            self._steppings[key] = Stepping(self.scene, key)
+            self._steppings[key] = Stepping(self._requested, key)
         return self._steppings[key]
 
-    def with_values(self, values: Mapping[str, Any], overrides: dict[str, Any]) -> Scene:
-        """The scene with other values, out of all its overrides.
+    def with_values(self, values: Mapping[str, Any], overrides: dict[str, Any]) -> Scene | None:
+        """The scene with other values, out of all its overrides; None where it must be read anew.
 
-        Raises LoomfmuError for what must be read anew.
+        Raises LoomfmuError for a value that is not possible.
         """
         scene = self.values.set(values, overrides)
-        check_bounds(scene, self.claims)
+        if scene is not None:
+            check_bounds(scene, self.claims)
         return scene
 
     def grid(self, scene: Scene, signals: Sequence[str]) -> Grid:
         """The communication points of a run that keeps these signals."""
         if scene.grid != WINDOWS:
             return uniform(scene)
-        return window_grid(scene, signals, self._in_memory)
+        return window_grid(self._requested, scene, signals, self._in_memory)
 
     def _in_memory(self, scene: Scene, signals: Sequence[str], grid: Grid) -> InMemory:
         return self.stepping(signals).in_memory(scene, grid)
@@ -145,7 +137,7 @@ class Pattern:
     def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
         """Run the scene, record it to a file, and judge its claims."""
         scene, known, chosen = self._with_steps(scene)
-        signals = list(dict.fromkeys([*recorded(scene), *self._estimates.beside]))
+        signals = list(dict.fromkeys([*self._requested.recorded, *self._estimates.shown]))
         stepping = self.stepping(signals)
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)
@@ -157,28 +149,27 @@ class Pattern:
         if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
             coarser = self._estimates.coarser(scene, plan.grid, everything)
-        with stepping.stepped(plan) as master:
+        with ExitStack() as instances:
+            master = instances.enter_context(stepping.stepped(plan))
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")
             writer = writer_of(plan, stepping.channels, path, target, about)
-            with kept(writer, path), bar(plan, progress) as advance:
+            with kept_readable(writer, path), progress_of(plan, progress) as advance:
                 begun = perf_counter()
                 record(master, writer, advance)
                 seconds = perf_counter() - begun
                 if master.interrupted.value:
                     raise Interrupted
-            # before coarser runs, which may be stepped by the same master
             steps, early = master.steps, early_end(plan, master.ended)
             warnings = (*scene.notes, *master.warnings())
-            # while the instances are still there: one that crashes when it is freed takes nothing with it
-            if coarser is not None:
-                verdicts, trace = finish(partial(self._estimated, scene, coarser), writer, path, early)
-        if coarser is None:
-            with kept(writer, path):
-                try:
-                    coarser = self._estimates.coarser(scene, plan.grid, everything)
-                except KeyboardInterrupt:
-                    raise Interrupted from None
+            if coarser is None:
+                instances.close()  # coarser runs may be stepped by the same master
+                with kept_readable(writer, path):
+                    try:
+                        coarser = self._estimates.coarser(scene, plan.grid, everything)
+                    except KeyboardInterrupt:
+                        raise Interrupted from None
+            # third-party instances are still there: one that crashes when it is freed takes nothing with it
             verdicts, trace = finish(partial(self._estimated, scene, coarser), writer, path, early)
         return Result(
             scene,
@@ -215,7 +206,7 @@ class Prepared:
             raise LoomfmuError(f'values = {shown(values)} is not a list such as ["belt.margin"]')
         self._values, self._flavour = tuple(values), flavour
         self._measures = tuple(measures)
-        self._base = self._new(checked(scene, overrides, flavour))
+        self._base = self._new(requested(scene, overrides, flavour))
         self._patterns: OrderedDict[str, Pattern] = OrderedDict()
         self._turn = threading.Lock()
 
@@ -275,8 +266,8 @@ class Prepared:
     def __reduce__(self) -> tuple[Any, ...]:
         return Prepared, (self.scene, None, self._flavour, self._values, self._measures)
 
-    def _new(self, scene: Scene) -> Pattern:
-        return Pattern(scene, self._values, list(map(measure, self._measures)))
+    def _new(self, asked: Requested) -> Pattern:
+        return Pattern(asked, self._values, list(map(measure, self._measures)))
 
     def _ready(self, given: dict[str, Any] | None) -> tuple[Pattern, Scene]:
         """Return pattern and scene for these values. Raises LoomfmuError for a value that is not possible."""
@@ -286,23 +277,18 @@ class Prepared:
         before = self.scene.overrides
         overrides = {key: value for key, value in before.items() if key not in given} | given
         values = {key: value for key, value in given.items() if self._base.values.targets(key)}
-        try:
-            pattern = self._base
-            if len(values) < len(given):
-                pattern = self._pattern({key: each for key, each in overrides.items() if key not in values})
-            return pattern, pattern.with_values(values, overrides)
-        except LoomfmuError:  # what was wrong, if anything was, is found where all is read
-            pattern = self._new(checked(self.scene, overrides, self._flavour))
-            for doubt in pattern.scene.doubts - self.scene.doubts:  # nobody reads the warnings of each run
-                raise LoomfmuError(f"{doubt}, else the unit as well") from None
-            return pattern, pattern.scene
-
-    def _pattern(self, overrides: dict[str, Any]) -> Pattern:
-        """The scene with other than values; the last ones are kept."""
-        key = repr(overrides)
-        if key not in self._patterns:
-            self._patterns[key] = self._new(checked(self.scene, overrides, self._flavour))
-        self._patterns.move_to_end(key)
+        # a pattern that was read with some values serves for other ones of the same variables
+        key = repr(({key: each for key, each in overrides.items() if key not in values}, sorted(values)))
+        pattern = self._base if len(values) == len(given) else self._patterns.get(key)
+        scene = pattern.with_values(values, overrides) if pattern else None
+        if pattern is None or scene is None:
+            pattern = self._new(requested(self.scene, overrides, self._flavour))
+            scene = pattern.scene
+            for doubt in scene.doubts - self.scene.doubts:  # nobody reads the warnings of each run
+                raise LoomfmuError(f"{doubt}, else the unit as well")
+        if len(values) < len(given):
+            self._patterns[key] = pattern
+            self._patterns.move_to_end(key)
         if len(self._patterns) > MOST_PATTERNS:
             self._patterns.popitem(last=False)
-        return self._patterns[key]
+        return pattern, scene

@@ -8,13 +8,18 @@ from typing import Any
 from ..errors import LoomfmuError, listed, path_of, shown
 from .importing.built import check_flavour
 from .importing.process import AVAILABLE
-from .planning.requested import checked_claims
+from .planning.requested import Requested, checked_claims
 from .scenes import scene as scenes
 from .scenes.scene import Scene
 
 
 def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
     """A scene that is ready to be run. Raises LoomfmuError naming the file and what is wrong."""
+    return requested(scene, overrides, flavour).scene
+
+
+def requested(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Requested:
+    """A scene that is ready to be run, and what is asked of it. Raises LoomfmuError as `checked`."""
     check_flavour(flavour)
     check_set(overrides)
     scene = scene if isinstance(scene, Scene) else path_of(scene, "scene")

@@ -72,7 +72,7 @@ def written_at(path: Path) -> str:
 
 
 @contextmanager
-def kept(writer: TraceWriter, path: Path) -> Iterator[None]:
+def kept_readable(writer: TraceWriter, path: Path) -> Iterator[None]:
     """Whatever ends the run early: what was written stays readable, and the message says where it is."""
     try:
         yield
@@ -142,7 +142,7 @@ def writer_of(
 
 
 @contextmanager
-def bar(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
+def progress_of(plan: Plan, wanted: bool) -> Iterator[Callable[[int], None]]:
     """A progress bar for a long run; call it with the number of steps done."""
     shown = 0
 

@@ -12,7 +12,7 @@ from ..fmi.native.platforms import PLATFORMS
 from ..fmi.system.builder import contents
 from ..fmi.system.system import Drive, Part, System
 from .planning.pruning import prune
-from .planning.requested import checked_claims, recorded
+from .planning.requested import Requested, checked_claims
 from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
@@ -37,7 +37,7 @@ def export(
         LoomfmuError: the scene has third-party FMUs or a loop, a component does not translate, there is no
             compiler, or the file cannot be written
     """
-    scene = checked_claims(scene)
+    scene = checked_claims(scene).scene
     inputs = files_of(scene)
     check_target(path, FMU, inputs, overwrite)  # before the FMU is compiled
     write_file(path, zipped(contents(system(scene), platforms, fmi)), FMU, inputs, overwrite)
@@ -50,7 +50,7 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
 
     `whole` is what messages call it, `instead` what they advise.
     """
-    signals = recorded(scene)
+    signals = Requested(scene).recorded
     needed = prune(scene, signals, keep_shafts=True).scene
     order, lagged = step_order(needed.instances, needed.wires)
     if lagged:

@@ -10,7 +10,7 @@ from ..cosim.claims.claim import Claim
 from ..cosim.claims.judging import FIELDS, SOURCE, Form, Table, beside, number_of
 from ..cosim.dependence import Dependence, Method
 from ..cosim.estimates import coarseness, counts
-from ..cosim.planning.requested import SHAFT_ANGLE, claims_of
+from ..cosim.planning.requested import SHAFT_ANGLE, Requested
 from ..cosim.scenes.scene import Scene
 from ..fmi.native.libraries import module_of
 from ..traces import Trace, Verdict
@@ -25,11 +25,11 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
         trace: the run that the page holds
         verdicts: those on that run
     """
-    table, found = Table(), claims_of(scene)
+    table, requested = Table(), Requested(scene)
     number_of(table, trace, SHAFT_ANGLE)
-    dependence = Dependence(scene, found)
+    dependence = Dependence(requested, requested.claims)
     unshown = [dependence.unshown(each) for each in ends]
-    asked = zip(found, dependence.methods, verdicts, strict=True)
+    asked = zip(requested.claims, dependence.methods, verdicts, strict=True)
     rows = [
         _claim(claim, method, verdict, trace, table)
         | {"unshown": next((each[number] for each in unshown if number in each), "")}

@@ -55,7 +55,7 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
     check_flavour(flavour)
     scene_path = _beside(path, tables["scene"])
     fixed = flattened(tables.get("set", {}), "set")
-    scene = checked_claims(read_scene(scene_path, fixed))
+    scene = checked_claims(read_scene(scene_path, fixed)).scene
     return Header(text_in(tables, "title", path.stem), scene_path, scene, flavour, fixed)
 
 

@@ -12,7 +12,7 @@ import loomfmu
 from loomfmu.cosim.importing import fmus, pool
 from loomfmu.cosim.planning.plan import explained
 from loomfmu.cosim.planning.pruning import Pruned, prune
-from loomfmu.cosim.planning.requested import judged_by, recorded
+from loomfmu.cosim.planning.requested import Requested
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 
@@ -33,7 +33,7 @@ bound = 0.1
 
 
 def needed_for(scene: Scene) -> Pruned:
-    return prune(scene, recorded(scene))
+    return prune(scene, Requested(scene).recorded)
 
 
 def margin(rest: str = "") -> Scene:
@@ -139,7 +139,8 @@ def test_a_driven_input_goes_with_its_instance() -> None:
     rest = '[inputs]\n"damper_1.warp_force" = [[0, "10 N"], [1, "20 N"]]\n'
     scene = margin(rest)
     assert "damper_1" in needed_for(scene).scene.instances  # what drives an input is recorded
-    needed = prune(scene, judged_by(scene))
+    requested = Requested(scene)
+    needed = prune(scene, requested.judged(requested.claims))
     assert "damper_1" not in needed.scene.instances
     assert needed.scene.drives == []
 

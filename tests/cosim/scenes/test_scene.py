@@ -404,8 +404,8 @@ def test_ordinary_numbers_are_not_doubted(given: dict[str, object]) -> None:
 )
 def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, Any], note: str) -> None:
     scene = replace(scenes.parse("revolutions = 2\n" + LOOM), claims=[claim])
-    assert checked_claims(scene).notes == (note,)
-    assert checked_claims(checked_claims(scene)).notes == (note,)  # told once
+    assert checked_claims(scene).scene.notes == (note,)
+    assert checked_claims(checked_claims(scene).scene).scene.notes == (note,)  # told once
 
 
 @pytest.mark.parametrize(
@@ -422,7 +422,7 @@ def test_claims_that_were_probably_meant_otherwise_are_doubted(claim: dict[str, 
 )
 def test_ordinary_claims_are_not_doubted(claim: dict[str, Any]) -> None:
     scene = scenes.parse("revolutions = 2\n" + LOOM)
-    assert checked_claims(replace(scene, claims=[claim])).notes == ()
+    assert checked_claims(replace(scene, claims=[claim])).scene.notes == ()
 
 
 def test_what_is_set_anew_is_doubted_anew() -> None:

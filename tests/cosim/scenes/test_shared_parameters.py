@@ -90,16 +90,18 @@ def test_the_work_on_a_load_comes_from_where_the_load_comes_from() -> None:
 def test_a_claim_on_a_torque_that_leaves_the_load_out_is_noted() -> None:
     claim = '[[claims]]\nkind = "below"\nsignal = "heald_1.shaft_torque"\nbound = "1000 N.m"\n'
     whole = "revolutions = 2\n" + LOOM
-    (note,) = checked_claims(scenes.parse(whole + claim)).notes
+    (note,) = checked_claims(scenes.parse(whole + claim)).scene.notes
     assert "leaves out damper_1.transmitted_force, because heald_1.load is not wired" in note
     wired = '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
-    assert checked_claims(scenes.parse(whole + wired + claim)).notes == ()
-    assert checked_claims(scenes.parse('[shaft]\ncomponent = "DrivenShaft"\n' + LOOM + claim)).notes == ()
+    assert checked_claims(scenes.parse(whole + wired + claim)).scene.notes == ()
+    assert (
+        checked_claims(scenes.parse('[shaft]\ncomponent = "DrivenShaft"\n' + LOOM + claim)).scene.notes == ()
+    )
     energy = claim.replace("1000 N.m", "1000 J")
     for other in ("heald_1.shaft_work", "dobby.kinetic_energy"):
         scene = scenes.parse(LOOM + energy.replace("heald_1.shaft_torque", other))
-        assert checked_claims(scene).notes == ()
-    assert checked_claims(scenes.parse('[loom]\nweave = "10"\n' + claim)).notes == ()
+        assert checked_claims(scene).scene.notes == ()
+    assert checked_claims(scenes.parse('[loom]\nweave = "10"\n' + claim)).scene.notes == ()
 
 
 def test_a_scene_may_hang_the_warp_on_the_frame() -> None:

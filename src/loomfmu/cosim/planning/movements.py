@@ -8,7 +8,7 @@ from ...declaring.variables import Component
 from ..claims.movers import shafts_of
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
-from .requested import SHAFT_ANGLE, Outputs
+from .requested import SHAFT_ANGLE, Requested
 
 EVENT = 4.0  # steps that show an event of a mechanism
 SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
@@ -18,8 +18,8 @@ ANGLE, SPEED = "rad", "rad/s"
 class Movements:
     """The movements of the instances of a scene, as far as its wires tell."""
 
-    def __init__(self, scene: Scene):
-        self._instances, self._outputs = scene.instances, Outputs(scene)
+    def __init__(self, requested: Requested):
+        self._instances, self._outputs = requested.scene.instances, requested
         self._angles: dict[str, tuple[str, ...]] = {}
 
     def angles(self, name: str) -> tuple[str, ...]:

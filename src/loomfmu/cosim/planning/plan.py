@@ -18,7 +18,7 @@ from ..master.master import Integers, Interrupted, Master, Reals
 from ..scenes.keys import MAY_END
 from ..scenes.scene import Scene
 from .pruning import Effective, Pruned, prune
-from .requested import beside_of, output_port
+from .requested import Requested, beside_of, output_port
 
 
 class Keeper(Protocol):
@@ -60,9 +60,10 @@ class Stepping:
     What does not depend on values is done once: what is left out, the order, where values are, the calls.
     """
 
-    def __init__(self, scene: Scene, signals: Sequence[str]):
+    def __init__(self, requested: Requested, signals: Sequence[str]):
+        scene = requested.scene
         self._pruned = pruned = prune(scene, signals)
-        self._effective = Effective(scene, pruned)
+        self._effective = Effective(scene, requested.claims, pruned)
         self._master = Master(pruned.scene, uniform(scene), pruned.fetched, pruned.shafts)
         self._scene = scene
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 
 from ...components.shaft_driven import FOLLOWED, FOLLOWING, ShaftDriven
 from ...declaring.upstream import sources_of, upstream
+from ..claims.claim import Claim
 from ..importing.fmus import Value
 from ..master.constant_shaft import ConstantShaft
 from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
-from .requested import claims_of
 
 
 @dataclass(frozen=True)
@@ -81,9 +81,9 @@ class Effective:
     What has no effect is left out: an instance's own speed if it follows a shaft, an input that is wired.
     """
 
-    def __init__(self, scene: Scene, kept: Pruned):
+    def __init__(self, scene: Scene, claims: Iterable[Claim], kept: Pruned):
         self._instances, self._running, self._shafts = scene.instances, kept.scene.instances, kept.shafts
-        self._fed, self._read = _fed(scene), _read(scene)
+        self._fed, self._read = _fed(scene), {name for claim in claims for name in claim.parameter_owners()}
 
     def of(self, scene: Scene, kept: Pruned) -> "Effective":
         """The same of this scene, which differs in values alone."""
@@ -114,11 +114,6 @@ def _fed(scene: Scene) -> dict[str, set[str]]:
     ]:
         found.setdefault(name, set()).add(variable)
     return found
-
-
-def _read(scene: Scene) -> set[str]:
-    """The instances whose parameters the claims need."""
-    return {name for claim in claims_of(scene) for name in claim.parameter_owners()}
 
 
 def _is_constant(scene: Scene, name: str) -> bool:

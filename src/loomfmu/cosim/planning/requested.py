@@ -1,7 +1,7 @@
 """The signals that a run must give: those recorded and those that claims need, checked first."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 
@@ -51,40 +51,134 @@ def beside_of(scene: Scene, signal: str) -> Beside:
     return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
 
 
-def claims_of(scene: Scene) -> list[Claim]:
-    """The scene's claims. Raises LoomfmuError for one that cannot be read."""
-    return [read(table, partial(_unit, scene, place_of(table))) for table in scene.claims]
+class Requested:
+    """A scene and what is asked of it: its claims, read once, and the signals that a run must give for them.
+
+    It is also what claims see of the scene before the run: its outputs, driven inputs, wires and FMUs.
+    """
+
+    def __init__(self, scene: Scene):
+        """Read the claims. Raises LoomfmuError for one that cannot be read."""
+        self.scene = scene
+        self.claims = [read(table, partial(_unit, scene, place_of(table))) for table in scene.claims]
+
+    @cached_property
+    def wires(self) -> dict[str, str]:
+        """The output that each wired input takes its values from."""
+        return {".".join(wire.sink): ".".join(wire.source) for wire in self.scene.wires}
+
+    @cached_property
+    def fmus(self) -> dict[str, str]:
+        """The name of each instance's FMU."""
+        return {name: instance.fmu.name for name, instance in self.scene.instances.items()}
+
+    @cached_property
+    def _names(self) -> dict[str, None]:
+        """The outputs, in the order of the scene, and the driven inputs."""
+        instances = self.scene.instances.items()
+        ports = ((name, port) for name, instance in instances for port in instance.fmu.ports.values())
+        outputs = {f"{name}.{port.name}": None for name, port in ports if port.causality == "output"}
+        return outputs | dict.fromkeys(self._driven)
+
+    @property
+    def _driven(self) -> list[str]:
+        return [f"{drive.instance}.{drive.variable}" for drive in self.scene.drives]
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    @property
+    def angle(self) -> list[str]:
+        """The signal of the shaft's angle, by which places are given; none in a scene without a shaft."""
+        return [SHAFT_ANGLE] if "shaft" in self.scene.instances else []
+
+    @cached_property
+    def recorded(self) -> tuple[str, ...]:
+        """The signals that the scene records and that its claims need, with their rates."""
+        wanted = self.with_rates([*self.angle, *self.scene.record, *self._driven])
+        return tuple(dict.fromkeys([*wanted, *self.judged(self.claims)]))
+
+    def needed(self, claims: Iterable[Claim], values: Iterable[str]) -> tuple[str, ...]:
+        """Return the signals that claims need, and some more whose values are wanted, with their rates."""
+        wanted = self.with_rates([*self.angle, *values])
+        return tuple(dict.fromkeys([*wanted, *self.judged(claims)]))
+
+    def judged(self, claims: Iterable[Claim]) -> list[str]:
+        """Return the signals that claims need, what holds extremes of these, and all rates."""
+        wanted = []
+        for claim in claims:
+            signals = claim.signals(self)
+            besides = (output_port(self.scene, signal, "claim").beside for signal in signals)
+            names = [beside.lowest if claim.sense > 0 else beside.highest for beside in besides]
+            owners = [signal.partition(".")[0] for signal in signals]
+            wanted += signals + [f"{o}.{name}" for o, name in zip(owners, names, strict=True) if name]
+            wanted += shafts_of(owners, self.wires, self)
+        return self.with_rates(wanted)
+
+    def decider(self, claim: Claim) -> str:
+        """Return the output whose sign decides a yes-or-no output that a claim is on; empty where none does."""
+        for signal in claim.signals(self):
+            instance, _, name = signal.partition(".")
+            facts = self.scene.instances[instance].fmu.facts
+            own = facts.variables.get(name) if facts else None
+            if facts and own and own.type is bool and (own.lowest_of or own.highest_of):
+                extremes = own.lowest_of, own.highest_of
+                same = (v for v in facts.variables.values() if (v.lowest_of, v.highest_of) == extremes)
+                return next((f"{instance}.{v.name}" for v in same if v.type is float), "")
+        return ""
+
+    def with_rates(self, wanted: Iterable[str]) -> list[str]:
+        """Return signals, each with what says when it is known and how far it may be off, and its rate.
+
+        The rate is that which is an output.
+        """
+        names: dict[str, None] = {}
+        for signal in wanted:
+            while signal and signal not in names:
+                names[signal] = None
+                port = output_port(self.scene, signal, "record")
+                rate = port.rate if port.causality == "output" else None
+                owner = signal.split(".")[0]
+                for more in (port.beside.valid_if, port.beside.error):
+                    if more:
+                        names[f"{owner}.{more}"] = None
+                signal = f"{owner}.{rate}" if rate else ""
+        return list(names)
 
 
 def _unit(scene: Scene, where: str, signal: str) -> str:
     return output_port(scene, signal, where).unit
 
 
-def checked_claims(scene: Scene) -> Scene:
-    """The scene, with a note on each number of a claim that was probably meant in another unit.
+def checked_claims(scene: Scene) -> Requested:
+    """A scene with a note on each number of a claim that was probably meant in another unit.
 
     Refuses, before the run, a claim that could not be judged after it.
     """
+    requested = Requested(scene)
     notes = [*scene.notes, *_unrecorded(scene)]
     known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
-    wired = {".".join(wire.sink) for wire in scene.wires}
-    for table, claim in zip(scene.claims, claims_of(scene), strict=True):
+    for table, claim in zip(scene.claims, requested.claims, strict=True):
         where = place_of(table)
         for angle in angles_in(table) if "shaft" not in scene.instances else ():
             raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
-        for signal in signals_of(scene, claim):
+        for signal in claim.signals(requested):
             output_port(scene, signal, where)
             notes += [
                 f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
                 f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
-                for sink, source in left_out(known, wired, signal).items()
+                for sink, source in left_out(known, requested.wires, signal).items()
             ]
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)
             notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
         check_bounds(scene, [claim])
         notes += doubts(table)
-    return replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
+    requested.scene = replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
+    return requested
 
 
 def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
@@ -127,97 +221,3 @@ def _check_parameter(scene: Scene, name: str, signal: str) -> None:
     if given != wanted:
         raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
     check_speed(name, float(value), wanted)
-
-
-def judged_by(scene: Scene, claims: Iterable[Claim] | None = None) -> list[str]:
-    """The signals that claims, by default the scene's, need, what holds extremes of these, and all rates."""
-    wanted, outputs = [], Outputs(scene)
-    for claim in claims_of(scene) if claims is None else claims:
-        signals = signals_of(scene, claim)
-        held = (output_port(scene, each, "claim").beside for each in signals)
-        names = [each.lowest if claim.sense > 0 else each.highest for each in held]
-        owners = [each.partition(".")[0] for each in signals]
-        wanted += signals + [f"{o}.{name}" for o, name in zip(owners, names, strict=True) if name]
-        wanted += shafts_of(owners, outputs.wires, outputs)
-    return with_rates(scene, wanted)
-
-
-class Outputs:
-    """The outputs of a scene, its driven inputs and its wires: what a claim sees of it before the run."""
-
-    def __init__(self, scene: Scene):
-        self._scene = scene
-
-    @cached_property
-    def wires(self) -> dict[str, str]:
-        """The output that each wired input takes its values from."""
-        return {".".join(wire.sink): ".".join(wire.source) for wire in self._scene.wires}
-
-    @cached_property
-    def fmus(self) -> dict[str, str]:
-        """The name of each instance's FMU."""
-        return {name: each.fmu.name for name, each in self._scene.instances.items()}
-
-    @cached_property
-    def _names(self) -> dict[str, None]:
-        """The outputs, in the order of the scene, and the driven inputs."""
-        instances = self._scene.instances.items()
-        ports = ((name, port) for name, each in instances for port in each.fmu.ports.values())
-        outputs = {f"{name}.{port.name}": None for name, port in ports if port.causality == "output"}
-        return outputs | {f"{drive.instance}.{drive.variable}": None for drive in self._scene.drives}
-
-    def __contains__(self, signal: object) -> bool:
-        return signal in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-
-def signals_of(scene: Scene, claim: Claim) -> list[str]:
-    """The signals that a claim needs."""
-    return claim.signals(Outputs(scene))
-
-
-def deciding(scene: Scene, claim: Claim) -> str:
-    """The output whose sign decides a yes-or-no output that a claim is on; empty where there is none."""
-    for signal in signals_of(scene, claim):
-        instance, _, name = signal.partition(".")
-        component = scene.instances[instance].fmu.component
-        known = {each.name: each for each in variables_of(component)} if component else {}
-        own = known.get(name)
-        if own and own.type is bool and (own.lowest_of or own.highest_of):
-            extremes = own.lowest_of, own.highest_of
-            held = (each for each in known.values() if (each.lowest_of, each.highest_of) == extremes)
-            return next((f"{instance}.{each.name}" for each in held if each.type is float), "")
-    return ""
-
-
-def shaft_angle(scene: Scene) -> list[str]:
-    """The signal of the shaft's angle, by which places are given; none in a scene without a shaft."""
-    return [SHAFT_ANGLE] if "shaft" in scene.instances else []
-
-
-def recorded(scene: Scene) -> list[str]:
-    """Return the signals that the scene records and that its claims need, with their rates."""
-    driven = [f"{drive.instance}.{drive.variable}" for drive in scene.drives]
-    wanted = with_rates(scene, [*shaft_angle(scene), *scene.record, *driven])
-    return list(dict.fromkeys([*wanted, *judged_by(scene)]))
-
-
-def with_rates(scene: Scene, wanted: Sequence[str]) -> list[str]:
-    """Signals, each with what says when it is known and how far it may be off, and followed by its rate.
-
-    The rate is that which is an output.
-    """
-    names: dict[str, None] = {}
-    for signal in wanted:
-        while signal and signal not in names:
-            names[signal] = None
-            port = output_port(scene, signal, "record")
-            rate = port.rate if port.causality == "output" else None
-            owner = signal.split(".")[0]
-            for more in (port.beside.valid_if, port.beside.error):
-                if more:
-                    names[f"{owner}.{more}"] = None
-            signal = f"{owner}.{rate}" if rate else ""
-    return list(names)

@@ -26,7 +26,7 @@ from ..scenes.scene import Scene
 from .movements import Movements
 from .plan import InMemory
 from .pruning import prune
-from .requested import claims_of, shaft_angle, signals_of, with_rates
+from .requested import Requested
 
 Floats = NDArray[np.float64]
 Scout = Callable[[Scene, Sequence[str], Grid], InMemory]
@@ -59,10 +59,11 @@ class Places:
         self.about += [time - reach, time + reach]
 
 
-def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
+def window_grid(requested: Requested, scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
     """The communication points of a scene whose `grid` is "windows" and that keeps these signals.
 
-    `in_memory` runs a scene on a grid and keeps some signals in memory.
+    It differs in values alone from the scene of which `requested` says what is asked. `in_memory` runs a
+    scene on a grid and keeps some signals in memory.
 
     Raises:
         LoomfmuError: the scene has no shaft or no claims, or an FMU takes only equal steps
@@ -70,7 +71,7 @@ def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
     _check(scene)
     fine = period(scene) / scene.steps_per_period
     needed = prune(scene, signals).scene
-    coarse, why = min(_showing(scene))
+    coarse, why = min(_showing(scene, Movements(requested)))
     unequal = _unequal(needed)
     if unequal:
         return replace(
@@ -80,7 +81,7 @@ def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
     for name, instance in needed.instances.items():
         if instance.fmu.keeps == MOTION and longest > fine:
             longest, why = fine, f"{name} integrates"
-    places, scouted = _scouted(scene, signals, coarse, longest, in_memory)
+    places, scouted = _scouted(requested, scene, signals, coarse, longest, in_memory)
     points = _merged(_equal(scene, places.most), places)
     notes = (
         f"steps: {period(scene) / places.most:.0f} per revolution{_because(why)}, plus steps that land"
@@ -90,18 +91,23 @@ def window_grid(scene: Scene, signals: Sequence[str], in_memory: Scout) -> Grid:
 
 
 def _scouted(
-    scene: Scene, signals: Sequence[str], coarse: float, longest: float, in_memory: Scout
+    requested: Requested,
+    scene: Scene,
+    signals: Sequence[str],
+    coarse: float,
+    longest: float,
+    in_memory: Scout,
 ) -> tuple[Places, int]:
     """Return the places that the claims look at, found on coarse steps, and the FMU steps that this took."""
     places, scouted = Places(period(scene), longest, kinks(scene)), 0
     for _ in range(SCOUTS):
         points = _merged(_equal(scene, coarse), places)
         recording, plan, steps, _early, _warnings = in_memory(
-            scene, _watched(scene, signals), chosen(scene, points)
+            scene, _watched(requested, signals), chosen(scene, points)
         )
         scouted += len(plan.pruned.scene.instances) * steps
         places = Places(period(scene), longest, places.kinks)
-        for claim in claims_of(scene):
+        for claim in requested.claims:
             _land(places, recording, scene, claim)
         for output in _latched(scene, signals):
             _extremes(places, recording, scene, output)
@@ -126,9 +132,9 @@ def _unequal(needed: Scene) -> str:
     return ""
 
 
-def _showing(scene: Scene) -> Iterator[tuple[float, str]]:
+def _showing(scene: Scene, movements: Movements) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move and how the shaft's speed changes, and why."""
-    fine, movements = period(scene) / scene.steps_per_period, Movements(scene)
+    fine = period(scene) / scene.steps_per_period
     yield period(scene) / scene.coarse_steps_per_revolution, ""
     for each in scene.instances:
         longest, why = movements.longest_step(scene, each)
@@ -178,11 +184,11 @@ def _latched(scene: Scene, signals: Iterable[str]) -> list[str]:
     return [f"{name}.{variable}" for name, variable, extreme in held if extreme and extreme[0] != variable]
 
 
-def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
+def _watched(requested: Requested, kept: Sequence[str]) -> list[str]:
     """The signals that show where the claims look, and where the extremes held by the kept signals occur."""
-    wanted, owners = list(shaft_angle(scene)), list[str]()
-    for claim in claims_of(scene):
-        signals = signals_of(scene, claim)
+    scene, wanted, owners = requested.scene, requested.angle, list[str]()
+    for claim in requested.claims:
+        signals = claim.signals(requested)
         wanted += signals if claim.grid == LANDINGS else []
         owners += [signal.split(".")[0] for signal in signals]
     owners += [signal.split(".")[0] for signal in _latched(scene, kept)]
@@ -191,7 +197,7 @@ def _watched(scene: Scene, kept: Sequence[str]) -> list[str]:
         component = scene.instances[owner].fmu.component
         windows = component.windows if component and followed else ()
         wanted += [f"{owner}.{name}" for name in (*windows, *followed)]
-    return with_rates(scene, wanted)
+    return requested.with_rates(wanted)
 
 
 def _merged(equal: Floats, places: Places) -> Floats:

@@ -62,11 +62,13 @@ class Values:
         kinds = [kind for kind, takers in TAKERS.items() if instance.fmu.name in takers]
         return any(kind in named and kind not in instance.published for kind in kinds)
 
-    def set(self, values: Mapping[str, Any], overrides: dict[str, Any]) -> Scene:
-        """The scene with other values, out of all its overrides.
+    def set(self, values: Mapping[str, Any], overrides: dict[str, Any]) -> Scene | None:
+        """The scene with other values, out of all its overrides; None where it must be read anew.
 
-        Raises LoomfmuError for what must be read anew.
+        Raises LoomfmuError for a value that is not possible.
         """
+        if not all(map(self.targets, values)):
+            return None
         changed: dict[str, Instance] = {}
 
         def copied(name: str) -> Instance:
@@ -77,8 +79,6 @@ class Values:
 
         own: set[tuple[str, str]] = set()
         for key, given in values.items():
-            if not self.targets(key):
-                raise LoomfmuError(f"{key} is not a value")
             for name, variable in self.targets(key):
                 copied(name).set(variable, given)
                 own.add((name, variable))
@@ -88,7 +88,7 @@ class Values:
                     copied(name).take(parameter, changed)
         for name, each in changed.items():
             if any(each.doubts.values()) or any(self.scene.instances[name].doubts.values()):
-                raise LoomfmuError(f"{name}: its values change what the scene warns of")
+                return None  # its values change what the scene warns of
         scene = altered(self.scene, instances=self.scene.instances | changed, overrides=overrides)
         if "shaft" in changed and "speed" in scene.instances["shaft"].fmu.ports:
             check_times(self._times, scene.speed)
