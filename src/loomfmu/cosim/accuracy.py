@@ -14,7 +14,7 @@ from .estimates import SHARES, Coarser, Estimates
 from .master.grid import crowded, uniform
 from .scenes.instances import altered
 from .scenes.scene import Scene
-from .scenes.times import ROUNDING
+from .scenes.settings import ROUNDING
 
 FEWEST, MOST = 15, 13_000  # steps in a revolution
 GROWTH = 0.5 * (1.0 + math.sqrt(5.0))  # so that the runs before are those of `estimates.SHARES`

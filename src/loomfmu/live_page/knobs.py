@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from .. import units
 from ..cosim.importing.fmus import Port, Value
 from ..cosim.reading import read
+from ..cosim.scenes.instance_tables import overridden
 from ..cosim.scenes.notes import check_effect
-from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..cosim.whole import system
 from ..errors import LoomfmuError
@@ -97,7 +97,7 @@ def _knob(scene: Scene, known: set[str], key: str, wanted: str) -> Knob:
 def _port(scene: Scene, known: set[str], key: str, where: str) -> tuple[Port, tuple[str, ...]]:
     """The variable that a key stands for, and all that it sets."""
     try:
-        pairs = overridden(scene.instances, key, components(scene.instances))
+        pairs = overridden(scene.instances, key)
         ports = [scene.instances[name].fmu.port(each, name) for name, each in pairs]
     except LoomfmuError as error:
         raise LoomfmuError(f"--vary {error}") from None

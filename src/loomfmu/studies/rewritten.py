@@ -8,8 +8,8 @@ from typing import Any
 
 from .. import units
 from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.instance_tables import overridden
 from ..cosim.scenes.keys import replaced
-from ..cosim.scenes.overrides import components, overridden
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
 from ..extras import need
@@ -136,7 +136,7 @@ def _places(scene: Scene, key: str, value: Any) -> list[tuple[str, str, Any]]:
     owner, _, variable = key.rpartition(".")
     if (variable in TAKERS and owner in ("", "loom")) or owner == "loom":
         return [("loom", variable, value)]
-    found = overridden(scene.instances, key, components(scene.instances))
+    found = overridden(scene.instances, key)
     if not isinstance(value, units.Si):  # as somebody wrote it
         return [(name, each, value if name else _number(value)) for name, each in found]
     ports = [scene.instances[name].fmu.port(each, name) for name, each in found]

@@ -11,10 +11,9 @@ import numpy as np
 from ..cosim.importing.built import Flavour, check_flavour
 from ..cosim.planning.requested import checked_claims
 from ..cosim.scenes import scene as scenes
-from ..cosim.scenes.keys import check_kind
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
-from ..cosim.scenes.tables import text as text_in
+from ..cosim.scenes.settings import text as text_in
 from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from .axes import Axis, flattened
@@ -45,7 +44,6 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
 
     Raises LoomfmuError.
     """
-    check_kind(tables, what)
     for key in tables:
         if key not in keys:
             raise LoomfmuError(f"{key} is unknown{suggestion(key, keys)}")

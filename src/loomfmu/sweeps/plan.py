@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..cosim.importing.fmus import Flavour, Port
 from ..cosim.planning.requested import output_port
+from ..cosim.scenes.keys import toml
 from ..cosim.scenes.scene import Scene
-from ..cosim.scenes.tables import toml
 from ..errors import LoomfmuError, suggestion
 from ..extras import need
 from ..files import text_of
@@ -106,7 +106,7 @@ def load(path: str | Path) -> SweepPlan:
 
 
 def _parse(text: str, path: Path) -> SweepPlan:
-    tables = toml(text)
+    tables = toml(text, "sweep")
     head = header(tables, path, KEYS, "sweep")
     need("a sweep", "sweep", *(extra for table, extra in EXTRAS.items() if table in tables))
     columns = _results(head.scene, tables.get("values", []))

@@ -7,11 +7,11 @@ from typing import Any
 
 from .. import units
 from ..cosim.importing.fmus import Port
+from ..cosim.scenes.instance_tables import overridden, unit_of
 from ..cosim.scenes.instances import Instance
 from ..cosim.scenes.keys import COARSE, TIMES
-from ..cosim.scenes.overrides import components, overridden, unit_of
 from ..cosim.scenes.scene import Scene, check_free
-from ..cosim.scenes.tables import truth
+from ..cosim.scenes.settings import truth
 from ..errors import LoomfmuError, listed
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS
@@ -53,7 +53,7 @@ class Varied:
 
 def varied(scene: Scene, key: str) -> Varied:
     """Return the values that a key sets in a scene. Raises LoomfmuError, naming the nearest known key."""
-    pairs = overridden(scene.instances, key, components(scene.instances))
+    pairs = overridden(scene.instances, key)
     if not pairs[0][0]:
         return _of_scene(key)
     found = [_variable(scene, key, instance, variable) for instance, variable in pairs]

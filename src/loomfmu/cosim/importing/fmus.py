@@ -5,7 +5,7 @@ import os
 import re
 import zipfile
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -35,6 +35,9 @@ from .built import (
 from .descriptions import declared_ports, is_ours, ports_of, unsupported_outputs
 from .facts import Facts, facts_of
 from .ports import Port, Value
+
+# outputs of a shaft: their units, and the outputs that are their rates
+SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
 
 __all__ = ["FLAVOURS", "Flavour", "Fmu", "Port", "Value", "file_of", "load", "of_class", "of_component"]
 
@@ -178,6 +181,11 @@ class Fmu:
         return self._plain_names.get(variable, variable)
 
     @cached_property
+    def outputs(self) -> list[str]:
+        """The names of its outputs."""
+        return [port.name for port in self.ports.values() if port.causality == "output"]
+
+    @cached_property
     def _plain_names(self) -> dict[str, str]:
         """The scene's names of the variables, by the FMU's own names; of two, the first."""
         return {port.own: port.name for port in reversed(self.ports.values())}
@@ -187,6 +195,28 @@ class Fmu:
         if name not in self.ports:
             raise LoomfmuError(f"{where}: {self.name} has no variable {name!r}{suggestion(name, self.ports)}")
         return self.ports[name]
+
+    def with_units(self, stated: Any, name: str) -> "Fmu":
+        """This FMU with the units that a scene states for its variables, where it states none."""
+        if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
+            raise LoomfmuError(f'{name}.units = {shown(stated)} must be a table of variable = "unit"')
+        ports = dict(self.ports)
+        for key, unit in stated.items():
+            port = self.port(self.name_of(key), f"{name}.units")
+            ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
+        return replace(self, ports=ports)
+
+    def as_shaft(self) -> "Fmu":
+        """This FMU in the place of the main shaft: it outputs the angle, and its other outputs are rates."""
+        ports = dict(self.ports)
+        for variable, (unit, rate) in SHAFT.items():
+            port = ports.get(variable)
+            fits = port is not None and port.causality == "output" and port.unit == unit
+            if port is not None and fits:
+                ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
+            elif variable == "angle":
+                raise LoomfmuError(f"{self.path}: the shaft of a scene must have an output angle in rad")
+        return replace(self, ports=ports)
 
 
 _known: dict[tuple[type[Component], str], Fmu] = {}

@@ -6,8 +6,8 @@ from typing import Any
 from ... import machines, units
 from ...errors import LoomfmuError, listed, one_line
 from ..standard import standard
+from .instance_tables import WEAVE, overridden
 from .instances import Instance
-from .overrides import WEAVE, components, overridden
 from .scene import Scene
 
 SPEED = "shaft.speed"
@@ -89,7 +89,7 @@ def _shown(scene: Scene, key: str, value: Any) -> str:
     if isinstance(value, str) and not units.is_plain(value):
         return value
     try:
-        name, variable = overridden(scene.instances, key, components(scene.instances))[0]
+        name, variable = overridden(scene.instances, key)[0]
         instance = scene.instances[name]
         return _quantity(instance, instance.fmu.name_of(variable))
     except (KeyError, LoomfmuError):  # the scene's own, such as its revolutions

@@ -1,12 +1,12 @@
-"""The tables of a scene's instances: which FMU each one names, and the values it gives."""
+"""The instances that a scene's tables name, and the values that they and `--set` give them."""
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from ... import machines
 from ...components import COMPONENTS
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LoomfmuError, listed, shown, suggestion
 from ...own import load
 from ...own.declared import FILES, PARAMETER_SETS
 from ..importing import fmus
@@ -14,12 +14,41 @@ from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
 from .instances import Instance
-from .keys import KEYS, check_name, is_numbered, stem
+from .keys import KEYS, TIMES, WHOLE, check_name, is_numbered, members, replaced, stem
 
-SHAFT = {"angle": ("rad", "velocity"), "velocity": ("rad/s", "acceleration"), "acceleration": ("rad/s2", "")}
+WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
 
-def instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
+class Given(NamedTuple):
+    """The instances of a scene, the keys that give them values, and the texts of the files that they name."""
+
+    instances: dict[str, Instance]
+    keys: list[tuple[str, str]]
+    texts: dict[str, str]
+
+
+def read(tables: dict[str, Any], overrides: Mapping[str, Any], directory: Path) -> Given:
+    """Read the instances of a scene, with other values; those of the scene's own keys go into its tables."""
+    rest = _override_weave(tables, overrides)
+    texts = standard().resolve(tables, directory)
+    given = _instance_tables(tables, directory)
+    for key in replaced(rest):
+        tables.pop(key, None)
+    changed = {key for key, value in rest.items() if override(given, key, value)}
+    instances = {name: Instance(name, _fmu_of(name, table, directory)) for name, table in given.items()}
+    for key in (key for key in rest if key not in changed):
+        for name, variable in overridden(instances, key):
+            if name:
+                given[name] = given[name] | {variable: rest[key]}
+            else:
+                tables[variable] = rest[key]
+    for name, table in given.items():
+        _set(instances[name], table)
+    keys = [(name, key) for name, table in given.items() for key in table]
+    return Given(instances, keys, texts | _own_texts(given.values(), directory))
+
+
+def _instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     """The table of each instance: the standard loom's, then what the scene says of each."""
     given = _loom(tables, directory)
     groups: set[str] = set()
@@ -57,18 +86,15 @@ def _loom(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
     return standard().instances_of(loom, directory)
 
 
-def instance(name: str, table: dict[str, Any], directory: Path) -> Instance:
-    """An instance with its values checked and in SI: a value of its own prevails over its machine's."""
-    fmu = fmu_of(name, table, directory)
-    found = Instance(name, fmu)
+def _set(instance: Instance, table: Mapping[str, Any]) -> None:
+    """Set its values, checked and in SI: a value of its own prevails over its machine's."""
     for key in sorted(table, key=lambda key: key not in PARAMETER_SETS):
-        if key != "component" and (key not in FILES or fmu.built):
-            found.set(key, table[key])
-    found.settle()
-    return found
+        if key != "component" and (key not in FILES or instance.fmu.built):
+            instance.set(key, table[key])
+    instance.settle()
 
 
-def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
+def _fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     """The FMU that a table names: a file, or one of our components."""
     for key in ("component", "fmu"):
         if not isinstance(table.get(key, ""), str):
@@ -83,12 +109,12 @@ def fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     if "component" in table:
         raise LoomfmuError(f"{name} has both a component and an fmu; keep one of them")
     try:
-        fmu = with_units(fmus.load(directory / table["fmu"]), table.get("units", {}), name)
+        fmu = fmus.load(directory / table["fmu"]).with_units(table.get("units", {}), name)
     except LoomfmuError as error:
         raise LoomfmuError(
             str(error) if str(error).startswith(f"{name}.") else f"{name}.fmu: {error}"
         ) from None
-    return as_shaft(fmu) if name == "shaft" else fmu
+    return fmu.as_shaft() if name == "shaft" else fmu
 
 
 def _of_component(name: str, component: str, directory: Path) -> Fmu:
@@ -101,31 +127,85 @@ def _of_component(name: str, component: str, directory: Path) -> Fmu:
         raise LoomfmuError(f"{name}.component: {error}") from None
 
 
-def own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, str]:
+def _own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, str]:
     """The texts of the Python files that instances are made of, by the names that the scene gives them."""
     named = [table["component"] for table in tables if load.is_file(table.get("component"))]
     return {file: text for component in named for file, text in load.texts(component, directory).items()}
 
 
-def with_units(fmu: Fmu, stated: Any, name: str) -> Fmu:
-    """An FMU with the units that a scene states for its variables, where the FMU states none."""
-    if not isinstance(stated, dict) or not all(isinstance(unit, str) for unit in stated.values()):
-        raise LoomfmuError(f'{name}.units = {shown(stated)} must be a table of variable = "unit"')
-    ports = dict(fmu.ports)
-    for key, unit in stated.items():
-        port = fmu.port(fmu.name_of(key), f"{name}.units")
-        ports[port.name] = port.with_unit(unit, None, f"{name}.units.{key}")
-    return replace(fmu, ports=ports)
+# ---- values that differ from the scene's
 
 
-def as_shaft(fmu: Fmu) -> Fmu:
-    """An FMU in the place of the main shaft: it outputs the angle, and its other outputs are the rates."""
-    ports = dict(fmu.ports)
-    for variable, (unit, rate) in SHAFT.items():
-        port = ports.get(variable)
-        fits = port is not None and port.causality == "output" and port.unit == unit
-        if port is not None and fits:
-            ports[variable] = replace(port, rate=port.rate or (rate if rate in ports else None))
-        elif variable == "angle":
-            raise LoomfmuError(f"{fmu.path}: the shaft of a scene must have an output angle in rad")
-    return replace(fmu, ports=ports)
+def _override_weave(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Change the weave of a scene's loom, if that is among the overrides; the other ones."""
+    if WEAVE in overrides:
+        if not isinstance(tables.get("loom"), dict):
+            raise LoomfmuError(f"{WEAVE}: the scene has no [loom]; set the pattern of a heald frame instead")
+        tables["loom"] = tables["loom"] | {"weave": overrides[WEAVE]}
+    return {key: value for key, value in overrides.items() if key != WEAVE}
+
+
+def override(given: dict[str, dict[str, Any]], key: str, value: Any) -> bool:
+    """Change one value in the tables of instances; false for a key that names none of them."""
+    instance, _, variable = key.partition(".")
+    named = [instance] if instance in given else members(instance, given)
+    if not variable:
+        return False
+    about = unit_of(variable)
+    for name in named:
+        if about:
+            stated = given[name].get("units", {})
+            value = {**stated, about: value} if isinstance(stated, dict) else stated
+        given[name] = given[name] | {"units" if about else variable: value}
+    return bool(named)
+
+
+def unit_of(key: str) -> str:
+    """The variable whose unit a key such as `units.flange.w` states; an empty text for other keys."""
+    return key.removeprefix("units.") if key.startswith("units.") else ""
+
+
+def overridden(instances: Mapping[str, Instance], key: str) -> list[tuple[str, str]]:
+    """Return the variables that a key of `--set` or of a sweep sets, as (instance, variable).
+
+    The scene's own keys have no instance. What the loom has one of, such as its machine, goes to all
+    instances that take something of it.
+    """
+    instance, dot, variable = key.partition(".")
+    if instance == "loom" and "loom" not in instances:
+        if key == WEAVE:
+            raise LoomfmuError(f"{key} cannot be set here: the scene's frames depend on it")
+        if variable not in machines.TAKERS:
+            raise LoomfmuError(f"{key} cannot be set{suggestion(variable, [*machines.TAKERS, 'weave'])}")
+        key, dot = variable, ""
+    if key in machines.TAKERS:
+        takers = machines.TAKERS[key]
+        found = [name for name, each in instances.items() if each.fmu.ours and each.fmu.name in takers]
+        if not found:
+            raise LoomfmuError(f"{key}: the scene has no {listed(takers, 'or')} to apply it to")
+        return [(name, key) for name in found]
+    if not dot:
+        if key not in (*TIMES, *WHOLE):
+            raise LoomfmuError(f"{shown(key)} cannot be set{_nearest(key, instances)}")
+        return [("", key)]
+    found = [instance] if instance in instances else members(instance, instances)
+    if not found:
+        raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, instances)}")
+    return [(member, variable) for member in found]
+
+
+def _nearest(key: str, instances: Mapping[str, Instance]) -> str:
+    """Return a suggestion for a key without an instance, as the end of a message."""
+    variables: dict[str, list[str]] = {}  # of each of our instances, those that can be set
+    for name, each in instances.items():
+        if each.fmu.ours and each.fmu.name in COMPONENTS:
+            declared = facts_of(COMPONENTS[each.fmu.name]).variables.values()
+            variables[name] = [variable.name for variable in declared if variable.settable]
+    for name in variables:
+        if key in (name, stem(name)):
+            return f": it is an instance; set one of its variables, such as {key}.{variables[name][0]}"
+    full = [WEAVE, *(f"{name}.{variable}" for name, each in variables.items() for variable in each)]
+    for name in full:
+        if name.partition(".")[2] == key:
+            return f"; did you mean {name!r}?"
+    return suggestion(key, [*TIMES, *WHOLE, *machines.TAKERS, *(f"{name}." for name in variables)])

@@ -14,7 +14,7 @@ from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
 from .graph import Wire
 from .keys import KEYS, stem
-from .tables import truth
+from .settings import truth
 
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 

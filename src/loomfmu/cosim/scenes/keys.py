@@ -1,10 +1,11 @@
-"""The keys of a scene: its own, and what its instances may be called."""
+"""The tables of a scene's text and their keys: its own, and the names that its instances may have."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+import tomllib
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
-from ...errors import LONGEST_NAME, LoomfmuError, shown
+from ...errors import LONGEST_NAME, LoomfmuError, check_text, shown
 from ...own.declared import ISOLATED
 
 COARSE = "coarse_steps_per_revolution"
@@ -25,6 +26,48 @@ KINDS = {
 }
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
 TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
+DEEPEST = 50  # tables and lists in one another
+TOO_DEEP = f"its tables or lists are nested more than {DEEPEST} deep"
+LONGEST_TEXT = 1_000_000  # characters of one text, such as a description
+
+
+def toml(text: str, kind: str = "") -> dict[str, Any]:
+    """The tables of a file's text. Raises LoomfmuError for what is not TOML, or no scene could hold.
+
+    A file that is plainly of another `kind` is refused, too, naming the command that takes it.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except RecursionError:
+        raise LoomfmuError(TOO_DEEP) from None
+    except tomllib.TOMLDecodeError as error:
+        raise LoomfmuError(f"not valid TOML: {error}") from None
+    except ValueError:  # what tomllib passes on from int() and from dates
+        raise LoomfmuError("not valid TOML: a number has too many digits, or a date does not exist") from None
+    for place, value in _texts(tables):
+        check_text(value, place, LONGEST_TEXT)
+    if kind:
+        _check_kind(tables, kind)
+    return tables
+
+
+def _texts(tables: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """The texts among the values, with the keys that lead to them; the keys are checked on the way."""
+    level: list[tuple[str, Any]] = [("", tables)]
+    for _ in range(DEEPEST):
+        below: list[tuple[str, Any]] = []
+        for place, value in level:
+            if isinstance(value, str):
+                yield place, value
+            elif isinstance(value, list):
+                below += [(place, each) for each in value]
+            elif isinstance(value, dict):
+                for key, each in value.items():
+                    check_text(key, "a key")
+                    below.append((f"{place}.{key}" if place else key, each))
+        level = below
+    if level:
+        raise LoomfmuError(TOO_DEEP)
 
 
 def replaced(keys: Collection[str]) -> tuple[str, ...]:
@@ -34,8 +77,7 @@ def replaced(keys: Collection[str]) -> tuple[str, ...]:
     return (ACCURACY,) if any(key in keys for key in CHOSEN) else ()
 
 
-def check_kind(tables: Mapping[str, Any], wanted: str) -> None:
-    """Refuse the tables of a file that is plainly of another kind, and name the command that takes it."""
+def _check_kind(tables: Mapping[str, Any], wanted: str) -> None:
     given = set(tables)
     marks = {kind: len(own & given) for kind, (_, own) in KINDS.items() if "scene" not in own - given}
     found = max(marks, key=lambda kind: marks[kind])

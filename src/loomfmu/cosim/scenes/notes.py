@@ -1,6 +1,7 @@
 """Warnings about a scene."""
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from ... import machines
@@ -13,9 +14,18 @@ from .instances import Instance
 
 
 def of_scene(
-    instances: dict[str, Instance], wires: list[Wire], drives: list[Drive], end: float
-) -> Iterable[str]:
-    """Warnings about a scene; `end` is where the run ends, as the tables of drives count it."""
+    tables: dict[str, Any],
+    directory: Path,
+    instances: dict[str, Instance],
+    wires: list[Wire],
+    drives: list[Drive],
+    keys: Iterable[tuple[str, str]],
+    end: float,
+) -> Iterator[str]:
+    """Warnings about a scene, whose `keys` are the values that it gives, as instance and key.
+
+    `end` is where the run ends, as the tables of drives count it.
+    """
     for drive in drives:
         if drive.periods[0] >= end:
             name, start = f"inputs.{drive.instance}.{drive.variable}", drive.periods[0]
@@ -32,6 +42,9 @@ def of_scene(
     yield from standard().mirrored(instances, wires)
     doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
+    yield from standard().added(tables, directory)
+    yield from _still(instances, tables.get("wires", {}), fed)
+    yield from (note for _, note in _switched_off(instances, keys))
 
 
 def _mixed(instances: dict[str, Instance], wires: list[Wire]) -> list[str]:
@@ -85,7 +98,7 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
                 yield f"{other} does not load {name}: {other}.{torque} is not wired"
 
 
-def still(
+def _still(
     instances: dict[str, Instance], wires: dict[str, Any], fed: Container[tuple[str, str]]
 ) -> Iterable[str]:
     """Warnings about mechanisms whose motion is cut off and has no other source or value."""
@@ -96,11 +109,6 @@ def still(
             cut = all(wires.get(f"{name}.{key}") is False for key in inputs)
             if cut and not any((name, key) in fed or key in each.values for key in inputs):
                 yield f"{name} does not move: {listed(inputs)} are cut and have no value"
-
-
-def without_effect(instances: dict[str, Instance], keys: Iterable[tuple[str, str]]) -> Iterable[str]:
-    """Warnings about values that a scene gives, but that another value switches off."""
-    return (note for _, note in _switched_off(instances, keys))
 
 
 def check_effect(

@@ -1,27 +1,21 @@
 """Scenes: what is simulated, for how long, what is recorded and what is claimed of it."""
 
 import math
-from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ... import files
-from ...errors import LoomfmuError, check_text
-from ...own.declared import ISOLATED
-from ..importing.ports import Port
+from ...errors import LoomfmuError
 from ..importing.process import AVAILABLE
-from ..standard import standard
-from . import notes, settings
+from . import notes
 from .drives import Drive
-from .graph import Wire
-from .instance_tables import instance, instance_tables, own_texts
+from .graph import Wire, step_order
+from .instance_tables import overridden, read
 from .instances import Instance
-from .keys import COARSE, GRIDS, KEYS, LAGGED, MAY_END, UNIFORM, check_kind, replaced
-from .overrides import components, overridden, override, override_weave
-from .tables import choice, number, toml, truth
-from .tables import text as text_of
-from .times import check_times, seconds, times_of
+from .keys import ITERATED, KEYS, LAGGED, UNIFORM, toml
+from .settings import Times, check_times, settings_of
 from .wiring import drives_of, wires_of
 
 
@@ -85,6 +79,11 @@ class Scene:
         return [name for name, each in self.instances.items() if not (each.fmu.built or self.isolates(name))]
 
     @property
+    def times(self) -> Times:
+        """Its duration and its steps."""
+        return Times(self.periods, self.steps_per_period, self.step)
+
+    @property
     def doubts(self) -> set[str]:
         """Warnings of values that were probably meant in another unit."""
         found = {doubt for each in self.instances.values() for doubt in each.doubts.values()}
@@ -114,7 +113,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:
     path = Path(path)
     text = files.text_of(path)
     try:
-        return replace(parse(text, path.stem, overrides, path.parent), file=path)
+        return parse(text, path.stem, overrides, path.parent, path)
     except LoomfmuError as error:
         raise LoomfmuError(f"{path}: {error}") from None
 
@@ -124,42 +123,29 @@ def parse(
     name: str = "scene",
     overrides: dict[str, Any] | None = None,
     directory: str | Path = ".",
+    file: Path | None = None,
 ) -> Scene:
     """A scene from its text; `overrides` are values such as {"shaft.speed": "685 rpm"}.
 
-    `directory` is where the files that the scene names are looked for.
+    `directory` is where the files that the scene names are looked for, `file` what its text was read from.
     """
-    tables = toml(text)
-    check_kind(tables, "scene")
-    rest = override_weave(tables, overrides or {})
-    texts = standard().resolve(tables, Path(directory))
-    given = instance_tables(tables, Path(directory))
-    for key in replaced(rest):
-        tables.pop(key, None)
-    for key, value in rest.items():
-        override(tables, given, key, value, Path(directory))
-    instances = {name: instance(name, table, Path(directory)) for name, table in given.items()}
-    wires = wires_of(instances, tables.get("wires", {}), tables.get("inputs"))
-    fed = {each.sink for each in wires}
-    for inheriting in instances.values():
-        inheriting.inherit(instances, fed)
-    for each in wires:
-        instances[each.sink[0]].follow(each)
-    scene = assemble(tables, instances, wires, name, text, Path(directory))
-    texts |= own_texts(given.values(), Path(directory))
-    scene = replace(scene, overrides=dict(overrides or {}), texts=texts)
+    tables = toml(text, "scene")
+    given = read(tables, overrides or {}, Path(directory))
+    scene = assemble(
+        tables,
+        given.instances,
+        wires_of(given.instances, tables),
+        given.keys,
+        name=name,
+        text=text,
+        directory=Path(directory),
+        file=file,
+        overrides=dict(overrides or {}),
+        texts=given.texts,
+    )
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
-    keys = [(owner, key) for owner, table in given.items() for key in table]
-    check_free(scene, keys)
-    doubts = (
-        *standard().added(tables, Path(directory)),
-        *notes.still(
-            instances, tables.get("wires", {}), fed | {(d.instance, d.variable) for d in scene.drives}
-        ),
-        *notes.without_effect(instances, keys),
-    )
-    return replace(scene, notes=(*scene.notes, *doubts))
+    return scene
 
 
 def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
@@ -184,61 +170,34 @@ def assemble(
     tables: dict[str, Any],
     instances: dict[str, Instance],
     wires: list[Wire],
-    name: str,
-    text: str,
-    directory: Path,
+    keys: Iterable[tuple[str, str]],
+    **origin: Any,
 ) -> Scene:
-    """A scene of wired instances, with what else the tables of its text say."""
-    times = times_of(tables)
+    """A scene of wired instances, with what else the tables of its text say, checked.
+
+    `keys` are the values that its text and `--set` give, as instance and key; `origin` are fields that say
+    what it was read from.
+    """
     drives = drives_of(instances, wires, tables.get("inputs", {}))
-    _check_switches(instances, {each.sink for each in wires} | {(d.instance, d.variable) for d in drives})
-    scene = Scene(
-        title=check_text(text_of(tables, "title", name), "title"),
-        description=text_of(tables, "description").strip(),
-        name=name,
-        text=text,
-        directory=directory,
-        periods=times.periods,
-        steps_per_period=times.steps_per_period,
-        instances=instances,
-        wires=wires,
-        drives=drives,
-        record=settings.recorded(instances, tables.get("record", ["*"])),
-        claims=settings.claims(tables.get("claims", [])),
-        tolerances=settings.tolerances(tables.get("tolerances", {})),
-        step=times.step,
-        coupling=settings.coupling(tables, instances, wires),
-        grid=choice(tables, "grid", GRIDS),
-        coarse_steps_per_revolution=int(
-            number(tables.get(COARSE, Scene.coarse_steps_per_revolution), COARSE, 1, 1e9, whole=True)
-        ),
-        accuracy=settings.accuracy(tables, times),
-        isolated=truth(tables[ISOLATED], ISOLATED) if ISOLATED in tables else None,
-        may_end=truth(tables.get(MAY_END, Scene.may_end), MAY_END),
-        step_timeout=seconds(tables.get("step_timeout", Scene.step_timeout), "step_timeout", 1e-3),
-        run_timeout=seconds(tables.get("run_timeout", Scene.run_timeout), "run_timeout", 1e-3),
-        notes=tuple(notes.of_scene(instances, wires, drives, times.periods)),
-    )
+    outputs = (f"{name}.{variable}" for name, each in instances.items() for variable in each.fmu.outputs)
+    fields = settings_of(tables, origin["name"], dict.fromkeys(outputs))
+    if fields["coupling"] is None:
+        fields["coupling"] = _usual_coupling(instances, wires)
+    scene = Scene(instances=instances, wires=wires, drives=drives, **fields, **origin)
     _check_single(scene)
     _check_tolerances(scene)
-    check_times(times, scene.speed if "speed" in _shaft_ports(instances) else None)
+    shaft = instances["shaft"].fmu.ports if "shaft" in instances else {}
+    check_times(scene.times, scene.speed if "speed" in shaft else None)
+    check_free(scene, keys)
+    found = notes.of_scene(tables, scene.directory, instances, wires, drives, keys, scene.periods)
+    scene.notes = (*scene.notes, *found)
     return scene
 
 
-def _shaft_ports(instances: dict[str, Instance]) -> dict[str, Port]:
-    return instances["shaft"].fmu.ports if "shaft" in instances else {}
-
-
-def _check_switches(instances: dict[str, Instance], fed: Collection[tuple[str, str]]) -> None:
-    """Refuse to use an input, such as the work of a mechanism, that comes from another instance but has no
-    source: its torque would do no work."""
-    for name, each in instances.items():
-        for switch, sink in each.switched():
-            if each.values.get(switch) and (name, sink) not in fed:
-                raise LoomfmuError(
-                    f"{name}.{switch} = true, but {name}.{sink} is not wired:"
-                    f" wire it, or set {name}.{switch} = false"
-                )
+def _usual_coupling(instances: dict[str, Instance], wires: list[Wire]) -> str:
+    """Return how loops are closed unless the scene says otherwise: iterated where all FMUs are ours."""
+    _order, closing = step_order(instances, wires)
+    return ITERATED if closing and all(each.fmu.trusted for each in instances.values()) else LAGGED
 
 
 def _check_single(scene: Scene) -> None:
@@ -259,7 +218,7 @@ def _check_tolerances(scene: Scene) -> None:
     """Refuse tolerances of what `--set` cannot set either, and ends that are not among its values."""
     for key, ends in scene.tolerances.items():
         try:
-            pairs = overridden(scene.instances, key, components(scene.instances))
+            pairs = overridden(scene.instances, key)
             if not pairs[0][0]:
                 raise LoomfmuError(f"{key} cannot have a tolerance, only parameters and inputs can")
             check_free(scene, pairs)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from .keys import toml
 from .scene import Scene
-from .tables import toml
 
 
 def files_of(scene: Scene) -> list[Path]:

@@ -1,18 +1,74 @@
-"""The scene's own keys: what is recorded and claimed, tolerances, accuracy and coupling."""
+"""The scene's own keys: how long it runs, in which steps, what is recorded and claimed."""
 
 import fnmatch
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
 from typing import Any
 
-from ...errors import LoomfmuError, shown, suggestion
-from .graph import Wire, step_order
-from .instances import Instance
-from .keys import ACCURACY, CHOSEN, COUPLINGS, ITERATED, LAGGED
-from .tables import choice, number
-from .times import Times
+from ... import units
+from ...errors import LoomfmuError, check_text, listed, shown, suggestion
+from ...own.declared import ISOLATED
+from .keys import ACCURACY, CHOSEN, COARSE, COUPLINGS, GRIDS, MAY_END, TIMES
+
+SLOWEST = 1e-12  # rad/s: below, times overflow
+ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
+EXAMPLES = {"duration": "2 s", "step": "1 ms"}
 
 
-def accuracy(tables: dict[str, Any], times: Times) -> float | None:
+@dataclass(frozen=True)
+class Times:
+    """A run of `periods`, each in `steps_per_period`: revolutions, or seconds if there is a `step`."""
+
+    periods: float
+    steps_per_period: float
+    step: float | None = None
+
+
+def settings_of(tables: dict[str, Any], name: str, outputs: Collection[str]) -> dict[str, Any]:
+    """Read the scene's own keys, as fields of a scene that is called so and has these outputs.
+
+    Its coupling is None where the tables do not say it.
+    """
+    times = _times(tables)
+    return {
+        "periods": times.periods,
+        "steps_per_period": times.steps_per_period,
+        "step": times.step,
+        "title": check_text(text(tables, "title", name), "title"),
+        "description": text(tables, "description").strip(),
+        "record": _recorded(tables.get("record", ["*"]), outputs),
+        "claims": _claims(tables.get("claims", [])),
+        "tolerances": _tolerances(tables.get("tolerances", {})),
+        "coupling": choice(tables, "coupling", COUPLINGS) if "coupling" in tables else None,
+        "grid": choice(tables, "grid", GRIDS),
+        "accuracy": _accuracy(tables, times),
+        **{key: read(tables[key], key) for key, read in READERS.items() if key in tables},
+    }
+
+
+def _times(tables: dict[str, Any]) -> Times:
+    """Duration and step as the tables of a scene say them. Raises LoomfmuError for a mixture of both ways."""
+    given = [key for key in TIMES if key in tables]
+    if not {"duration", "step"} & set(given):
+        revolutions = number(tables.get("revolutions", 1), "revolutions", 1e-9, 1e9)
+        steps = number(tables.get("steps_per_revolution", 1440), "steps_per_revolution", 1, 1e9, whole=True)
+        return Times(revolutions, int(steps))
+    if len(given) == 1:
+        missing = "duration" if given == ["step"] else "step"
+        raise LoomfmuError(
+            f'{given[0]} is given but not {missing}: say {missing} = "{EXAMPLES[missing]}" as well'
+        )
+    if set(given) != {"duration", "step"}:
+        raise LoomfmuError(
+            f"{listed(given)}: a scene runs either by duration and step,"
+            " or by revolutions and steps_per_revolution"
+        )
+    duration, step = (seconds(tables[key], key, 1e-12) for key in ("duration", "step"))
+    return Times(duration, 1.0 / step, step)
+
+
+def _accuracy(tables: dict[str, Any], times: Times) -> float | None:
     """The accuracy that chooses the steps. Raises LoomfmuError beside what it chooses, or without claims."""
     if ACCURACY not in tables:
         return None
@@ -33,19 +89,10 @@ def accuracy(tables: dict[str, Any], times: Times) -> float | None:
     return number(tables[ACCURACY], ACCURACY, 1e-12, 1.0)
 
 
-def coupling(tables: dict[str, Any], instances: dict[str, Instance], wires: list[Wire]) -> str:
-    """Return how loops are closed: iterated, unless the scene says otherwise or an FMU is not ours."""
-    if "coupling" not in tables:
-        _order, closing = step_order(instances, wires)
-        return ITERATED if closing and all(each.fmu.trusted for each in instances.values()) else LAGGED
-    return choice(tables, "coupling", COUPLINGS)
-
-
-def recorded(instances: dict[str, Instance], patterns: Any) -> list[str]:
-    """The outputs that match one of the patterns, in the order of the scene."""
+def _recorded(patterns: Any, outputs: Collection[str]) -> list[str]:
+    """Return the outputs that match one of the patterns, in the order of the scene."""
     if not isinstance(patterns, list):
         raise LoomfmuError(f'record = {shown(patterns)} is not a list such as ["belt.*", "weft.travel"]')
-    outputs = dict.fromkeys(_outputs(instances.values()))
     wanted: set[str] = set()
     for pattern in map(str, patterns):
         matched = [pattern] if pattern in outputs else fnmatch.filter(outputs, pattern)
@@ -55,21 +102,14 @@ def recorded(instances: dict[str, Instance], patterns: Any) -> list[str]:
     return [output for output in outputs if output in wanted]
 
 
-def _outputs(instances: Iterable[Instance]) -> Iterable[str]:
-    for each in instances:
-        for port in each.fmu.ports.values():
-            if port.causality == "output":
-                yield f"{each.name}.{port.name}"
-
-
-def claims(tables: Any) -> list[dict[str, Any]]:
+def _claims(tables: Any) -> list[dict[str, Any]]:
     """The tables of the claims."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise LoomfmuError("claims are written as [[claims]] tables")
     return tables
 
 
-def tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
+def _tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
     """The ends between which values may lie, by their keys."""
     if not isinstance(table, dict):
         raise LoomfmuError(
@@ -86,3 +126,101 @@ def tolerances(table: Any) -> dict[str, tuple[Any, Any]]:
                 f'tolerances: {key} = {shown(ends)} must be two ends such as ["0.2 mm", "0.5 mm"]'
             )
     return {key: (ends[0], ends[1]) for key, ends in table.items()}
+
+
+def check_times(times: Times, speed: float | None) -> None:
+    """Refuse times that are not a whole number of steps; `speed` is the shaft's, if there is one [rad/s]."""
+    steps = round(times.periods * times.steps_per_period)
+    if times.step is not None:
+        if steps < 1:
+            raise LoomfmuError(
+                f"duration = {times.periods:g} s in steps of {times.step:g} s is less than one step"
+            )
+        _check_whole(times, "duration", " s", f"{times.step:g} s")
+        return
+    if speed is None:
+        raise LoomfmuError(
+            'there is no shaft whose speed sets the step: add duration = "2 s" and step = "1 ms"'
+        )
+    if speed == 0.0:
+        raise LoomfmuError("shaft.speed = 0 rev/min: the shaft's speed sets the step, so it must not be 0")
+    if abs(speed) < SLOWEST:
+        shown = f"{speed / units.unit('rev/min').factor:.7g} rev/min"
+        raise LoomfmuError(
+            f"shaft.speed = {shown}: one revolution would take {2.0 * math.pi / SLOWEST:.1g} s or more"
+        )
+    if steps < 1:
+        raise LoomfmuError(
+            f"revolutions = {times.periods:g} at {times.steps_per_period} steps each is less than one step"
+        )
+    _check_whole(times, "revolutions", "", f"1/{times.steps_per_period:g} revolution")
+
+
+def _check_whole(times: Times, key: str, unit: str, step: str) -> None:
+    """Refuse a duration that does not end with a step: the run would be shorter or longer."""
+    wanted = times.periods * times.steps_per_period
+    if abs(wanted - round(wanted)) > ROUNDING * wanted:
+        fitting = [n / times.steps_per_period for n in (math.floor(wanted), math.ceil(wanted)) if n]
+        raise LoomfmuError(
+            f"{key} = {times.periods:.10g}{unit} is {wanted:.7g} steps of {step}, not a whole number of"
+            f" steps; these would fit: {' or '.join(f'{each:.10g}{unit}' for each in fitting)}"
+        )
+
+
+# ---- values
+
+
+def text(tables: dict[str, Any], key: str, default: str = "") -> str:
+    """A text."""
+    given = tables.get(key, default)
+    if not isinstance(given, str):
+        raise LoomfmuError(f"{key} = {shown(given)} is not a text in quotes")
+    return given
+
+
+def choice(tables: dict[str, Any], key: str, known: tuple[str, ...]) -> str:
+    """One of some words; the first one by default."""
+    given = tables.get(key, known[0])
+    if given not in known:
+        raise LoomfmuError(f"{key} = {shown(given)} is unknown{suggestion(str(given), known)}")
+    return str(given)
+
+
+def number(given: Any, where: str, low: float, high: float, whole: bool = False) -> float:
+    """A plain number within bounds."""
+    try:
+        value = float(given if not isinstance(given, bool) else "")
+    except (TypeError, ValueError):
+        raise LoomfmuError(f"{where} = {shown(given)} is not a number") from None
+    except OverflowError:
+        raise LoomfmuError(f"{where} = {shown(given)} is outside [{low:g}, {high:g}]") from None
+    if not low <= value <= high:
+        raise LoomfmuError(f"{where} = {value:g} is outside [{low:g}, {high:g}]")
+    if whole and value != int(value):
+        raise LoomfmuError(f"{where} = {value:g} is not a whole number")
+    return value
+
+
+def truth(given: Any, where: str) -> bool:
+    """A truth value as people write it."""
+    if str(given).lower() not in ("true", "false"):
+        raise LoomfmuError(f"{where} = {given!r} must be true or false")
+    return str(given).lower() == "true"
+
+
+def seconds(given: Any, key: str, low: float) -> float:
+    """A time within bounds [s]."""
+    try:
+        return number(units.parse(given, "s"), key, low, 1e9)
+    except units.UnitError as error:
+        raise LoomfmuError(f"{key}: {error}") from None
+
+
+# the keys that say one thing each, and how they are read; a scene has their defaults
+READERS: dict[str, Callable[[Any, str], Any]] = {
+    COARSE: lambda given, key: int(number(given, key, 1, 1e9, whole=True)),
+    ISOLATED: truth,
+    MAY_END: truth,
+    "step_timeout": lambda given, key: seconds(given, key, 1e-3),
+    "run_timeout": lambda given, key: seconds(given, key, 1e-3),
+}

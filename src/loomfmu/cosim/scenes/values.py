@@ -7,10 +7,10 @@ from ...components.shaft_driven import FOLLOWING
 from ...errors import LoomfmuError
 from ...machines import TAKERS
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
+from .instance_tables import overridden
 from .instances import Instance, altered
-from .overrides import components, overridden
 from .scene import Scene
-from .times import Times, check_times
+from .settings import check_times
 
 NOT_VALUES = (*PARAMETER_SETS, *FILES, ISOLATED)
 
@@ -22,7 +22,6 @@ class Values:
         self.scene = scene
         self._targets: dict[str, list[tuple[str, str]]] = {}
         self._fed = {wire.sink for wire in scene.wires} | {(d.instance, d.variable) for d in scene.drives}
-        self._times = Times(scene.periods, scene.steps_per_period, scene.step)
 
     def targets(self, key: str) -> list[tuple[str, str]]:
         """Return the variables that a key sets, as (instance, variable), or an empty list if it is not a
@@ -40,7 +39,7 @@ class Values:
         if scene.package is not None:  # a value may stand for several of its own
             return []
         try:
-            pairs = overridden(scene.instances, key, components(scene.instances))
+            pairs = overridden(scene.instances, key)
         except LoomfmuError:
             return []
         return (
@@ -91,5 +90,5 @@ class Values:
                 return None  # its values change what the scene warns of
         scene = altered(self.scene, instances=self.scene.instances | changed, overrides=overrides)
         if "shaft" in changed and "speed" in scene.instances["shaft"].fmu.ports:
-            check_times(self._times, scene.speed)
+            check_times(scene.times, scene.speed)
         return scene

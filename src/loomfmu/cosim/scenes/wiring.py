@@ -18,11 +18,12 @@ from .keys import is_numbered, members, stem
 Known = Mapping[str, Facts]  # of the instances whose component is known, by their names
 
 
-def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None) -> list[Wire]:
-    """The standard loom's wires where both ends are there, and those that the scene spells out.
+def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[Wire]:
+    """The standard loom's wires where both ends are there, and those that the tables of a scene spell out.
 
-    `driven` is the table of the inputs that the scene drives.
+    Values that instances inherit from others, and switches that go with wires, are set.
     """
+    spelt_out, driven = scene.get("wires", {}), scene.get("inputs")
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     spelt = dotted(spelt_out)
@@ -45,7 +46,13 @@ def wires_of(instances: dict[str, Instance], spelt_out: Any, driven: Any = None)
                 raise LoomfmuError(f"wires: {sink!r} is not wired{suggestion(sink, sources)}")
         else:
             sources[sink] = source
-    return [wire(instances, sink, source) for sink, source in sources.items()]
+    wires = [wire(instances, sink, source) for sink, source in sources.items()]
+    fed = {each.sink for each in wires}
+    for inheriting in instances.values():
+        inheriting.inherit(instances, fed)
+    for each in wires:
+        instances[each.sink[0]].follow(each)
+    return wires
 
 
 def dotted(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -86,7 +93,11 @@ def wire(instances: dict[str, Instance], sink: str, source: Any) -> Wire:
 
 
 def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> list[Drive]:
-    """The inputs that the scene drives along tables; an input has one source."""
+    """The inputs that the scene drives along tables; an input has one source.
+
+    Refuses to use an input, such as the work of a mechanism, that comes from another instance but has no
+    source: its torque would do no work.
+    """
     if not isinstance(table, dict):
         raise LoomfmuError('inputs must be a table of "instance.input" = [[revolution, value], ...]')
     drives = []
@@ -97,6 +108,14 @@ def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> 
         if (owner, variable) in wired:
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
         drives.append(drive(name, instances[owner].fmu.port(variable, f"inputs.{name}"), rows))
+    fed = wired | {(each.instance, each.variable) for each in drives}
+    for name, instance in instances.items():
+        for switch, sink in instance.switched():
+            if instance.values.get(switch) and (name, sink) not in fed:
+                raise LoomfmuError(
+                    f"{name}.{switch} = true, but {name}.{sink} is not wired:"
+                    f" wire it, or set {name}.{switch} = false"
+                )
     return drives
 
 

@@ -17,13 +17,10 @@ from ...own.declared import PARAMETER_SETS
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instance_tables import as_shaft, with_units
+from ..scenes.instance_tables import overridden, override, unit_of
 from ..scenes.instances import Instance
-from ..scenes.keys import TIMES, check_name
-from ..scenes.notes import without_effect
-from ..scenes.overrides import components, overridden, override, unit_of
-from ..scenes.scene import Scene, assemble, check_free
-from ..scenes.tables import DEEPEST, toml
+from ..scenes.keys import DEEPEST, TIMES, check_name, toml
+from ..scenes.scene import Scene, assemble
 from .connections import wires_of
 from .package import Package
 from .values import Given, apply, bound
@@ -92,16 +89,19 @@ class _Reader:
         changed = _override(tables, instances, overrides)
         written = self.package.text(SSD_FILE) if annotation is None else annotation.text
         path = self.package.path
-        made = assemble(tables, instances, wires, path.stem, written or "", path.parent)
-        made = replace(
-            made,
+        return assemble(
+            tables,
+            instances,
+            wires,
+            changed,
+            name=path.stem,
+            text=written or "",
+            directory=path.parent,
             package=path,
             package_sha256=self.package.sha256,
-            notes=(*self.notes, *made.notes),
+            notes=tuple(self.notes),
             overrides=dict(overrides),
         )
-        check_free(made, changed)
-        return replace(made, notes=(*made.notes, *without_effect(instances, changed)))
 
     def _scene_of_ours(self) -> Element | None:
         """The text of the scene, if the package is ours; those of version 0.1.0 have it at the root's end."""
@@ -139,9 +139,9 @@ class _Reader:
         if element.get("type", FMU) != FMU:
             raise LoomfmuError(f"{name}: {shown(source)} is not an FMU but {shown(element.get('type'))}")
         loaded = fmus.load(self.package.unpacked(source))
-        fmu = self._with_units(with_units(loaded, stated, name), element, name)
+        fmu = self._with_units(loaded.with_units(stated, name), element, name)
         if name == "shaft" and "angle" in fmu.ports:
-            fmu = as_shaft(fmu)
+            fmu = fmu.as_shaft()
         instance = Instance(name, fmu)
         self.notes += filter(None, [apply(instance, given) for given in values])
         if fmu.ours and not ours:  # whatever was meant for another master: ours works in dependency order
@@ -234,7 +234,7 @@ def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any
     tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
     for key, value in overrides.items():
         if unit_of(key.partition(".")[2]):
-            override({}, tables, key, value, Path())
+            override(tables, key, value)
     return {name: table["units"] for name, table in tables.items()}
 
 
@@ -245,7 +245,7 @@ def _override(
     changed = [
         (name, variable, value)
         for key, value in overrides.items()
-        for name, variable in overridden(instances, key, components(instances))
+        for name, variable in overridden(instances, key)
         if not unit_of(variable)  # units are known from the beginning
     ]
     for name, variable, value in sorted(changed, key=lambda each: each[1] not in PARAMETER_SETS):

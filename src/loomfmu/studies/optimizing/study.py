@@ -10,8 +10,8 @@ from typing import Any
 from ...cosim.claims.measures import measure, signal_in
 from ...cosim.importing.fmus import Flavour
 from ...cosim.planning.requested import output_port
+from ...cosim.scenes.keys import toml
 from ...cosim.scenes.scene import Scene
-from ...cosim.scenes.tables import toml
 from ...errors import LoomfmuError, listed, shown, suggestion
 from ...files import text_of
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
@@ -185,7 +185,7 @@ def load(path: Path) -> Study:
 
 
 def _parse(text: str, path: Path) -> Study:
-    tables = toml(text)
+    tables = toml(text, "study")
     head = header(tables, path, KEYS, "study")
     found = _variables(head, tables)
     goals = _goals(head.scene, tables, found)
