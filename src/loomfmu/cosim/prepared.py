@@ -6,7 +6,7 @@ import threading
 from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, get_args
@@ -43,7 +43,6 @@ class Pattern:
 
     def __init__(self, requested: Requested, values: Sequence[str], measures: Sequence[Claim] = ()):
         self.scene, self.claims, self._requested = requested.scene, requested.claims, requested
-        self.values = Values(requested.scene)
         deciding = {number: requested.decider(claim) for number, claim in enumerate(self.claims)}
         # a yes-or-no output is as sure as the number whose sign it is, which is estimated with the claims
         deciders = {number: measure(signal) for number, signal in deciding.items() if signal}
@@ -58,6 +57,11 @@ class Pattern:
         self._estimates = Estimates(requested, self._all, self._on, len(needed), places)
         self.judged = tuple(dict.fromkeys([*needed, *self._estimates.shown]))
         self._steps = 0  # in a revolution, as they were chosen last
+
+    @cached_property
+    def values(self) -> Values:
+        """Other values for the scene."""
+        return Values(self.scene)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""

@@ -29,7 +29,7 @@ def requested(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavo
         for name, instance in scene.instances.items():
             if not instance.fmu.built:  # one that is built waits until it is needed
                 instance.fmu.check_platform(name)
-        _check_step_timeout(scene)
+        scene.check_step_timeout()
         return checked_claims(scene)
     except LoomfmuError as error:
         raise LoomfmuError(f"{place}{error}") from None
@@ -41,18 +41,6 @@ def protected(scene: Scene) -> Scene:
         names = listed(scene.unprotected)
         raise LoomfmuError(f"{names} could end this process before all runs are done; set isolated = true")
     return scene
-
-
-def _check_step_timeout(scene: Scene) -> None:
-    """Refuse a `step_timeout` in a scene with no FMU that it could stop."""
-    stoppable = any(
-        scene.isolates(name) or each.fmu.flavour == "live" for name, each in scene.instances.items()
-    )
-    if scene.step_timeout != Scene.step_timeout and not stoppable:
-        raise LoomfmuError(
-            f"step_timeout = {scene.step_timeout:g} s cannot stop native FMUs in this process;"
-            " set isolated = true, or run live ones (--live)"
-        )
 
 
 def read(scene: str | Path | Scene, overrides: dict[str, Any] | None) -> Scene:

@@ -17,7 +17,7 @@ from loomfmu.components import WeftInsertion
 from loomfmu.cosim.importing import fmus, pool
 from loomfmu.cosim.importing.ports import Port
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.drives import drive
+from loomfmu.cosim.scenes.graph import drive
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.machines import parameters
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loomfmu.cosim.scenes.drives import Drive
+from loomfmu.cosim.scenes.graph import Drive
 
 VALUES = st.floats(-1e6, 1e6, allow_subnormal=False)
 

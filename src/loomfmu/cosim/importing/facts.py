@@ -1,7 +1,7 @@
 """Facts that follow from the declarations of a component, computed once for each class."""
 
 from ...components.terminals import SHAFT
-from ...declaring.variables import Component, Terminal, arrays_of, variables_of
+from ...declaring.variables import Component, arrays_of, variables_of
 
 ALL = "*."  # in the place of an instance: the output of that name of every instance that has it
 
@@ -41,10 +41,6 @@ class Facts:
         # it has a speed of its own and no way to follow a shaft
         turning = any(each.causality == "parameter" and each.unit == "rad/s" for each in declared)
         self.turns_alone = turning and not self.turns_others and not self.shaft_inputs
-
-    def offers(self, kind: str) -> Terminal:
-        """Return its terminal of a kind."""
-        return next(each for each in self.offered if each.kind == kind)
 
 
 _known: dict[type[Component], Facts] = {}

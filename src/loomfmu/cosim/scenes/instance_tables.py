@@ -1,6 +1,6 @@
 """The instances that a scene's tables name, and the values that they and `--set` give them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +14,7 @@ from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
 from .instances import Instance
-from .keys import KEYS, TIMES, WHOLE, check_name, is_numbered, members, replaced, stem
+from .keys import KEYS, TIMES, WHOLE, check_name, is_numbered, members, stem
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 
@@ -32,10 +32,10 @@ def read(tables: dict[str, Any], overrides: Mapping[str, Any], directory: Path) 
     rest = _override_weave(tables, overrides)
     texts = standard().resolve(tables, directory)
     given = _instance_tables(tables, directory)
-    for key in replaced(rest):
-        tables.pop(key, None)
     changed = {key for key, value in rest.items() if override(given, key, value)}
-    instances = {name: Instance(name, _fmu_of(name, table, directory)) for name, table in given.items()}
+    instances = {
+        name: Instance(name, _fmu_of(name, table, directory, texts)) for name, table in given.items()
+    }
     for key in (key for key in rest if key not in changed):
         for name, variable in overridden(instances, key):
             if name:
@@ -45,7 +45,7 @@ def read(tables: dict[str, Any], overrides: Mapping[str, Any], directory: Path) 
     for name, table in given.items():
         _set(instances[name], table)
     keys = [(name, key) for name, table in given.items() for key in table]
-    return Given(instances, keys, texts | _own_texts(given.values(), directory))
+    return Given(instances, keys, texts)
 
 
 def _instance_tables(tables: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
@@ -94,14 +94,17 @@ def _set(instance: Instance, table: Mapping[str, Any]) -> None:
     instance.settle()
 
 
-def _fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
-    """The FMU that a table names: a file, or one of our components."""
+def _fmu_of(name: str, table: dict[str, Any], directory: Path, texts: dict[str, str]) -> Fmu:
+    """The FMU that a table names: a file, or one of our components.
+
+    The texts of a component's Python files are added, by the names that the scene gives them.
+    """
     for key in ("component", "fmu"):
         if not isinstance(table.get(key, ""), str):
             raise LoomfmuError(f"{name}.{key} = {shown(table[key])} is not a name in quotes")
     component = str(table.get("component", standard().COMPONENT_OF.get(stem(name))))
     if "fmu" not in table:
-        fmu = _of_component(name, component, directory)
+        fmu = _of_component(name, component, directory, texts)
         if name == "shaft" and not (fmu.facts and fmu.facts.turns_others):
             known = " or a ".join(name for name, each in COMPONENTS.items() if facts_of(each).turns_others)
             raise LoomfmuError(f"shaft.component = {component!r}: the shaft of a scene must be a {known}")
@@ -117,20 +120,16 @@ def _fmu_of(name: str, table: dict[str, Any], directory: Path) -> Fmu:
     return fmu.as_shaft() if name == "shaft" else fmu
 
 
-def _of_component(name: str, component: str, directory: Path) -> Fmu:
+def _of_component(name: str, component: str, directory: Path, texts: dict[str, str]) -> Fmu:
     """The FMU of a component: one of ours, or one of a Python file, which is run."""
     if not load.is_file(component):
         return fmus.of_component(component)
     try:
-        return fmus.of_class(load.component(component, directory))
+        made = load.component(component, directory)
+        texts |= load.texts(component, directory)
+        return fmus.of_class(made)
     except LoomfmuError as error:
         raise LoomfmuError(f"{name}.component: {error}") from None
-
-
-def _own_texts(tables: Iterable[dict[str, Any]], directory: Path) -> dict[str, str]:
-    """The texts of the Python files that instances are made of, by the names that the scene gives them."""
-    named = [table["component"] for table in tables if load.is_file(table.get("component"))]
-    return {file: text for component in named for file, text in load.texts(component, directory).items()}
 
 
 # ---- values that differ from the scene's

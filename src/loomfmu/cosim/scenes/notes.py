@@ -8,8 +8,7 @@ from ... import machines
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError, listed
 from ..standard import standard
-from .drives import Drive
-from .graph import Wire
+from .graph import Drive, Wire
 from .instances import Instance
 
 

@@ -1,7 +1,7 @@
 """Scenes: what is simulated, for how long, what is recorded and what is claimed of it."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,12 +10,11 @@ from ... import files
 from ...errors import LoomfmuError
 from ..importing.process import AVAILABLE
 from . import notes
-from .drives import Drive
-from .graph import Wire, step_order
+from .graph import Drive, Wire, usual_coupling
 from .instance_tables import overridden, read
 from .instances import Instance
-from .keys import ITERATED, KEYS, LAGGED, UNIFORM, toml
-from .settings import Times, check_times, settings_of
+from .keys import KEYS, LAGGED, UNIFORM, replaced, toml
+from .settings import Times, settings_of
 from .wiring import drives_of, wires_of
 
 
@@ -73,6 +72,17 @@ class Scene:
         stated = self.isolated if instance.isolated is None else instance.isolated
         return AVAILABLE and not instance.fmu.trusted if stated is None else stated
 
+    def check_step_timeout(self) -> None:
+        """Refuse a `step_timeout` in a scene with no FMU that it could stop."""
+        stoppable = (
+            self.isolates(name) or each.fmu.flavour == "live" for name, each in self.instances.items()
+        )
+        if self.step_timeout != Scene.step_timeout and not any(stoppable):
+            raise LoomfmuError(
+                f"step_timeout = {self.step_timeout:g} s cannot stop native FMUs in this process;"
+                " set isolated = true, or run live ones (--live)"
+            )
+
     @property
     def unprotected(self) -> list[str]:
         """The instances that run in this process and whose FMUs were given as files: they may end it."""
@@ -92,8 +102,9 @@ class Scene:
     @property
     def speed(self) -> float:
         """Mean speed of the main shaft [rad/s]."""
-        shaft = self.instances["shaft"]
-        return float(shaft.values.get("speed", shaft.fmu.ports["speed"].start or 0.0))
+        speed = _speed(self.instances)
+        assert speed is not None, "a scene without a shaft has steps of its own"
+        return speed
 
     @property
     def step_size(self) -> float:
@@ -130,11 +141,14 @@ def parse(
     `directory` is where the files that the scene names are looked for, `file` what its text was read from.
     """
     tables = toml(text, "scene")
+    for key in replaced(overrides or {}):
+        tables.pop(key, None)
     given = read(tables, overrides or {}, Path(directory))
+    wires = wires_of(given.instances, tables)
     scene = assemble(
         tables,
         given.instances,
-        wires_of(given.instances, tables),
+        wires,
         given.keys,
         name=name,
         text=text,
@@ -178,26 +192,28 @@ def assemble(
     `keys` are the values that its text and `--set` give, as instance and key; `origin` are fields that say
     what it was read from.
     """
+    speed = _speed(instances)
     drives = drives_of(instances, wires, tables.get("inputs", {}))
     outputs = (f"{name}.{variable}" for name, each in instances.items() for variable in each.fmu.outputs)
-    fields = settings_of(tables, origin["name"], dict.fromkeys(outputs))
+    fields = settings_of(tables, origin["name"], dict.fromkeys(outputs), speed)
     if fields["coupling"] is None:
-        fields["coupling"] = _usual_coupling(instances, wires)
+        trusted = all(each.fmu.trusted for each in instances.values())
+        fields["coupling"] = usual_coupling(instances, wires, trusted)
     scene = Scene(instances=instances, wires=wires, drives=drives, **fields, **origin)
     _check_single(scene)
     _check_tolerances(scene)
-    shaft = instances["shaft"].fmu.ports if "shaft" in instances else {}
-    check_times(scene.times, scene.speed if "speed" in shaft else None)
     check_free(scene, keys)
     found = notes.of_scene(tables, scene.directory, instances, wires, drives, keys, scene.periods)
     scene.notes = (*scene.notes, *found)
     return scene
 
 
-def _usual_coupling(instances: dict[str, Instance], wires: list[Wire]) -> str:
-    """Return how loops are closed unless the scene says otherwise: iterated where all FMUs are ours."""
-    _order, closing = step_order(instances, wires)
-    return ITERATED if closing and all(each.fmu.trusted for each in instances.values()) else LAGGED
+def _speed(instances: Mapping[str, Instance]) -> float | None:
+    """The mean speed of the main shaft [rad/s], if there is one that has a speed."""
+    shaft = instances.get("shaft")
+    if shaft is None or "speed" not in shaft.fmu.ports:
+        return None
+    return float(shaft.values.get("speed", shaft.fmu.ports["speed"].start or 0.0))
 
 
 def _check_single(scene: Scene) -> None:

@@ -25,12 +25,15 @@ class Times:
     step: float | None = None
 
 
-def settings_of(tables: dict[str, Any], name: str, outputs: Collection[str]) -> dict[str, Any]:
+def settings_of(
+    tables: dict[str, Any], name: str, outputs: Collection[str], speed: float | None
+) -> dict[str, Any]:
     """Read the scene's own keys, as fields of a scene that is called so and has these outputs.
 
-    Its coupling is None where the tables do not say it.
+    `speed` is the shaft's, if there is one [rad/s]. The coupling is None where the tables do not say it.
     """
     times = _times(tables)
+    check_times(times, speed)
     return {
         "periods": times.periods,
         "steps_per_period": times.steps_per_period,

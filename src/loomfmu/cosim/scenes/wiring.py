@@ -10,8 +10,7 @@ from ...errors import LoomfmuError, shown, suggestion
 from ..importing.facts import ALL, Facts, facts_of
 from ..importing.ports import mismatch
 from ..standard import standard
-from .drives import Drive, drive, split
-from .graph import Wire
+from .graph import Drive, Wire, drive
 from .instances import Instance
 from .keys import is_numbered, members, stem
 
@@ -103,7 +102,9 @@ def drives_of(instances: dict[str, Instance], wires: list[Wire], table: Any) -> 
     drives = []
     wired = {each.sink for each in wires}
     for name, rows in dotted(table).items():
-        owner, variable = split(name, instances)
+        owner, _, variable = name.partition(".")
+        if owner not in instances:
+            raise LoomfmuError(f"inputs.{name}: there is no instance {owner!r}{suggestion(owner, instances)}")
         variable = instances[owner].fmu.name_of(variable)
         if (owner, variable) in wired:
             raise LoomfmuError(f'inputs.{name} is wired already; cut that wire with wires."{name}" = false')
@@ -281,4 +282,5 @@ def gathered(name: str, known: Known, given: Mapping[str, Any]) -> dict[str, str
 
 def _usual(terminal: Terminal, owner: str) -> tuple[str, ...]:
     """The outputs that a terminal is wired to in a standard loom."""
-    return facts_of(COMPONENTS[standard().COMPONENT_OF[stem(owner)]]).offers(terminal.name).variables
+    feeding = facts_of(COMPONENTS[standard().COMPONENT_OF[stem(owner)]])
+    return next(each.variables for each in feeding.offered if each.kind == terminal.name)
