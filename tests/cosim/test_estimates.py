@@ -653,9 +653,10 @@ def test_a_table_that_its_own_rate_contradicts_between_rows_decides_nothing() ->
     assert between.word == "undecided" and "where inputs.belt.velocity is not its rate" in between.note
 
 
-def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it() -> None:
+def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:
     """The belt buckles where its margin, 3e-6 with 76 steps and an error of 2e-4, is below 0."""
     text = """
+record = ["weft.travel"]
 steps_per_revolution = {}
 [loom]
 machine = "WL680-3600"
@@ -674,3 +675,5 @@ bound = 0.5
         "holds",
         "FAILS",
     ]
+    recorded = run(parse(text.format(76, 681.806), "buckled"), output=tmp_path / "trace.h5")
+    assert recorded.claims == (undecided,)  # what decides is recorded for it

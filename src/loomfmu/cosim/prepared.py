@@ -141,7 +141,8 @@ class Pattern:
     def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
         """Run the scene, record it to a file, and judge its claims."""
         scene, known, chosen = self._with_steps(scene)
-        signals = list(dict.fromkeys([*self._requested.recorded, *self._estimates.shown]))
+        needed = self._requested.needed(self._all, self._requested.recorded)
+        signals = list(dict.fromkeys([*needed, *self._estimates.shown]))
         stepping = self.stepping(signals)
         plan = stepping.plan(scene, self.grid(scene, signals))
         build_needed(plan.pruned.scene, report=progress)

@@ -50,7 +50,8 @@ def system(scene: Scene, whole: str = "one FMU of a whole scene", instead: str =
 
     `whole` is what messages call it, `instead` what they advise.
     """
-    signals = Requested(scene).recorded
+    requested = Requested(scene)
+    signals = requested.needed(requested.claims, requested.recorded)
     needed = prune(scene, signals, keep_shafts=True).scene
     order, lagged = step_order(needed.instances, needed.wires)
     if lagged:

@@ -33,7 +33,8 @@ bound = 0.1
 
 
 def needed_for(scene: Scene) -> Pruned:
-    return prune(scene, Requested(scene).recorded)
+    requested = Requested(scene)
+    return prune(scene, requested.needed(requested.claims, requested.recorded))
 
 
 def margin(rest: str = "") -> Scene:

@@ -95,11 +95,10 @@ class Requested:
         """The signal of the shaft's angle, by which places are given; none in a scene without a shaft."""
         return [SHAFT_ANGLE] if "shaft" in self.scene.instances else []
 
-    @cached_property
-    def recorded(self) -> tuple[str, ...]:
-        """The signals that the scene records and that its claims need, with their rates."""
-        wanted = self.with_rates([*self.angle, *self.scene.record, *self._driven])
-        return tuple(dict.fromkeys([*wanted, *self.judged(self.claims)]))
+    @property
+    def recorded(self) -> list[str]:
+        """The signals that the scene records, with the inputs that it drives."""
+        return [*self.scene.record, *self._driven]
 
     def needed(self, claims: Iterable[Claim], values: Iterable[str]) -> tuple[str, ...]:
         """Return the signals that claims need, and some more whose values are wanted, with their rates."""
@@ -119,7 +118,7 @@ class Requested:
         return self.with_rates(wanted)
 
     def decider(self, claim: Claim) -> str:
-        """Return the output whose sign decides a yes-or-no output that a claim is on; empty where none does."""
+        """Return the output whose sign decides a yes-or-no output that a claim is on, or an empty text."""
         for signal in claim.signals(self):
             instance, _, name = signal.partition(".")
             facts = self.scene.instances[instance].fmu.facts
