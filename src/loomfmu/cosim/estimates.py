@@ -116,7 +116,7 @@ class Estimates:
 
         A part of a revolution is chosen for what it leaves out.
         """
-        whole = scene.periods >= 1.0
+        whole = scene.periods >= 1.0 or scene.step is not None
         moving = [number for number in wanted if whole and MOTION in self._dependence.kept[number]]
         longer = altered(scene, periods=LONGER * scene.periods)
         grid = uniform(longer, SHARES[-1])

@@ -16,7 +16,7 @@ from ...errors import LoomfmuError
 from ...fmi.native.libraries import needed_library
 from ...traces import Signals, Verdict
 from ..standard import standard
-from .movers import shafts_of
+from .movers import Mover, movers_of
 
 SOURCE = Path(__file__).with_name("native") / "judge.c"
 ROOM = 16  # for the times that a function finds, at first
@@ -83,12 +83,25 @@ class Question(NamedTuple):
         signals = [number(signal) for signal in self.signals]
         owners = {signal.partition(".")[0] for signal in self.signals}
         weave = standard().weave_of(owners, trace)
-        shafts = [number(angle) for angle in shafts_of(owners, trace.wires, trace) if angle in trace]
+        turning = [
+            (number(each.angle), float(each.turns), each.speed or 0.0) for each in _movers(trace, owners)
+        ]
         rule = library().rule_of(self.rule.encode())
         found: list[float | str] = [rule, len(forms), *chain.from_iterable(forms)]
-        for part in (signals, self.numbers, weave, shafts):
+        for part in (signals, self.numbers, weave, [*chain.from_iterable(turning)]):
             found += (len(part), *part)
         return found
+
+
+def _movers(trace: Signals, owners: set[str]) -> list[Mover]:
+    """Return what turns some instances. Raises LoomfmuError where an angle is not recorded."""
+    known, wanted = trace.shared.setdefault(movers_of, {}), frozenset(owners)  # several claims ask
+    if wanted not in known:
+        known[wanted] = movers_of(wanted, trace)
+        if missing := [each.angle for each in known[wanted] if each.angle and each.angle not in trace]:
+            trace.columns(missing)  # which says so
+    found: list[Mover] = known[wanted]
+    return found
 
 
 def needs_shaft(trace: Signals) -> None:

@@ -1,33 +1,82 @@
-"""The shafts that move what a claim judges: whole revolutions of these matter."""
+"""What turns the instances that a claim judges: whole revolutions of it matter."""
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple, Protocol
 
+from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWED
+from ...components.terminals import SHAFT
+from ...errors import LoomfmuError
 
 ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
+ALONE, SPEED = "follow_shaft", "speed"  # parameters: false where an instance turns by itself, and how fast
+RADIAN = "rad"
+_SHAFTS = {name for name, each in COMPONENTS.items() if SHAFT.of(*SHAFT.members) in each.terminals}
 
 
-def shafts_of(
-    instances: Iterable[str], wires: Mapping[str, str], signals: Container[object]
-) -> tuple[str, ...]:
-    """Return the signals of the angles of the shafts that move some instances, directly or through others.
+class Mover(NamedTuple):
+    """An angle that turns an instance, or the parameter with the speed at which one turns by itself.
 
-    What drives such a shaft does not count. `wires` go from input to output; `signals` are those of the run.
+    `turns` says that the angle goes on for whole turns; that of a mechanism of one's own may swing instead.
     """
-    found, passed, waiting = dict[str, None](), set[str](), sorted(instances)
+
+    angle: str
+    speed: str = ""
+    turns: bool = True
+
+
+class Wired(Protocol):
+    """A run, or a scene before it: its signals, its wires from input to output, its FMUs and parameters."""
+
+    @property
+    def wires(self) -> Mapping[str, str]: ...
+
+    @property
+    def fmus(self) -> Mapping[str, str]: ...
+
+    def __contains__(self, signal: object) -> bool: ...
+
+    def unit(self, signal: str) -> str: ...
+
+    def parameter(self, signal: str) -> float: ...
+
+
+def movers_of(instances: Iterable[str], run: Wired) -> list[Mover]:
+    """Return what turns some instances, directly or through others, loads included."""
+    found, passed, waiting = dict[Mover, None](), set[str](), sorted(set(instances))
+    wires = dict[str, dict[str, str]]()
+    for sink, source in run.wires.items():
+        name, _dot, variable = sink.rpartition(".")
+        wires.setdefault(name, {})[variable] = source
     while waiting:
         name = waiting.pop()
-        if name in passed:
-            continue
-        passed.add(name)
-        given, own = f"{name}.{ANGLE_INPUT}", f"{name}.{ANGLE}"
-        if own in signals:  # it is a shaft
-            found[own] = None
-            continue
-        if given in wires or given in signals:
-            found[wires.get(given, given)] = None
-        for sink, source in wires.items():
-            owner, _dot, variable = sink.rpartition(".")
-            if owner == name and variable not in FOLLOWED:
-                waiting.append(source.partition(".")[0])
-    return tuple(found)
+        if name not in passed:
+            passed.add(name)
+            given = wires.get(name, {})
+            found |= dict.fromkeys(_of(name, given, run))
+            waiting += [source.rpartition(".")[0] for source in given.values()]
+    return list(found)
+
+
+def _of(name: str, given: Mapping[str, str], run: Wired) -> Iterator[Mover]:
+    """Yield what turns one instance, given the sources of its inputs, and the angle of its own shaft."""
+    fmu, own, angle = run.fmus.get(name, ""), f"{name}.{ANGLE}", f"{name}.{ANGLE_INPUT}"
+    if ANGLE_INPUT in given or angle in run:
+        yield Mover(given.get(ANGLE_INPUT, angle))
+    elif turns_alone(name, run):
+        yield Mover("", f"{name}.{SPEED}")
+    if fmu in _SHAFTS:
+        yield Mover(own)
+    if fmu not in COMPONENTS:
+        others = [source for variable, source in given.items() if variable not in FOLLOWED]
+        for each in (*others, own):
+            if each in run and run.unit(each) == RADIAN:
+                yield Mover(each, turns=run.fmus.get(each.rpartition(".")[0], "") in _SHAFTS)
+
+
+def turns_alone(name: str, run: Wired) -> bool:
+    """Return whether an instance turns at its own speed, although it could follow a shaft."""
+    try:
+        return not run.parameter(f"{name}.{ALONE}")
+    except LoomfmuError:
+        return False

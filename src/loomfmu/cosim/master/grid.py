@@ -10,7 +10,7 @@ from ..scenes.scene import Scene
 
 Floats = NDArray[np.float64]
 DENSE = 1.2  # communication points for each equal step
-LEFT = 0.01  # of the range of a table: what steps that meet none of its rows may leave out
+LEFT = 1e-6  # of the range of a table: what steps that meet none of its rows may leave out
 AGREE = 1e-6  # of the range of a table: how far it may be from what its rate gives
 SAME = 1e-6  # of a step: what a kink may be away from a communication point
 
@@ -114,26 +114,32 @@ def passed_by(scene: Scene) -> dict[str, str]:
 
 
 def contradicted(scene: Scene) -> dict[str, str]:
-    """The instances with steps between rows of an input, which its rate, driven as well, contradicts there.
+    """The instances with an input that its rate contradicts: it stays constant, or does so between rows.
 
     Between rows both lie on straight lines, which agree only where the rate is constant.
     """
     found = dict[str, str]()
     driven = {(each.instance, each.variable): each for each in scene.drives}
+    wired = {wire.sink for wire in scene.wires}
     for (name, variable), drive in driven.items():
-        rate = driven.get((name, scene.instances[name].fmu.ports[variable].rate or ""))
-        if rate is None:
+        instance = scene.instances[name]
+        rate = instance.fmu.ports[variable].rate
+        if rate is None or (name, rate) in wired:
             continue
-        times = np.array([0.0, *_rows(scene, [*drive.periods, *rate.periods]), scene.steps * scene.step_size])
-        values, rates = (each.along(times / period(scene)) for each in (drive, rate))
+        turns = [turn for each in (drive, driven.get((name, rate))) if each for turn in each.periods]
+        times = np.array([0.0, *_rows(scene, turns), scene.steps * scene.step_size])
+        values, rates = drive.along(times / period(scene)), np.zeros(len(times))
         moved, places = np.diff(values), times / scene.step_size
-        between = np.ceil(places[1:] - SAME) - np.floor(places[:-1] + SAME) > 1.0
+        seen = np.ones(len(moved), bool)
+        if (name, rate) in driven:
+            rates = driven[name, rate].along(times / period(scene))
+            seen = np.ceil(places[1:] - SAME) - np.floor(places[:-1] + SAME) > 1.0
+        else:
+            rates += float(instance.effect(rate) or 0.0)
         off = np.maximum(*(np.abs(moved - np.diff(times) * each) for each in (rates[:-1], rates[1:])))
-        if np.any(between & (off > AGREE * np.ptp(values))):
-            found[name] = (
-                f"steps lie between rows of inputs.{name}.{variable}, where inputs.{name}.{rate.variable} is"
-                " not its rate; give a row for each step, in both"
-            )
+        if np.any(seen & (off > AGREE * np.ptp(values))):
+            wrong = f"{name}.{rate} is not the rate of inputs.{name}.{variable} between its rows"
+            found.setdefault(name, f"{wrong}; give both as tables, with a row for each step")
     return found
 
 

@@ -5,14 +5,14 @@ from functools import cached_property
 
 from ...components import COMPONENTS
 from ...declaring.variables import Component
-from ..claims.movers import shafts_of
+from ..claims.movers import RADIAN, movers_of
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from .requested import SHAFT_ANGLE, Requested
 
 EVENT = 4.0  # steps that show an event of a mechanism
 SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
-ANGLE, SPEED = "rad", "rad/s"
+SPEED = "rad/s"
 
 
 class Movements:
@@ -37,12 +37,15 @@ class Movements:
         component, ports = instance.fmu.component, instance.fmu.ports.values()
         given = [*instance.fmu.shaft_inputs[:1]]
         if not given and component not in COMPONENTS.values():
-            given = [each.name for each in ports if each.causality == "input" and each.unit == ANGLE]
-        inputs = [f"{name}.{each}" for each in given]
-        taken = [wires.get(each, each) for each in inputs if each in wires or each in self._outputs]
-        if not inputs and _own_speed(instance) is None:
-            others = shafts_of([name], wires, self._outputs) or self._main
-            taken = [each for each in others if each.partition(".")[0] != name]
+            given = [each.name for each in ports if each.causality == "input" and each.unit == RADIAN]
+        if given:
+            inputs = [f"{name}.{each}" for each in given]
+            taken = [wires.get(each, each) for each in inputs if each in wires or each in self._outputs]
+        else:
+            others = [each.angle for each in movers_of([name], self._outputs) if each.angle]
+            alone = _own_speed(instance) is not None
+            taken = others or [*(() if alone else self._main)]
+            taken = [each for each in taken if each.partition(".")[0] != name]
         return tuple(dict.fromkeys(taken))
 
     @cached_property
@@ -94,6 +97,9 @@ class Movements:
             return _own_speed(scene.instances[name])
         turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
         speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
+        fmu = scene.instances[name].fmu
+        if not shaft_inputs(fmu.component, fmu.ports):  # it may turn by itself as well
+            speeds.append(_own_speed(scene.instances[name]))
         return max((each for each in speeds if each is not None), default=None)
 
 

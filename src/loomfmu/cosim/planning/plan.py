@@ -18,7 +18,7 @@ from ..master.master import Integers, Interrupted, Master, Reals
 from ..scenes.keys import MAY_END
 from ..scenes.scene import Scene
 from .pruning import Effective, Pruned, prune
-from .requested import Requested, beside_of, output_port
+from .requested import Requested, beside_of, effective_wires, output_port
 
 
 class Keeper(Protocol):
@@ -45,8 +45,8 @@ class Plan:
     @property
     def wires(self) -> dict[str, str]:
         """The output that each wired input takes its values from, be it of a shaft that needs no FMU."""
-        wires = (each for each in self.scene.wires if each.sink[0] in self.pruned.scene.instances)
-        return {".".join(each.sink): ".".join(each.source) for each in wires}
+        wires, kept = effective_wires(self.scene), self.pruned.scene.instances
+        return {sink: source for sink, source in wires.items() if sink.partition(".")[0] in kept}
 
     @property
     def fmus(self) -> dict[str, str]:

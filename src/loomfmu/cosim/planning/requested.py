@@ -9,7 +9,7 @@ from ...declaring.variables import MOTION, TIME, Beside
 from ...errors import LoomfmuError, suggestion
 from ..claims.claim import Claim
 from ..claims.claims import angles_in, doubts, place_of, read
-from ..claims.movers import shafts_of
+from ..claims.movers import movers_of
 from ..claims.signal_claims import Bounded, check_speed
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
@@ -51,6 +51,15 @@ def beside_of(scene: Scene, signal: str) -> Beside:
     return port.beside._replace(lowest=variable, highest=variable) if steady else port.beside
 
 
+def effective_wires(scene: Scene) -> dict[str, str]:
+    """The output that each wired input takes its values from, without inputs that are switched off."""
+    return {
+        ".".join(wire.sink): ".".join(wire.source)
+        for wire in scene.wires
+        if not scene.instances[wire.sink[0]].switched_off(wire.sink[1])[0]
+    }
+
+
 class Requested:
     """A scene and what is asked of it: its claims, read once, and the signals that a run must give for them.
 
@@ -64,13 +73,24 @@ class Requested:
 
     @cached_property
     def wires(self) -> dict[str, str]:
-        """The output that each wired input takes its values from."""
-        return {".".join(wire.sink): ".".join(wire.source) for wire in self.scene.wires}
+        """The output that each wired input takes its values from, without inputs that are switched off."""
+        return effective_wires(self.scene)
 
     @cached_property
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
         return {name: instance.fmu.name for name, instance in self.scene.instances.items()}
+
+    def unit(self, signal: str) -> str:
+        """The unit of an output."""
+        return output_port(self.scene, signal, "record").unit
+
+    def parameter(self, signal: str) -> float:
+        """The value of a parameter. Raises LoomfmuError where it has no effect."""
+        value = _parameter(self.scene, signal)
+        if math.isnan(value):
+            raise LoomfmuError(f"{signal} has no effect")
+        return value
 
     @cached_property
     def _names(self) -> dict[str, None]:
@@ -97,8 +117,10 @@ class Requested:
 
     @property
     def recorded(self) -> list[str]:
-        """The signals that the scene records, with the inputs that it drives."""
-        return [*self.scene.record, *self._driven]
+        """The signals that the scene records, with the inputs that it drives, and all angles that turn
+        something, which claims on the trace may need."""
+        turning = (mover.angle for mover in movers_of(self.scene.instances, self))
+        return [*self.scene.record, *self._driven, *(angle for angle in turning if angle in self)]
 
     def needed(self, claims: Iterable[Claim], values: Iterable[str]) -> tuple[str, ...]:
         """Return the signals that claims need, and some more whose values are wanted, with their rates."""
@@ -114,7 +136,7 @@ class Requested:
             names = [beside.lowest if claim.sense > 0 else beside.highest for beside in besides]
             owners = [signal.partition(".")[0] for signal in signals]
             wanted += signals + [f"{o}.{name}" for o, name in zip(owners, names, strict=True) if name]
-            wanted += shafts_of(owners, self.wires, self)
+            wanted += [mover.angle for mover in movers_of(owners, self) if mover.angle]
         return self.with_rates(wanted)
 
     def decider(self, claim: Claim) -> str:
@@ -159,6 +181,7 @@ def checked_claims(scene: Scene) -> Requested:
     """
     requested = Requested(scene)
     notes = [*scene.notes, *_unrecorded(scene)]
+    wired = {".".join(wire.sink) for wire in scene.wires}
     known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
     for table, claim in zip(scene.claims, requested.claims, strict=True):
         where = place_of(table)
@@ -169,7 +192,7 @@ def checked_claims(scene: Scene) -> Requested:
             notes += [
                 f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
                 f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
-                for sink, source in left_out(known, requested.wires, signal).items()
+                for sink, source in left_out(known, wired, signal).items()
             ]
         if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
             port = output_port(scene, claim.signal, where)

@@ -114,8 +114,8 @@ static struct call call_of(struct run *run, const double *list, const char *word
     call.pegs = (ptrdiff_t)list[0];
     call.peg = list + 1;
     list = call.peg + call.pegs;
-    run->moving = (ptrdiff_t)list[0];
-    run->movers = list + 1;
+    run->moving = (ptrdiff_t)list[0] * (ptrdiff_t)sizeof *list / (ptrdiff_t)sizeof *run->movers;
+    run->movers = (const struct mover *)(const void *)(list + 1);
     return call;
 }
 

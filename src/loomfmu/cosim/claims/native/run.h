@@ -43,6 +43,12 @@ struct room { /* a piece of memory, freed with all others */
     double contents[];
 };
 
+struct mover {
+    double angle; /* the number of a signal; -1 for what turns at a speed of its own */
+    double turns; /* 1 for an angle that goes on for whole turns, 0 for one that may swing */
+    double speed;
+};
+
 struct run {
     ptrdiff_t samples;
     struct column time;
@@ -50,7 +56,7 @@ struct run {
     struct signal *signals;
     int count, space;
     int shaft; /* the number of the main shaft's angle, or -1 */
-    const double *movers; /* of the question: the angles, by number, of the shafts that move what it is about */
+    const struct mover *movers; /* of the question: what turns the instances that it is about */
     ptrdiff_t moving;
     struct room *kept, *scratch;
     const char *note; /* of the last verdict */

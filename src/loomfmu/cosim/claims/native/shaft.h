@@ -19,29 +19,61 @@ static bool too_coarse(const struct motion *turning)
     return turning->longest > FARTHEST * (1.0 + SAME);
 }
 
-/* A note on a run of less than so many revolutions of a shaft that matters; empty for others.
- *
- * Where none is known to move what the question is about, the main shaft matters. */
-static const char *turns_less(struct run *run, double wanted, const char *why)
+static bool swings(struct motion *motion)
 {
-    const ptrdiff_t shafts = run->moving > 0 ? run->moving : run->shaft >= 0;
-    for (ptrdiff_t place = 0; place < shafts; place++) {
-        const int shaft = run->moving > 0 ? (int)run->movers[place] : run->shaft;
-        struct motion *turning = curve(run, shaft);
-        const double turned = (turning->highest - turning->lowest) / TURN;
-        if (turned >= wanted - STANDS)
-            continue;
-        const char *which = shaft == run->shaft ? "the shaft" : run->signals[shaft].name;
-        const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
-        return text(run, "%s turns by only %s revolution%s, %s", which, number, strcmp(number, "1") == 0 ? "" : "s", why);
+    bool rises = false, falls = false;
+    for (ptrdiff_t place = 0; place + 1 < motion->samples; place++) {
+        rises = rises || sample(motion, 1, place + 1) > sample(motion, 1, place);
+        falls = falls || sample(motion, 1, place + 1) < sample(motion, 1, place);
     }
-    return "";
+    return rises && falls;
 }
 
-/* A note on a run in which a shaft that matters turns less than a revolution; empty for others. */
+/* A note if a shaft turns by less than so many revolutions; empty otherwise. */
+static const char *turned_less(struct run *run, struct mover shaft, double wanted, const char *why)
+{
+    double turned = fabs(shaft.speed) * (end_of(run) - time_at(run, 0)) / TURN;
+    const char *which = "a mechanism at its own speed";
+    if (shaft.angle >= 0.0) {
+        struct motion *turning = curve(run, (int)shaft.angle);
+        turned = (turning->highest - turning->lowest) / TURN;
+        if (shaft.turns == 0.0 && swings(turning))
+            return "";
+        which = shaft.angle == run->shaft ? "the shaft" : run->signals[(int)shaft.angle].name;
+    } else if (shaft.speed == 0.0) /* it stands */
+        return "";
+    if (turned >= wanted - STANDS)
+        return "";
+    const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
+    return text(run, "%s turns by only %s revolution%s, %s", which, number, strcmp(number, "1") == 0 ? "" : "s", why);
+}
+
+/* A note on a run of less than so many revolutions of what turns that which the question is about, the main shaft included
+ * or not; empty for others.
+ *
+ * Where nothing is known to turn it, the main shaft matters. */
+static const char *turns_less(struct run *run, bool main, double wanted, const char *why)
+{
+    const struct mover shaft = {run->shaft, 1.0, 0.0};
+    const char *note = run->moving == 0 && run->shaft >= 0 && main ? turned_less(run, shaft, wanted, why) : "";
+    for (const struct mover *each = run->movers; each < run->movers + run->moving && *note == '\0'; each++)
+        if (main || each->angle < 0.0 || each->angle != run->shaft)
+            note = turned_less(run, *each, wanted, why);
+    return note;
+}
+
+static const char WHOLE[] = "and the claim takes a whole one";
+
+/* A note on a run in which something that matters turns by less than a revolution; empty for others. */
 static const char *short_run(struct run *run)
 {
-    return turns_less(run, 1.0, "and the claim takes a whole one");
+    return turns_less(run, true, 1.0, WHOLE);
+}
+
+/* The same where the run shows all that the question asks of the main shaft. */
+static const char *short_but_for_shaft(struct run *run)
+{
+    return turns_less(run, false, 1.0, WHOLE);
 }
 
 enum { WORDS = 8, PICKS_IN_A_WORD = 16 }; /* of a frame's pattern: its length, then words whose bits are its pegs */
@@ -83,7 +115,7 @@ static const char *unwoven(struct run *run, const double *pegs, ptrdiff_t count)
     }
     if (picks == 1.0) /* as `short_run` says */
         return "";
-    return turns_less(run, picks, text(run, "and the weave repeats after %.0f; set revolutions = %.0f or more", picks, picks));
+    return turns_less(run, true, picks, text(run, "and the weave repeats after %.0f; set revolutions = %.0f or more", picks, picks));
 }
 
 static struct place place_at(struct run *run, double time)
@@ -144,6 +176,20 @@ static struct times times_at(struct run *run, double wanted)
     return times;
 }
 
+/* Times at which the run begins and each of its revolutions ends, once each however the shaft turns back. */
+static struct times revolutions(struct run *run)
+{
+    struct motion *turning = shaft_of(run);
+    const double first = sample(turning, 1, 0), way = sample(turning, 1, run->samples - 1) < first ? -1.0 : 1.0;
+    struct times times = times_at(run, first);
+    ptrdiff_t kept = 0;
+    for (ptrdiff_t each = 0; each < times.count; each++)
+        if (nearbyint(way * (value_of(turning, times.list[each]) - first) / TURN) == (double)kept)
+            times.list[kept++] = times.list[each];
+    times.count = kept;
+    return times;
+}
+
 /* Stretches of time in which the shaft is in a window of its revolution, the edges included as stretches without length. */
 static struct stretches times_within(struct run *run, struct window window)
 {
@@ -184,7 +230,9 @@ static struct stretches passes(struct run *run, struct window window)
                 begins = begins || within.list[other].start == each.start;
                 ends = ends || within.list[other].start == each.end;
             }
-        if (each.start < each.end && begins && ends)
+        const double turned = fabs(value_of(shaft_of(run), each.end) - value_of(shaft_of(run), each.start));
+        /* a shaft that turns back may leave by the edge by which it has come */
+        if (each.start < each.end && begins && ends && turned > 0.5 * window.width)
             add_stretch(run, &found, each.start, each.end, true);
     }
     return found;
@@ -193,7 +241,10 @@ static struct stretches passes(struct run *run, struct window window)
 /* A note on a run that shows a window of the revolution only in part; empty for others. */
 static const char *unpassed(struct run *run, struct window window)
 {
-    return *short_run(run) == '\0' || passes(run, window).count > 0 ? "" : UNPASSED;
+    const struct mover shaft = {run->shaft, 1.0, 0.0};
+    if (*turned_less(run, shaft, 1.0, WHOLE) != '\0' && passes(run, window).count == 0)
+        return UNPASSED;
+    return short_but_for_shaft(run);
 }
 
 /* ---- where a signal is not known, and how far it may be off, as signals beside it say */

@@ -1,0 +1,107 @@
+"""What turns the instances that a claim judges, and the whole revolutions of it that a run must show."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from loomfmu import LoomfmuError, evaluate
+from loomfmu.cosim.claims.movers import Mover, movers_of
+from loomfmu.cosim.scenes.scene import parse
+
+MAIN = {"weft": "WeftInsertion", "belt": "BeltMonitor", "shaft": "MainShaft"}
+
+
+class Run:
+    """A run with the angles that its wires name, and what is known of those that turn by themselves."""
+
+    def __init__(self, fmus: Mapping[str, str], wires: Mapping[str, str], alone: tuple[str, ...] = ()):
+        self.fmus, self.wires, self._alone = fmus, wires, alone
+
+    def __contains__(self, signal: object) -> bool:
+        return signal in self.wires.values() or str(signal).endswith(".angle")
+
+    def unit(self, signal: str) -> str:
+        return "m" if signal.endswith("travel") else "rad"
+
+    def parameter(self, signal: str) -> float:
+        if signal.partition(".")[0] not in self._alone:
+            raise LoomfmuError(f"{signal} is not recorded")
+        return 0.0
+
+
+GEARED = {"weft.shaft_angle": "gear.turned", "gear.shaft_angle": "shaft.angle", "belt.travel": "weft.travel"}
+
+
+@pytest.mark.parametrize(
+    ("fmus", "wires", "alone", "found"),
+    [
+        (MAIN, {"weft.shaft_angle": "shaft.angle", "belt.travel": "weft.travel"}, (), {"shaft.angle"}),
+        (MAIN | {"gear": "Gear"}, GEARED, (), {"shaft.angle", "gear.turned"}),
+        (
+            MAIN | {"gear": "Gear"},
+            {"belt.travel": "weft.travel"},
+            ("weft", "belt"),
+            {"weft.speed", "belt.speed"},
+        ),
+        (MAIN | {"belt": "Bump"}, {**GEARED, "belt.seen": "gear.turned"}, (), {"shaft.angle", "gear.turned"}),
+    ],
+)
+def test_all_that_turns_an_instance_counts(
+    fmus: Mapping[str, str], wires: Mapping[str, str], alone: tuple[str, ...], found: set[str]
+) -> None:
+    movers = movers_of(["belt"], Run(fmus, wires, alone))
+    names = {each.angle or each.speed for each in movers if each.turns}
+    assert names - {"gear.angle", "belt.angle"} == found
+
+
+def test_an_angle_of_a_mechanism_of_ones_own_may_swing() -> None:
+    run = Run({"rocker": "Rocker", "shaft": "MainShaft"}, {"rocker.shaft_angle": "shaft.angle"})
+    assert set(movers_of(["rocker"], run)) == {
+        Mover("shaft.angle"),
+        Mover("rocker.angle", turns=False),
+    }
+
+
+WEFT = '[weft]\nmachine = "WL680-3600"\nhead = "G6300 left"\n'
+BELT = '[belt]\ncomponent = "BeltMonitor"\nmachine = "WL680-3600"\nhead = "G6300 left"\n'
+BELOW = '[[claims]]\nkind = "below"\nsignal = "{}"\nbound = {}\n'
+TURNING_BACK = """
+revolutions = {}
+steps_per_revolution = 720
+[shaft]
+component = "DrivenShaft"
+speed = "60 rev/min"
+inertia = 3
+torque_slope = 50
+start_angle = "{} deg"
+[inputs]
+"shaft.torque_32" = [[0, 0], [0.02, 0], [0.03, {force}], [{end}, {force}], [{after}, 0], [5, 0]]
+"""
+
+
+def test_what_turns_at_its_own_speed_turns_whole_revolutions_too() -> None:
+    """In a fifth of a revolution the belt was never at risk."""
+    claim = '[[claims]]\nkind = "lowest_margin"\nbound = 0.99\n'
+    text = 'duration = "{}"\nstep = "0.0001 s"\n' + WEFT + BELT + claim
+    values = {"weft.speed": "600 rpm", "belt.speed": "600 rpm"}
+    (short,), (whole,) = (
+        evaluate(parse(text.format(s), overrides=values)).claims for s in ("20 ms", "0.1 s")
+    )
+    assert short.word == "undecided" and short.note.startswith(
+        "a mechanism at its own speed turns by only 0.2"
+    )
+    assert whole.word == "FAILS"
+
+
+def test_a_window_that_a_shaft_enters_and_leaves_by_one_edge_is_not_passed() -> None:
+    text = TURNING_BACK.format(0.1, 5, force=2000, end=0.06, after=0.07) + WEFT
+    text += BELOW.format("weft.travel", '"1 m"') + 'window = ["8 deg", "300 deg"]\n'
+    (found,) = evaluate(parse(text)).claims
+    assert (found.word, found.note) == ("undecided", "the run never passes through the whole window")
+
+
+def test_a_revolution_ends_once_however_a_shaft_turns_back() -> None:
+    """The first one takes 1.9549 s at 60 to -397 rev/min; its end by the arrays of a finer run."""
+    text = TURNING_BACK.format(4, 0, force=3000, end=0.12, after=0.13)
+    (found,) = evaluate(parse(text + '[[claims]]\nkind = "speed_fluctuation"\nat_most = 8\n')).claims
+    assert found.word == "FAILS" and found.worst == pytest.approx(14.895, rel=1e-3)
