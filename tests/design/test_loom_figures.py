@@ -69,6 +69,7 @@ def test_an_impossible_wish_is_answered_with_what_can_be_had():
             lambda: loom.mass_for("600 rpm", "WL680-3600", mass=0.1),
             "mass cannot be set: the function solves for the mass",
         ),
+        (lambda: loom.mass_for("-650 rpm", "WL680-3600"), "speed = -650 rev/min is outside"),
         (lambda: loom.mass_for("600 rpm", "WL680-3600", mas=0.1), "mas is unknown; did you mean 'mass'?"),
         (
             lambda: loom.safe_speed("WL680-3600", clearance="0.5 mm", length_factor=0.8),

@@ -183,7 +183,7 @@ def add_fit(commands: Any) -> None:
     command.add_argument(
         "data",
         metavar="DATA.csv|h5",
-        help="columns with units, such as shaft_angle [deg],heald_1.displacement [mm]; or a trace",
+        help="columns with units, such as shaft_angle [deg],damper_1.displacement [mm]; or a trace",
     )
     command.add_argument(
         "--vary",

@@ -1,5 +1,6 @@
 """Arguments of the design functions: numbers in SI or texts with units, within limits."""
 
+from dataclasses import replace
 from numbers import Integral
 from typing import Any
 
@@ -29,7 +30,7 @@ def _free(unit: str, display: str, minimum: float, maximum: float, description: 
 
 # by their names in the design functions, with the limits that they have in scenes
 KNOWN = {
-    "speed": BELT["speed"],
+    "speed": replace(BELT["speed"], minimum=0.0),  # one way as the other
     "clearance": BELT["guide_clearance"],
     "tension": BELT["yarn_tension"],
     "mass": BELT["head_mass"],

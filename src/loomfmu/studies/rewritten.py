@@ -13,7 +13,7 @@ from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.scene import Scene
 from ..errors import LoomfmuError
 from ..extras import need
-from ..files import Kind, check_target, write_file
+from ..files import Kind, check_target, digest, write_file
 from ..loom import weave
 from ..machines import TAKERS
 from ..own import load
@@ -21,15 +21,16 @@ from ..own import load
 FILE_KEYS = {"fmu", "component", "weave"}  # of a table that may name a file
 
 
-def _is_scene(path: Path) -> bool:
-    try:
-        scenes.load(path)
-    except LoomfmuError:
-        return False
-    return True
+MARK = "# written by loomfmu; it is replaced only as long as nobody edits it: "  # and a digest of the rest
 
 
-KIND = Kind("a scene", _is_scene)
+def unedited(path: Path) -> bool:
+    """Return whether a file is a scene as it was written here."""
+    first, _newline, rest = path.read_bytes().partition(b"\n")
+    return first.decode(errors="replace") == MARK + digest(rest.decode(errors="replace"))
+
+
+KIND = Kind("a scene that loomfmu wrote and nobody edited", unedited)
 
 
 def quantity(value: float, unit: str, display: str) -> str | float:
@@ -66,7 +67,8 @@ def write(
     """
     inputs = [check(scene)]
     check_target(path, KIND, inputs, overwrite)
-    return write_file(path, text_for(scene, values, path, description).encode(), KIND, inputs, overwrite)
+    text = text_for(scene, values, path, description)
+    return write_file(path, f"{MARK}{digest(text)}\n{text}".encode(), KIND, inputs, overwrite)
 
 
 def text_for(scene: Scene, values: Mapping[str, Any], path: Path, description: str = "") -> str:

@@ -261,6 +261,13 @@ def test_the_scene_with_the_fitted_values_runs_and_keeps_its_comments(tmp_path: 
     assert again == found.parameters[0].value
     found = replace(found, scene=scenes.load(scene, {"belt.guide_clearance": "0.4 mm"}))
     assert ", and with belt.guide_clearance = 0.4 mm." in found.write(tmp_path / "set.toml").read_text()
+    with (tmp_path / "set.toml").open("a") as edited:
+        edited.write("# mine\n")
+    with pytest.raises(
+        LoomfmuError, match=r"set\.toml: exists and is not a scene that loomfmu wrote and nobo"
+    ):
+        found.write(tmp_path / "set.toml")
+    assert found.write(path) == path
     assert scene.read_text() == BELT.replace("[belt]", "[belt] # the new one")
 
 
@@ -391,3 +398,18 @@ def test_an_accuracy_is_refused(tmp_path: Path) -> None:
         LoomfmuError, match=r"accuracy = 0\.001 chooses steps by .*; set steps_per_revolution"
     ):
         fit(scene, data, vary="damper_1.stiffness=500N/m..2kN/m", set={"accuracy": 1e-3})
+
+
+def test_a_parameter_that_an_offset_mimics_is_not_fitted_beside_it(tmp_path: Path) -> None:
+    """At a constant speed a later beat-up is an offset of all times; the interval missed the truth."""
+    scene, data = tmp_path / "reed.toml", tmp_path / "reed.csv"
+    scene.write_text(
+        'revolutions = 3.1\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n'
+        'head = "G6300 left"\nreed = true\n[shaft]\nspeed = "300 rev/min"\n'
+    )
+    true = loomfmu.prepare(scene, values=["reed.position"]).evaluate({"reed.beat_up_angle": 0.0712}).trace
+    noise = np.random.default_rng(0).normal(0.0, 1e-4, len(true.time))
+    rows = zip(true.time[10:250:3], (true["reed.position"] + noise)[10:250:3], strict=True)
+    data.write_text("time [s],reed.position [m]\n" + "".join(f"{float(t)},{float(x)}\n" for t, x in rows))
+    with pytest.raises(LoomfmuError, match=r"cannot tell reed\.beat_up_angle and offset apart; fit only one"):
+        fit(scene, data, vary="reed.beat_up_angle=-0.5rad..0.5rad", offset="-2ms..2ms")

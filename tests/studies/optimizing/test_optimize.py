@@ -218,6 +218,12 @@ def test_a_directory_of_another_study_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LoomfmuError, match="here: contains another study, or the study, its scene"):
         optimize(path, processes=1, output="here")
     assert optimize(path, processes=1, output="here", restart=True)
+    edited = Path("here/best.toml").read_text() + "# tried on loom 7\n"
+    Path("here/best.toml").write_text(edited)
+    with pytest.raises(LoomfmuError, match=r"here/best\.toml was edited, or loomfmu did not write it"):
+        optimize(path, processes=1, output="here", restart=True)
+    assert Path("here/best.toml").read_text() == edited
+    Path("here/best.toml").unlink()
     foreign = tmp_path / "foreign"
     foreign.mkdir()
     (foreign / "best.toml").write_text("mine")

@@ -130,10 +130,10 @@ def fit(
 
     Args:
         scene: path of a scene file or a system package (.ssp), or a scene that was read before
-        data: CSV whose header gives names and units, such as `shaft_angle [deg],heald_1.displacement [mm]`,
+        data: CSV whose header gives names and units, such as `shaft_angle [deg],damper_1.displacement [mm]`,
             or a trace. Shaft angles from 0 to 360 deg are those of the last whole revolution of the run,
             others count from its start.
-        vary: parameters such as "damper_1.stiffness=500N/m..2kN/m"
+        vary: parameters such as "damper_1.spring_stiffness=500N/m..2kN/m"
         signals: what is fitted of the data; all columns of a CSV file by default
         offset: range of a further parameter, which is added to all times or shaft angles of the data, such as
             "-2ms..2ms"
@@ -147,7 +147,7 @@ def fit(
     """
     keys = [vary] if isinstance(vary, str) else list(vary)
     if not keys:
-        raise LoomfmuError("name at least one parameter to fit, such as damper_1.stiffness")
+        raise LoomfmuError("name at least one parameter to fit, such as damper_1.spring_stiffness")
     if loss not in LOSSES:
         raise LoomfmuError(
             f"loss = {shown(loss)} is not one of {listed(LOSSES)}{suggestion(str(loss), LOSSES)}"

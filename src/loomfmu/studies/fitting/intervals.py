@@ -14,7 +14,8 @@ from .measured import Measured
 from .search import Found
 
 SURE = 0.95  # probability of the intervals
-ALIKE = 1e-9  # share of the strongest direction below which parameters cannot be told apart
+# share of the strongest direction below which parameters cannot be told apart: slopes are known to 1e-8
+ALIKE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,7 @@ def sure(data: Measured, spans: Sequence[Span], found: Found, loss: Loss) -> Sur
 
     free = np.flatnonzero(~found.at_bound)
     slopes = found.slopes[:, free]
-    _check_apart(data, slopes, [spans[each] for each in free.tolist()])
-    inverse = np.asarray(np.linalg.pinv(slopes.T @ slopes), dtype=float)
+    inverse = _inverse(data, slopes, [spans[each] for each in free.tolist()])
     pulls, bends = loss.weighed(found.residuals)
     covariance = np.full((len(spans), len(spans)), math.nan)
     covariance[np.ix_(free, free)] = inverse * _variance(pulls, bends, len(free))
@@ -94,10 +94,13 @@ def _variance(pulls: Floats, bends: Floats, size: int) -> float:
     return spread**2 * float(np.sum(pulls**2)) / (len(pulls) - size) / mean**2
 
 
-def _check_apart(data: Measured, slopes: Floats, spans: Sequence[Span]) -> None:
-    """Refuse parameters whose effects on the data are the same."""
+def _inverse(data: Measured, slopes: Floats, spans: Sequence[Span]) -> Floats:
+    """The inverse of the slopes' squares, from singular values: squares would lose half of the digits.
+
+    Refuses parameters whose effects on the data are the same.
+    """
     if not spans:
-        return
+        return np.empty((0, 0))
     lengths = np.linalg.norm(slopes, axis=0)
     if not np.all(lengths):
         weakest = lengths.tolist().index(0.0)
@@ -105,4 +108,6 @@ def _check_apart(data: Measured, slopes: Floats, spans: Sequence[Span]) -> None:
     _left, strengths, directions = np.linalg.svd(slopes / lengths, full_matrices=False)
     if strengths[-1] <= ALIKE * strengths[0]:
         weak = [span.key for span, part in zip(spans, directions[-1], strict=True) if abs(part) > 0.1]
-        raise LoomfmuError(f"{data.path}: the data cannot tell {listed(weak)} apart; vary one of them")
+        raise LoomfmuError(f"{data.path}: the data cannot tell {listed(weak)} apart; fit only one of them")
+    scaled = directions / strengths[:, None] / lengths
+    return np.asarray(scaled.T @ scaled, dtype=float)

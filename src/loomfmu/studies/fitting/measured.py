@@ -21,7 +21,7 @@ from ...traces.damage import check
 
 Floats = NDArray[np.float64]
 ALONG = {"shaft_angle": "rad", "time": "s"}  # what curves are measured over: name of the column, unit in SI
-FORM = "name the columns such as: shaft_angle [deg],heald_1.displacement [mm]"
+FORM = "name the columns such as: shaft_angle [deg],damper_1.displacement [mm]"
 _COLUMN = re.compile(r"(.+)\[([^\[\]]+)\]")  # a name may have brackets of its own
 NOT_MEASURED = ("", "nan")
 Row = tuple[str, list[str]]  # of a file: where it is, and its cells

@@ -16,7 +16,7 @@ from ... import units
 from ...cosim.claims.claims import called
 from ...cosim.prepared import Prepared
 from ...display.printed import as_csv
-from ...errors import listed
+from ...errors import LoomfmuError, listed
 from ...extras import install, installed
 from ...files import ANY, write_file
 from ...sweeps.directory import files
@@ -62,7 +62,13 @@ class Files:
         return files(self.directory, ".*.partial")
 
     def check(self, study: Study, own: Point) -> None:
-        """Refuse a scene that cannot be written here with other values. Raises LoomfmuError."""
+        """Refuse a scene that cannot be written here with other values, and best ones that somebody edited.
+
+        Raises LoomfmuError.
+        """
+        for path in self.results():
+            if path.suffix == ".toml" and not rewritten.unedited(path):
+                raise LoomfmuError(f"{path} was edited, or loomfmu did not write it; move it elsewhere")
         values = [each.value(number) for each, number in zip(study.variables, own, strict=True)]
         rewritten.text_for(study.scene, study.written(values), self.scene())
 
