@@ -226,7 +226,7 @@ def test_a_directory_of_another_study_is_refused(tmp_path: Path) -> None:
     Path("here/best.toml").unlink()
     foreign = tmp_path / "foreign"
     foreign.mkdir()
-    (foreign / "best.toml").write_text("mine")
+    (foreign / "designs.csv").write_text("mine")
     with pytest.raises(LoomfmuError, match="foreign: contains files that no loomfmu study wrote"):
         optimize(path, processes=1, output=foreign)
     Path("here/runs.jsonl").write_text("nonsense\n")

@@ -97,8 +97,7 @@ class Movements:
             return _own_speed(scene.instances[name])
         turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
         speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
-        fmu = scene.instances[name].fmu
-        if not shaft_inputs(fmu.component, fmu.ports):  # it may turn by itself as well
+        if not scene.instances[name].fmu.shaft_inputs:  # it may turn by itself as well
             speeds.append(_own_speed(scene.instances[name]))
         return max((each for each in speeds if each is not None), default=None)
 

@@ -35,7 +35,7 @@ def of_scene(
         inputs = each.fmu.shaft_inputs
         if inputs and not any((name, variable) in fed for variable in inputs):
             yield f"{name} runs at its own constant speed: its shaft inputs are not wired to the shaft"
-        if each.fmu.facts and each.fmu.facts.turns_alone:
+        if each.fmu.facts and each.fmu.facts.turns_alone and not any(sink == name for sink, _input in fed):
             yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
     yield from _loads(instances, wires)
     yield from standard().mirrored(instances, wires)
