@@ -1,16 +1,18 @@
 """What turns the instances that a claim judges: whole revolutions of it matter."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from typing import NamedTuple, Protocol
 
 from ...components import COMPONENTS
-from ...components.shaft_driven import FOLLOWED
+from ...components.shaft_driven import FOLLOWED, ShaftDriven
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError
 
 ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
 ALONE, SPEED = "follow_shaft", "speed"  # parameters: false where an instance turns by itself, and how fast
 RADIAN = "rad"
+_OTHERS = {name for name, each in COMPONENTS.items() if not issubclass(each, ShaftDriven)}
 _SHAFTS = {name for name, each in COMPONENTS.items() if SHAFT.of(*SHAFT.members) in each.terminals}
 
 
@@ -44,10 +46,7 @@ class Wired(Protocol):
 def movers_of(instances: Iterable[str], run: Wired) -> list[Mover]:
     """Return what turns some instances, directly or through others, loads included."""
     found, passed, waiting = dict[Mover, None](), set[str](), sorted(set(instances))
-    wires = dict[str, dict[str, str]]()
-    for sink, source in run.wires.items():
-        name, _dot, variable = sink.rpartition(".")
-        wires.setdefault(name, {})[variable] = source
+    wires = _by_owner(tuple(run.wires.items()))
     while waiting:
         name = waiting.pop()
         if name not in passed:
@@ -56,6 +55,16 @@ def movers_of(instances: Iterable[str], run: Wired) -> list[Mover]:
             found |= dict.fromkeys(_of(name, given, run))
             waiting += [source.rpartition(".")[0] for source in given.values()]
     return list(found)
+
+
+@lru_cache(maxsize=16)  # every claim on every run of a sweep asks
+def _by_owner(wires: tuple[tuple[str, str], ...]) -> dict[str, dict[str, str]]:
+    """Return the sources of the wired inputs of each instance."""
+    found = dict[str, dict[str, str]]()
+    for sink, source in wires:
+        name, _dot, variable = sink.rpartition(".")
+        found.setdefault(name, {})[variable] = source
+    return found
 
 
 def _of(name: str, given: Mapping[str, str], run: Wired) -> Iterator[Mover]:
@@ -76,6 +85,8 @@ def _of(name: str, given: Mapping[str, str], run: Wired) -> Iterator[Mover]:
 
 def turns_alone(name: str, run: Wired) -> bool:
     """Return whether an instance turns at its own speed, although it could follow a shaft."""
+    if run.fmus.get(name, "") in _OTHERS:
+        return False
     try:
         return not run.parameter(f"{name}.{ALONE}")
     except LoomfmuError:
