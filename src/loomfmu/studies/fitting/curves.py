@@ -71,7 +71,7 @@ def compared(data: Measured, run: Signals, offset: float = 0.0) -> list[Compared
     axis = run.shaft_angle if data.over == "shaft_angle" else run.time
     if data.over == "shaft_angle" and not run.turns:
         raise LoomfmuError(
-            f"{data.path}: it is measured over the shaft angle, but no shaft turns in this scene"
+            f"{data.path}: it is measured over the shaft angle, but {run.standing} in this scene"
         )
     places = _places(data, axis, offset)
     found = []
@@ -84,6 +84,9 @@ def compared(data: Measured, run: Signals, offset: float = 0.0) -> list[Compared
         factor, unit = run.displayed(signal)
         found.append(Compared(signal, unit, factor, data.along[here], values[here], fine, drift, off))
     return found
+
+
+LONGER = "let it go on for longer"
 
 
 def _places(data: Measured, axis: Floats, offset: float) -> Floats:
@@ -102,8 +105,9 @@ def _places(data: Measured, axis: Floats, offset: float) -> Floats:
         if places.min() + shift < axis[0] - slack or places.max() + shift > axis[-1] + slack:
             measured = f"{places.min() / one:.6g} to {places.max() / one:.6g} {unit}"
             moved = f", with an offset of {shift / one:.6g} {unit}" if shift else ""
+            before = places.min() + shift < axis[0] - slack
             raise LoomfmuError(
                 f"{data.path}: measured from {measured}{moved}, but the run goes from {axis[0] / one:.6g} to"
-                f" {axis[-1] / one:.6g} {unit}; let it go on for longer"
+                f" {axis[-1] / one:.6g} {unit}; {'leave out what is before it' if before else LONGER}"
             )
     return np.asarray(np.clip(places + offset, axis[0], axis[-1]))

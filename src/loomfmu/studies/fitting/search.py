@@ -120,7 +120,7 @@ class Search:
                 moved[number] = share
                 changed[number] |= bool(np.any(self._residuals(moved) != there))
             if not changed[number]:
-                raise LoomfmuError(f"{span.key} changes none of the measured signals between {span.text}")
+                raise LoomfmuError(f"{span.key} changes none of the measured signals from {span.text}")
         for shares in scattered:
             with contextlib.suppress(LoomfmuError):  # not every combination can be run
                 ranked.append((float(np.sum(self._residuals(shares) ** 2)), tuple(shares)))
