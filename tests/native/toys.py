@@ -321,7 +321,8 @@ class Loops(Component):
             # a loop within a loop
             for inner in range(end):
                 number = number + inner
-                double += 1 / (1 + number * number)
+                NAN = 1 + number * number
+                double += 1 / NAN
         self.register = double if -(-1.0 * double) > 0 else -double
         self.last = number
         self.chained = 0 < time <= 2.0 and not end < 3

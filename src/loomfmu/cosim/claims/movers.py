@@ -1,4 +1,4 @@
-"""What turns the instances that a claim judges: whole revolutions of it matter."""
+"""The angles and speeds that turn the instances of a claim: whole revolutions of these matter."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache

@@ -284,12 +284,15 @@ KEYWORDS = frozenset(
         "void",
         "volatile",
         "while",
+        # macros of its headers
+        "INFINITY",
+        "NAN",
     )
 )
 
 
 def c_name(name: str) -> str:
-    """A name that C takes, with its owner and its index: keywords of C get an underscore."""
+    """A name that C takes, with its owner and its index: keywords and macros of C get an underscore."""
     owner, dot, member = name.rpartition(".")
     word, bracket, index = member.partition("[")
     own = f"{word}_{bracket}{index}" if word in KEYWORDS else member
