@@ -91,6 +91,20 @@ def test_a_value_that_one_trace_lacks_is_a_difference_and_one_that_both_lack_is_
     assert "no value" in repr(found)
 
 
+def test_an_instance_that_one_trace_lacks_is_one_change(tmp_path: Path) -> None:
+    """Not one for each of its values and signals."""
+    for name in ("a.h5", "b.h5"):
+        trace(tmp_path / name)
+    with h5py.File(tmp_path / "b.h5", "r+") as file:
+        file.move("belt", "belt_2")
+    found = loomfmu.compare(tmp_path / "a.h5", tmp_path / "b.h5")
+    assert [change.row for change in found.changes if change.what != "claim"] == [
+        ("instance", "belt", "recorded", "missing"),
+        ("instance", "belt_2", "missing", "recorded"),
+    ]
+    assert "2 instances in one trace only" in found.summary
+
+
 def test_signals_claims_values_and_lengths_that_changed(tmp_path: Path) -> None:
     a = trace(tmp_path / "a.h5")
     b = trace(tmp_path / "b.h5", more=True, worst=-0.5, clearance=5e-4, turns=1.5)

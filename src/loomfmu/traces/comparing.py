@@ -79,10 +79,15 @@ def compare(
     """
     one, two = traces = _opened(first), _opened(second)
     allowed = Tolerance(_share(tolerance), dict(absolute or {}))
-    kept = [_kept(trace, ignore) for trace in traces]
+    if isinstance(ignore, str):
+        raise LoomfmuError(f'ignore = {shown(ignore)} must be a list such as ["motor.*"]')
+    instances = [list(dict.fromkeys(map(_owner, (*trace.parameters, *trace)))) for trace in traces]
+    alone = [_kept(here, (*ignore, *there)) for here, there in (instances, instances[::-1])]
+    every = [*ignore, *(f"{name}.*" for names in alone for name in names)]
+    kept = [_kept(trace, every) for trace in traces]
     if ignore and not any(kept):
         raise LoomfmuError(f"ignore = {shown(ignore)} leaves out all signals, so there is nothing to compare")
-    values = [_kept(trace.parameters, ignore) for trace in traces]
+    values = [_kept(trace.parameters, every) for trace in traces]
     allowed.check([*SHARED, *(name for names in (*kept, *values) for name in names)])
     meeting = meet(one, two, over)
     common = [name for name in kept[0] if name in traces[1] and name in kept[1]]
@@ -91,6 +96,8 @@ def compare(
         (each for each in found if isinstance(each, Difference)), key=lambda each: -each.relative
     )
     changes = (  # causes before effects
+        *(Change("instance", name, "recorded", "missing") for name in alone[0]),
+        *(Change("instance", name, "missing", "recorded") for name in alone[1]),
         *_values(one, two, values[0], values[1], allowed),
         *_claims(one, two, allowed),
         *_status(one, two),
@@ -152,9 +159,11 @@ def _share(tolerance: str | float) -> float:
         raise LoomfmuError(f"tolerance = {shown(tolerance)}: {error}; {wanted}") from None
 
 
+def _owner(name: str) -> str:
+    return name.partition(".")[0]
+
+
 def _kept(names: Any, ignore: Sequence[str]) -> list[str]:
-    if isinstance(ignore, str):
-        raise LoomfmuError(f'ignore = {shown(ignore)} must be a list such as ["motor.*"]')
     return [name for name in names if not any(fnmatch.fnmatchcase(name, pattern) for pattern in ignore)]
 
 

@@ -12,6 +12,7 @@ from ..errors import listed
 SIGNAL_HEADINGS = ("signal", "first at", "", "", "largest difference", "relative", "at")
 CHANGE_HEADINGS = ("what", "name", "", "")
 KINDS = {
+    "instance": ("instance", " in one trace only"),
     "value": ("value",),
     "claim": ("claim",),
     "run": ("difference", " in the run"),
