@@ -58,7 +58,9 @@ def add_limit(commands: Any) -> None:
         help="where the range of the first --vary begins, with its unit",
     )
     command.add_argument(
-        "--to", metavar="HIGH", help="where it ends; by default half to twice the scene's value"
+        "--to",
+        metavar="HIGH",
+        help="where it ends; by default both are the variable's bounds, or half and twice the scene's value",
     )
     command.add_argument(
         "--points", type=int, metavar="N", help="values of the first that are tried first (41)"
@@ -176,7 +178,7 @@ def add_fit(commands: Any) -> None:
     command = commands.add_parser(
         "fit",
         help="find parameters of a scene from measured curves",
-        epilog="Exit status: 0 parameters were found; 1 a signal is hardly explained, or a parameter ended at"
+        epilog="Exit status: 0 the data are explained; 1 a signal is hardly explained, or a parameter ended at"
         " an end of its range; 2 bad input or a failed FMU.",
     )
     add_scene(command)
