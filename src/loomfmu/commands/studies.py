@@ -178,8 +178,8 @@ def add_fit(commands: Any) -> None:
     command = commands.add_parser(
         "fit",
         help="find parameters of a scene from measured curves",
-        epilog="Exit status: 0 the data are explained; 1 a signal is hardly explained, or a parameter ended at"
-        " an end of its range; 2 bad input or a failed FMU.",
+        epilog="Exit status: 0 the data are explained; 1 a signal is hardly explained, or a parameter ended"
+        " at an end of its range; 2 bad input or a failed FMU.",
     )
     add_scene(command)
     command.add_argument(
