@@ -50,16 +50,22 @@ def test_all_that_turns_an_instance_counts(
     fmus: Mapping[str, str], wires: Mapping[str, str], alone: tuple[str, ...], found: set[str]
 ) -> None:
     movers = movers_of(["belt"], Run(fmus, wires, alone))
-    names = {each.angle or each.speed for each in movers if each.turns}
-    assert names - {"gear.angle", "belt.angle"} == found
+    names = {each.angle or each.speed for each in movers}
+    assert names == found
 
 
 def test_an_angle_of_a_mechanism_of_ones_own_may_swing() -> None:
-    run = Run({"rocker": "Rocker", "shaft": "MainShaft"}, {"rocker.shaft_angle": "shaft.angle"})
-    assert set(movers_of(["rocker"], run)) == {
-        Mover("shaft.angle"),
+    """What others follow turns; what they take as a number may swing; what nobody takes does not count."""
+    fmus = {"rocker": "Rocker", "lay": "Lay", "weft": "WeftInsertion", "shaft": "MainShaft"}
+    wires = {"rocker.shaft_angle": "shaft.angle"}
+    assert movers_of(["rocker"], Run(fmus, wires)) == [Mover("shaft.angle")]
+    taken = wires | {"lay.seen": "rocker.angle"}
+    assert set(movers_of(["lay"], Run(fmus, taken))) == {
         Mover("rocker.angle", turns=False),
+        Mover("shaft.angle"),
     }
+    followed = wires | {"weft.shaft_angle": "rocker.angle"}
+    assert set(movers_of(["rocker"], Run(fmus, followed))) == {Mover("rocker.angle"), Mover("shaft.angle")}
 
 
 WEFT = '[weft]\nmachine = "WL680-3600"\nhead = "G6300 left"\n'

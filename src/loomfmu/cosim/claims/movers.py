@@ -1,6 +1,6 @@
 """The angles and speeds that turn the instances of a claim: whole revolutions of these matter."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple, Protocol
 
@@ -47,12 +47,13 @@ def movers_of(instances: Iterable[str], run: Wired) -> list[Mover]:
     """Return what turns some instances, directly or through others, loads included."""
     found, passed, waiting = dict[Mover, None](), set[str](), sorted(set(instances))
     wires = _by_owner(tuple(run.wires.items()))
+    followed = {given[ANGLE_INPUT] for given in wires.values() if ANGLE_INPUT in given}
     while waiting:
         name = waiting.pop()
         if name not in passed:
             passed.add(name)
             given = wires.get(name, {})
-            found |= dict.fromkeys(_of(name, given, run))
+            found |= dict.fromkeys(_of(name, given, followed, run))
             waiting += [source.rpartition(".")[0] for source in given.values()]
     return list(found)
 
@@ -67,20 +68,18 @@ def _by_owner(wires: tuple[tuple[str, str], ...]) -> dict[str, dict[str, str]]:
     return found
 
 
-def _of(name: str, given: Mapping[str, str], run: Wired) -> Iterator[Mover]:
-    """Yield what turns one instance, given the sources of its inputs, and the angle of its own shaft."""
+def _of(name: str, given: Mapping[str, str], followed: Container[str], run: Wired) -> Iterator[Mover]:
+    """Yield what turns one instance, given the sources of its inputs; a `followed` shaft turns itself."""
     fmu, own, angle = run.fmus.get(name, ""), f"{name}.{ANGLE}", f"{name}.{ANGLE_INPUT}"
     if ANGLE_INPUT in given or angle in run:
         yield Mover(given.get(ANGLE_INPUT, angle))
     elif turns_alone(name, run):
         yield Mover("", f"{name}.{SPEED}")
-    if fmu in _SHAFTS:
+    if fmu in _SHAFTS or own in followed:
         yield Mover(own)
-    if fmu not in COMPONENTS:
-        others = [source for variable, source in given.items() if variable not in FOLLOWED]
-        for each in (*others, own):
-            if each in run and run.unit(each) == RADIAN:
-                yield Mover(each, turns=run.fmus.get(each.rpartition(".")[0], "") in _SHAFTS)
+    for variable, source in given.items() if fmu not in COMPONENTS else ():
+        if variable not in FOLLOWED and source in run and run.unit(source) == RADIAN:
+            yield Mover(source, turns=run.fmus.get(source.rpartition(".")[0], "") in _SHAFTS)
 
 
 def turns_alone(name: str, run: Wired) -> bool:
