@@ -668,6 +668,31 @@ def test_a_table_that_its_own_rate_contradicts_decides_nothing(
     assert contradicted in found.note and ("is not the rate" in found.note) == bool(contradicted)
 
 
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        (
+            '[wires]\n"belt.acceleration" = false\n',
+            "belt.acceleration is constant, but belt.velocity is wired",
+        ),
+        (
+            '[wires]\n"belt.acceleration" = false\n[inputs]\n"belt.acceleration" = [[0, 0]]\n',
+            "belt.acceleration is a table, but belt.velocity is wired; wire both",
+        ),
+        (
+            '[wires]\n"belt.travel" = false\n[inputs]\n"belt.travel" = [[0, 0], [1, "1 m"]]\n',
+            "belt.velocity is wired, but belt.travel a table; give both",
+        ),
+    ],
+)
+def test_a_rate_that_comes_from_elsewhere_decides_nothing(given: str, why: str) -> None:
+    """Without the wire of its acceleration the belt was never at risk, or bent by half a metre."""
+    text = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\n[shaft]\nspeed = "600 rpm"\n'
+    text += given + '[[claims]]\nkind = "lowest_margin"\nbound = 0.99\n'
+    (found,) = evaluate(parse(text, overrides={"steps_per_revolution": 90})).claims
+    assert found.word == "undecided" and why in found.note
+
+
 def test_a_yes_or_no_output_is_no_surer_than_the_number_that_decides_it(tmp_path: Path) -> None:
     """The belt buckles where its margin, 3e-6 with 76 steps and an error of 2e-4, is below 0."""
     text = """

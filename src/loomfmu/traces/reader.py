@@ -126,7 +126,11 @@ class Trace(Signals):
             found = [(name, variable) for name, group in groups.items() for variable in group]
             for name, variable in found:
                 check_link(groups[name], variable)
-            return {f"{name}.{variable}": None for name, variable in found if variable not in SHARED}
+            return {  # an instance has a link to the coordinates of all, or a signal of that name
+                f"{name}.{variable}": None
+                for name, variable in found
+                if variable not in SHARED or groups[name][variable] != file[variable]
+            }
 
     def check(self) -> None:
         """Read all that the file says of the run and its signals. Raises LoomfmuError where it is damaged."""

@@ -111,3 +111,44 @@ def test_a_revolution_ends_once_however_a_shaft_turns_back() -> None:
     text = TURNING_BACK.format(4, 0, force=3000, end=0.12, after=0.13)
     (found,) = evaluate(parse(text + '[[claims]]\nkind = "speed_fluctuation"\nat_most = 8\n')).claims
     assert found.word == "FAILS" and found.worst == pytest.approx(14.895, rel=1e-3)
+
+
+REED = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nreed = true\n[reed]\nbeat_up_angle = "150 deg"\n'
+SHED = '[[claims]]\nkind = "reed_clear_of_rapier"\nclearance = "20 mm"\n'
+FRAMES = '[loom]\nmachine = "WL680-3600"\nweave = "10/01"\n'
+DWELL = '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "60 deg"\n'
+CLEAR = '[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\nclearance = "3 mm"\nat_least = "100 deg"\n'
+
+
+@pytest.mark.parametrize(("start", "scene", "claim"), [(230, FRAMES, DWELL), (330, FRAMES, CLEAR)])
+def test_a_dwell_in_which_the_shaft_turns_back_has_no_length(start: int, scene: str, claim: str) -> None:
+    """Entered and left at one angle, it lasted 0 deg, and failed."""
+    text = TURNING_BACK.format(3, start, force=2000, end=0.06, after=0.07) + scene + claim
+    (found,) = evaluate(parse(text)).claims
+    assert found.word == "undecided" and "the shaft turns back" in found.note
+
+
+def test_a_mechanism_that_follows_nothing_stands() -> None:
+    text = 'duration = "20 ms"\nstep = "0.2 ms"\n' + WEFT + BELOW.format("weft.travel", '"1 m"')
+    (found,) = evaluate(parse(text, overrides={"weft.follow_shaft": True})).claims
+    assert found.word == "undecided" and "nothing feeds weft.shaft_angle" in found.note
+
+
+def test_a_head_that_turns_back_has_not_been_through_the_shed() -> None:
+    text = TURNING_BACK.format(0.1, 60, force=2000, end=0.06, after=0.07) + REED + SHED
+    text = text.replace("steps_per_revolution = 720", "steps_per_revolution = 7200")
+    (found,) = evaluate(parse(text)).claims
+    assert found.word == "undecided" and "the shaft turns by only 0.0" in found.note
+
+
+def test_a_table_of_the_shafts_angle_takes_effect_as_a_wire_does() -> None:
+    """The mechanism turned at its own speed, whatever the table said."""
+    text = 'revolutions = {}\nsteps_per_revolution = 90\n[shaft]\nspeed = "200 rpm"\n' + WEFT
+    text += "[wires]\n" + "".join(
+        f'"weft.shaft_{each}" = false\n' for each in ("angle", "velocity", "acceleration")
+    )
+    text += '[inputs]\n"weft.shaft_angle" = [[0, 0], [10, "720 deg"]]\n'
+    text += '"weft.shaft_velocity" = [[0, "40 rpm"]]\n' + BELOW.format("weft.travel", '"1 m"')
+    (short,), (whole,) = (evaluate(parse(text.format(turns))).claims for turns in (1, 6))
+    assert short.word == "undecided" and short.note.startswith("weft.shaft_angle turns by only 0.2")
+    assert whole.word == "FAILS" and whole.worst == pytest.approx(2.0953, rel=1e-3)

@@ -1,6 +1,6 @@
 """The communication points of a run: equal steps, or points that were chosen."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,9 +118,9 @@ def contradicted(scene: Scene) -> dict[str, str]:
 
     Between rows both lie on straight lines, which agree only where the rate is constant.
     """
-    found = dict[str, str]()
     driven = {(each.instance, each.variable): each for each in scene.drives}
-    wired = {wire.sink for wire in scene.wires}
+    wired = {wire.sink: wire.source for wire in scene.wires}
+    found = _fed_apart(scene, wired, driven)
     for (name, variable), drive in driven.items():
         instance = scene.instances[name]
         rate = instance.fmu.ports[variable].rate
@@ -140,6 +140,30 @@ def contradicted(scene: Scene) -> dict[str, str]:
         if np.any(seen & (off > AGREE * np.ptp(values))):
             wrong = f"{name}.{rate} is not the rate of inputs.{name}.{variable} between its rows"
             found.setdefault(name, f"{wrong}; give both as tables, with a row for each step")
+    return found
+
+
+def _fed_apart(
+    scene: Scene, wired: Mapping[tuple[str, str], tuple[str, str]], driven: Collection[tuple[str, str]]
+) -> dict[str, str]:
+    """The instances with a wired input whose rate comes from elsewhere, or from nowhere."""
+    found, fed = dict[str, str](), {*wired, *driven}
+    for name, instance in scene.instances.items():
+        for variable, port in instance.fmu.ports.items():
+            if port.causality != "input" or port.rate is None or instance.switched_off(variable)[0]:
+                continue
+            here, there = (name, variable), (name, port.rate)
+            if here in wired and there not in wired:
+                how = "a table" if there in driven else "constant"
+                found.setdefault(
+                    name, f"{name}.{port.rate} is {how}, but {name}.{variable} is wired; wire both"
+                )
+            elif variable in instance.fmu.shaft_inputs[:1] and not {here, there} & fed:
+                found.setdefault(name, f"{name} follows a shaft, but nothing feeds {name}.{variable}")
+            elif there in wired and here in driven:
+                found.setdefault(
+                    name, f"{name}.{port.rate} is wired, but {name}.{variable} a table; give both"
+                )
     return found
 
 

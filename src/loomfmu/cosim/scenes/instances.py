@@ -12,7 +12,6 @@ from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ..importing.facts import facts_of
 from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
-from .graph import Wire
 from .keys import KEYS, stem
 from .settings import truth
 
@@ -90,11 +89,11 @@ class Instance:
         if self.fmu.ours and AT_STEP_END in self.fmu.ports:
             self.values.setdefault(AT_STEP_END, True)
 
-    def follow(self, wire: Wire) -> None:
-        """Let a wired input take effect, such as the angle of a shaft; rates of inputs come with these."""
+    def follow(self, name: str) -> None:
+        """Let an input that is fed take effect, such as a shaft's angle; rates of inputs come with these."""
         declared = self._declared()
-        if wire.sink[1] in declared and wire.sink[1] not in {each.rate for each in declared.values()}:
-            switch = declared[wire.sink[1]].when or ""
+        if name in declared and name not in {each.rate for each in declared.values()}:
+            switch = declared[name].when or ""
             if switch in self.fmu.ports:
                 self.values.setdefault(switch, True)
 

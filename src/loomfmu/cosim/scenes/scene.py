@@ -194,6 +194,8 @@ def assemble(
     """
     speed = _speed(instances)
     drives = drives_of(instances, wires, tables.get("inputs", {}))
+    for drive in drives:
+        instances[drive.instance].follow(drive.variable)
     outputs = (f"{name}.{variable}" for name, each in instances.items() for variable in each.fmu.outputs)
     fields = settings_of(tables, origin["name"], dict.fromkeys(outputs), speed)
     if fields["coupling"] is None:

@@ -50,7 +50,7 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
     for inheriting in instances.values():
         inheriting.inherit(instances, fed)
     for each in wires:
-        instances[each.sink[0]].follow(each)
+        instances[each.sink[0]].follow(each.sink[1])
     return wires
 
 

@@ -153,6 +153,8 @@ static void judge_span(struct run *run, const struct call *call, struct answer *
     struct note said[2];
     struct moment turn[2] = {{NAN, NAN}, {NAN, NAN}};
     answer->fails_for_good = false; /* a carrier may still come to an end of its stroke */
+    if (turns_back(run))
+        answer->unseen = "the shaft turns back, so that no turn tells how long a dwell lasts";
     for (ptrdiff_t each = 0; each < call->signals; each++) {
         lift[each] = curve(run, signal_of(call, each));
         spans[each] = spans_of(lift[each], distance, stroke, dwells);

@@ -48,7 +48,7 @@ static void judge_fluctuation(struct run *run, const struct call *call, struct a
 static struct stretches in_shed(struct run *run, const struct call *call, struct answer *answer)
 {
     struct stretches found = beyond(curve(run, signal_of(call, 0)), call->number[1], 1.0);
-    answer->unseen = has_whole(&found) ? short_but_for_shaft(run) : short_run(run);
+    answer->unseen = has_whole(&found) && !turns_back(run) ? short_but_for_shaft(run) : short_run(run);
     if (found.count == 0)
         found_nothing(run, answer, "the head never enters the shed in this run");
     note_unknown(run, answer, curve(run, signal_of(call, 0)));
@@ -146,7 +146,7 @@ static void judge_transfer_speed(struct run *run, const struct call *call, struc
 {
     struct motion *overlap = curve(run, signal_of(call, 0));
     struct stretches during = beyond(overlap, call->number[1], 1.0);
-    answer->unseen = has_whole(&during) ? short_but_for_shaft(run) : short_run(run);
+    answer->unseen = has_whole(&during) && !turns_back(run) ? short_but_for_shaft(run) : short_run(run);
     note_unknown(run, answer, overlap);
     if (during.count == 0) {
         found_nothing(run, answer, "the heads never overlap by what the hooks need in this run");

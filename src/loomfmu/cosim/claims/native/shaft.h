@@ -3,6 +3,7 @@
 /* Between samples farther apart a window of risk may be lost whole. With 20 samples in a revolution the lowest margin of
  * the published looms is known to 2e-3, with 16 to 5e-3, and with 8 not at all. */
 static const double FARTHEST = 6.283185307179586 / 20.0;
+static const double BACK = 1e-6; /* of its range, or of a turn: an angle that close to another one is back there */
 static const double STANDS = 1e-9; /* of a revolution: angles that are closer are one where a run begins or ends */
 static const char UNPASSED[] = "the run never passes through the whole window";
 
@@ -17,63 +18,6 @@ struct place {
 static bool too_coarse(const struct motion *turning)
 {
     return turning->longest > FARTHEST * (1.0 + SAME);
-}
-
-static bool swings(struct motion *motion)
-{
-    bool rises = false, falls = false;
-    for (ptrdiff_t place = 0; place + 1 < motion->samples; place++) {
-        rises = rises || sample(motion, 1, place + 1) > sample(motion, 1, place);
-        falls = falls || sample(motion, 1, place + 1) < sample(motion, 1, place);
-    }
-    return rises && falls;
-}
-
-/* A note if a shaft turns by less than so many revolutions; empty otherwise. */
-static const char *turned_less(struct run *run, struct mover shaft, double wanted, const char *why)
-{
-    double turned = fabs(shaft.speed) * (end_of(run) - time_at(run, 0)) / TURN;
-    const char *which = "a mechanism at its own speed";
-    if (shaft.angle >= 0.0) {
-        struct motion *turning = curve(run, (int)shaft.angle);
-        turned = (turning->highest - turning->lowest) / TURN;
-        if (shaft.turns == 0.0 && swings(turning))
-            return "";
-        which = shaft.angle == run->shaft ? "the shaft" : run->signals[(int)shaft.angle].name;
-    } else if (shaft.speed == 0.0) /* it stands */
-        return "";
-    if (turned >= wanted - STANDS)
-        return "";
-    const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
-    return text(run, "%s turns by only %s revolution%s, %s", which, number, strcmp(number, "1") == 0 ? "" : "s", why);
-}
-
-/* A note on a run of less than so many revolutions of what turns that which the question is about, the main shaft included
- * or not; empty for others.
- *
- * Where nothing is known to turn it, the main shaft matters. */
-static const char *turns_less(struct run *run, bool main, double wanted, const char *why)
-{
-    const struct mover shaft = {run->shaft, 1.0, 0.0};
-    const char *note = run->moving == 0 && run->shaft >= 0 && main ? turned_less(run, shaft, wanted, why) : "";
-    for (const struct mover *each = run->movers; each < run->movers + run->moving && *note == '\0'; each++)
-        if (main || each->angle < 0.0 || each->angle != run->shaft)
-            note = turned_less(run, *each, wanted, why);
-    return note;
-}
-
-static const char WHOLE[] = "and the claim takes a whole one";
-
-/* A note on a run in which something that matters turns by less than a revolution; empty for others. */
-static const char *short_run(struct run *run)
-{
-    return turns_less(run, true, 1.0, WHOLE);
-}
-
-/* The same where the run shows all that the question asks of the main shaft. */
-static const char *short_but_for_shaft(struct run *run)
-{
-    return turns_less(run, false, 1.0, WHOLE);
 }
 
 enum { WORDS = 8, PICKS_IN_A_WORD = 16 }; /* of a frame's pattern: its length, then words whose bits are its pegs */
@@ -97,25 +41,6 @@ static int repeat_of(const double *pattern)
         }
     }
     return repeat;
-}
-
-/* A note on a run that is shorter than the repeat of the weave; empty for others. */
-static const char *unwoven(struct run *run, const double *pegs, ptrdiff_t count)
-{
-    double picks = 1.0;
-    for (const double *pattern = pegs; pattern < pegs + count; pattern += 1 + WORDS) {
-        const double repeat = repeat_of(pattern);
-        double common = repeat, rest = picks; /* their greatest divisor, by Euclid */
-        while (rest != 0.0) {
-            const double next = fmod(common, rest);
-            common = rest;
-            rest = next;
-        }
-        picks *= repeat / common;
-    }
-    if (picks == 1.0) /* as `short_run` says */
-        return "";
-    return turns_less(run, true, picks, text(run, "and the weave repeats after %.0f; set revolutions = %.0f or more", picks, picks));
 }
 
 static struct place place_at(struct run *run, double time)
@@ -190,6 +115,82 @@ static struct times revolutions(struct run *run)
     return times;
 }
 
+/* Whether an angle stands, or is back where it was after a revolution of the main shaft. */
+static bool swings(struct run *run, struct motion *motion)
+{
+    const double range = motion->highest - motion->lowest;
+    if (range == 0.0 || run->shaft < 0)
+        return range == 0.0;
+    struct times turns = revolutions(run);
+    return turns.count > 1 && fabs(value_of(motion, turns.list[1]) - value_of(motion, turns.list[0])) <= BACK * range;
+}
+
+/* A note if a shaft turns by less than so many revolutions; empty otherwise. */
+static const char *turned_less(struct run *run, struct mover shaft, double wanted, const char *why)
+{
+    double turned = fabs(shaft.speed) * (end_of(run) - time_at(run, 0)) / TURN;
+    const char *which = "a mechanism at its own speed";
+    if (shaft.angle >= 0.0) {
+        struct motion *turning = curve(run, (int)shaft.angle);
+        turned = (turning->highest - turning->lowest) / TURN;
+        if (shaft.turns == 0.0 && swings(run, turning))
+            return "";
+        which = shaft.angle == run->shaft ? "the shaft" : run->signals[(int)shaft.angle].name;
+    } else if (shaft.speed == 0.0) /* it stands */
+        return "";
+    if (turned >= wanted - STANDS)
+        return "";
+    const char *number = text(run, "%.4g", fabs(turned)); /* without the sign that a NaN may have */
+    return text(run, "%s turns by only %s revolution%s, %s", which, number, strcmp(number, "1") == 0 ? "" : "s", why);
+}
+
+/* A note on a run of less than so many revolutions of what turns that which the question is about, the main shaft included
+ * or not; empty for others.
+ *
+ * Where nothing is known to turn it, the main shaft matters. */
+static const char *turns_less(struct run *run, bool main, double wanted, const char *why)
+{
+    const struct mover shaft = {run->shaft, 1.0, 0.0};
+    const char *note = run->moving == 0 && run->shaft >= 0 && main ? turned_less(run, shaft, wanted, why) : "";
+    for (const struct mover *each = run->movers; each < run->movers + run->moving && *note == '\0'; each++)
+        if (main || each->angle < 0.0 || each->angle != run->shaft)
+            note = turned_less(run, *each, wanted, why);
+    return note;
+}
+
+static const char WHOLE[] = "and the claim takes a whole one";
+
+/* A note on a run in which something that matters turns by less than a revolution; empty for others. */
+static const char *short_run(struct run *run)
+{
+    return turns_less(run, true, 1.0, WHOLE);
+}
+
+/* The same where the run shows all that the question asks of the main shaft. */
+static const char *short_but_for_shaft(struct run *run)
+{
+    return turns_less(run, false, 1.0, WHOLE);
+}
+
+/* A note on a run that is shorter than the repeat of the weave; empty for others. */
+static const char *unwoven(struct run *run, const double *pegs, ptrdiff_t count)
+{
+    double picks = 1.0;
+    for (const double *pattern = pegs; pattern < pegs + count; pattern += 1 + WORDS) {
+        const double repeat = repeat_of(pattern);
+        double common = repeat, rest = picks; /* their greatest divisor, by Euclid */
+        while (rest != 0.0) {
+            const double next = fmod(common, rest);
+            common = rest;
+            rest = next;
+        }
+        picks *= repeat / common;
+    }
+    if (picks == 1.0) /* as `short_run` says */
+        return "";
+    return turns_less(run, true, picks, text(run, "and the weave repeats after %.0f; set revolutions = %.0f or more", picks, picks));
+}
+
 /* Stretches of time in which the shaft is in a window of its revolution, the edges included as stretches without length. */
 static struct stretches times_within(struct run *run, struct window window)
 {
@@ -236,6 +237,23 @@ static struct stretches passes(struct run *run, struct window window)
             add_stretch(run, &found, each.start, each.end, true);
     }
     return found;
+}
+
+/* Whether the shaft turns back anywhere in the run. */
+static bool turns_back(struct run *run)
+{
+    if (run->shaft < 0)
+        return false;
+    struct motion *turning = shaft_of(run);
+    const double way = sample(turning, 1, run->samples - 1) < sample(turning, 1, 0) ? -1.0 : 1.0;
+    double farthest = -INFINITY;
+    for (ptrdiff_t place = 0; place < run->samples; place++) {
+        const double angle = way * sample(turning, 1, place);
+        if (angle < farthest - BACK * TURN)
+            return true;
+        farthest = larger(farthest, angle);
+    }
+    return false;
 }
 
 /* A note on a run that shows a window of the revolution only in part; empty for others. */
