@@ -10,7 +10,6 @@ from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene
-from loomfmu.cosim.scenes.graph import Wire
 from loomfmu.declaring.variables import Component
 from loomfmu.fmi.description.model_description import model_description
 from loomfmu.fmi.description.model_description3 import model_description3
@@ -244,9 +243,9 @@ def test_variables_called_as_ours_are_have_no_special_effect(tmp_path: Path) -> 
     bell = scene.parse(text, directory=tmp_path).instances["bell"]
     assert {"guide_clearance", "lift_fraction", "soft"} <= set(bell.effective())
     assert "force" not in bell.effective()
-    bell.follow(Wire(("warp", "frame_load"), ("bell", "lift_fraction")))
+    bell.follow("lift_fraction")
     assert "follow_lift" not in bell.values
-    bell.follow(Wire(("warp", "frame_load"), ("bell", "force")))
+    bell.follow("force")
     assert bell.values["loud"] is True
     assert "soft" not in bell.effective()
     assert "force" in bell.effective()

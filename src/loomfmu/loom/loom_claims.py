@@ -160,7 +160,7 @@ class LocksInTime(Claim):
     def _velocity(self, run: Wired) -> str:
         """The velocity of the lock's shaft; "" if it turns by itself."""
         given = f"{self.lock}.shaft_velocity"
-        return run.wires.get(given, given if given in run else "")
+        return run.wires.get(given, "")
 
     def question(self, trace: Signals) -> Question:
         velocity, margin = self._velocity(trace), f"{self.lock}.torque_margin"

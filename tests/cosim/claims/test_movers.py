@@ -1,12 +1,15 @@
 """What turns the instances that a claim judges, and the whole revolutions of it that a run must show."""
 
+import math
 from collections.abc import Mapping
 
+import numpy as np
 import pytest
 
-from loomfmu import LoomfmuError, evaluate
+from loomfmu import LoomfmuError, evaluate, judge
 from loomfmu.cosim.claims.movers import Mover, movers_of
 from loomfmu.cosim.scenes.scene import parse
+from loomfmu.traces.signals import Channel, Recording
 
 MAIN = {"weft": "WeftInsertion", "belt": "BeltMonitor", "shaft": "MainShaft"}
 
@@ -66,6 +69,34 @@ def test_an_angle_of_a_mechanism_of_ones_own_may_swing() -> None:
     }
     followed = wires | {"weft.shaft_angle": "rocker.angle"}
     assert set(movers_of(["rocker"], Run(fmus, followed))) == {Mover("rocker.angle"), Mover("shaft.angle")}
+
+
+def test_angles_of_any_unit_that_an_fmu_takes_by_wire_or_table_count() -> None:
+    """An input that a table drives is its own source; those of our own components are read at their shaft."""
+    fmus = {"bump": "Bump", "gear": "Gear"}
+
+    class Degrees(Run):
+        def unit(self, signal: str) -> str:
+            return "deg" if signal == "gear.turned" else "rad"
+
+    driven = {"bump.turned": "bump.turned", "bump.seen": "gear.turned"}
+    assert set(movers_of(["bump"], Degrees(fmus, driven))) == {
+        Mover("bump.turned", turns=False),
+        Mover("gear.turned", turns=False, turn=360.0),
+    }
+
+
+@pytest.mark.parametrize(("unit", "turn"), [("rad", math.tau), ("deg", 360.0)])
+def test_a_whole_turn_is_one_in_the_unit_of_the_angle(unit: str, turn: float) -> None:
+    """Without a main shaft; the angle turns by 0.9 or by 1.1 turns."""
+    names = {"bump.lift": "m", "bump.turned": unit}
+    channels = [Channel(*name.split("."), each, each, "", n) for n, (name, each) in enumerate(names.items())]
+    time = np.linspace(0.0, 1.0, 51)
+    for turns, word in ((0.9, "undecided"), (1.1, "holds")):
+        run = Recording("bump", channels, lambda *_: None, {"bump.turned": "bump.turned"}, {"bump": "Bump"})
+        values = np.stack([0.0 * time, turns * turn * time], axis=1)
+        run.append(time, 0.0 * time, values, np.zeros((51, 0), np.int32))
+        assert judge(run, kind="below", signal="bump.lift", bound=1, at_samples=True).word == word
 
 
 WEFT = '[weft]\nmachine = "WL680-3600"\nhead = "G6300 left"\n'

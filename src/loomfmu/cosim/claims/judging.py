@@ -84,7 +84,8 @@ class Question(NamedTuple):
         owners = {signal.partition(".")[0] for signal in self.signals}
         weave = standard().weave_of(owners, trace)
         turning = [
-            (number(each.angle), float(each.turns), each.speed or 0.0) for each in _movers(trace, owners)
+            (number(each.angle), float(each.turns), each.turn, each.speed or 0.0)
+            for each in _movers(trace, owners)
         ]
         rule = library().rule_of(self.rule.encode())
         found: list[float | str] = [rule, len(forms), *chain.from_iterable(forms)]

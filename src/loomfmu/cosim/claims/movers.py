@@ -1,5 +1,6 @@
 """The angles and speeds that turn the instances of a claim: whole revolutions of these matter."""
 
+import math
 from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple, Protocol
@@ -8,10 +9,10 @@ from ...components import COMPONENTS
 from ...components.shaft_driven import FOLLOWED, ShaftDriven
 from ...components.terminals import SHAFT
 from ...errors import LoomfmuError
+from ...units import UNITS, canonical
 
 ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
 ALONE, SPEED = "follow_shaft", "speed"  # parameters: false where an instance turns by itself, and how fast
-RADIAN = "rad"
 _OTHERS = {name for name, each in COMPONENTS.items() if not issubclass(each, ShaftDriven)}
 _SHAFTS = {name for name, each in COMPONENTS.items() if SHAFT.of(*SHAFT.members) in each.terminals}
 
@@ -20,15 +21,20 @@ class Mover(NamedTuple):
     """An angle that turns an instance, or the parameter with the speed at which one turns by itself.
 
     `turns` says that the angle goes on for whole turns; that of a mechanism of one's own may swing instead.
+    `turn` is a whole turn in the angle's unit.
     """
 
     angle: str
     speed: str = ""
     turns: bool = True
+    turn: float = math.tau
 
 
 class Wired(Protocol):
-    """A run, or a scene before it: its signals, its wires from input to output, its FMUs and parameters."""
+    """A run, or a scene before it: its signals, its wires from input to output, its FMUs and parameters.
+
+    An input that a table drives is wired to itself.
+    """
 
     @property
     def wires(self) -> Mapping[str, str]: ...
@@ -70,16 +76,22 @@ def _by_owner(wires: tuple[tuple[str, str], ...]) -> dict[str, dict[str, str]]:
 
 def _of(name: str, given: Mapping[str, str], followed: Container[str], run: Wired) -> Iterator[Mover]:
     """Yield what turns one instance, given the sources of its inputs; a `followed` shaft turns itself."""
-    fmu, own, angle = run.fmus.get(name, ""), f"{name}.{ANGLE}", f"{name}.{ANGLE_INPUT}"
-    if ANGLE_INPUT in given or angle in run:
-        yield Mover(given.get(ANGLE_INPUT, angle))
+    fmu, own = run.fmus.get(name, ""), f"{name}.{ANGLE}"
+    if ANGLE_INPUT in given:
+        yield Mover(given[ANGLE_INPUT])
     elif turns_alone(name, run):
         yield Mover("", f"{name}.{SPEED}")
     if fmu in _SHAFTS or own in followed:
         yield Mover(own)
     for variable, source in given.items() if fmu not in COMPONENTS else ():
-        if variable not in FOLLOWED and source in run and run.unit(source) == RADIAN:
-            yield Mover(source, turns=run.fmus.get(source.rpartition(".")[0], "") in _SHAFTS)
+        if variable not in FOLLOWED and source in run and (turn := whole_turn(run.unit(source))):
+            yield Mover(source, turns=run.fmus.get(source.rpartition(".")[0], "") in _SHAFTS, turn=turn)
+
+
+def whole_turn(unit: str) -> float:
+    """Return a whole turn in a unit of angles, and 0 for any other unit."""
+    known = UNITS.get(canonical(unit))
+    return math.tau / known.factor if known and known.dimension == UNITS["rad"].dimension else 0.0
 
 
 def turns_alone(name: str, run: Wired) -> bool:

@@ -5,7 +5,7 @@ from functools import cached_property
 
 from ...components import COMPONENTS
 from ...declaring.variables import Component
-from ..claims.movers import RADIAN, movers_of
+from ..claims.movers import movers_of, whole_turn
 from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from .requested import SHAFT_ANGLE, Requested
@@ -37,10 +37,9 @@ class Movements:
         component, ports = instance.fmu.component, instance.fmu.ports.values()
         given = [*instance.fmu.shaft_inputs[:1]]
         if not given and component not in COMPONENTS.values():
-            given = [each.name for each in ports if each.causality == "input" and each.unit == RADIAN]
+            given = [each.name for each in ports if each.causality == "input" and whole_turn(each.unit)]
         if given:
-            inputs = [f"{name}.{each}" for each in given]
-            taken = [wires.get(each, each) for each in inputs if each in wires or each in self._outputs]
+            taken = [wires[each] for each in (f"{name}.{variable}" for variable in given) if each in wires]
         else:
             others = [each.angle for each in movers_of([name], self._outputs) if each.angle]
             alone = _own_speed(instance) is not None

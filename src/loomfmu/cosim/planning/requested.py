@@ -52,11 +52,16 @@ def beside_of(scene: Scene, signal: str) -> Beside:
 
 
 def effective_wires(scene: Scene) -> dict[str, str]:
-    """The output that each wired input takes its values from, without inputs that are switched off."""
+    """The output that each wired input takes its values from, without inputs that are switched off.
+
+    An input that a table drives is its own source.
+    """
+    wires = [(wire.sink, wire.source) for wire in scene.wires]
+    driven = [(drive.instance, drive.variable) for drive in scene.drives]
     return {
-        ".".join(wire.sink): ".".join(wire.source)
-        for wire in scene.wires
-        if not scene.instances[wire.sink[0]].switched_off(wire.sink[1])[0]
+        ".".join(sink): ".".join(source)
+        for sink, source in wires + [(each, each) for each in driven]
+        if not scene.instances[sink[0]].switched_off(sink[1])[0]
     }
 
 
@@ -73,7 +78,10 @@ class Requested:
 
     @cached_property
     def wires(self) -> dict[str, str]:
-        """The output that each wired input takes its values from, without inputs that are switched off."""
+        """The output that each wired input takes its values from, without inputs that are switched off.
+
+        A driven input is its own source.
+        """
         return effective_wires(self.scene)
 
     @cached_property

@@ -46,6 +46,7 @@ struct room { /* a piece of memory, freed with all others */
 struct mover {
     double angle; /* the number of a signal; -1 for what turns at a speed of its own */
     double turns; /* 1 for an angle that goes on for whole turns, 0 for one that may swing */
+    double turn;  /* a whole turn in its unit */
     double speed;
 };
 

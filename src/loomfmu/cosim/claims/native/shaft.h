@@ -132,7 +132,7 @@ static const char *turned_less(struct run *run, struct mover shaft, double wante
     const char *which = "a mechanism at its own speed";
     if (shaft.angle >= 0.0) {
         struct motion *turning = curve(run, (int)shaft.angle);
-        turned = (turning->highest - turning->lowest) / TURN;
+        turned = (turning->highest - turning->lowest) / shaft.turn;
         if (shaft.turns == 0.0 && swings(run, turning))
             return "";
         which = shaft.angle == run->shaft ? "the shaft" : run->signals[(int)shaft.angle].name;
@@ -150,7 +150,7 @@ static const char *turned_less(struct run *run, struct mover shaft, double wante
  * Where nothing is known to turn it, the main shaft matters. */
 static const char *turns_less(struct run *run, bool main, double wanted, const char *why)
 {
-    const struct mover shaft = {run->shaft, 1.0, 0.0};
+    const struct mover shaft = {run->shaft, 1.0, TURN, 0.0};
     const char *note = run->moving == 0 && run->shaft >= 0 && main ? turned_less(run, shaft, wanted, why) : "";
     for (const struct mover *each = run->movers; each < run->movers + run->moving && *note == '\0'; each++)
         if (main || each->angle < 0.0 || each->angle != run->shaft)
@@ -259,7 +259,7 @@ static bool turns_back(struct run *run)
 /* A note on a run that shows a window of the revolution only in part; empty for others. */
 static const char *unpassed(struct run *run, struct window window)
 {
-    const struct mover shaft = {run->shaft, 1.0, 0.0};
+    const struct mover shaft = {run->shaft, 1.0, TURN, 0.0};
     if (*turned_less(run, shaft, 1.0, WHOLE) != '\0' && passes(run, window).count == 0)
         return UNPASSED;
     return short_but_for_shaft(run);
