@@ -2,15 +2,16 @@
 
 import shutil
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
-from pathlib import Path
 
-import fmpy
 import pytest
-from natives import Native
+from natives import STEPPED, Instance, Native, Native3
 from sharing import native_fmus
 
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.importing.built import file_of
 
 
 @pytest.fixture(scope="session")
@@ -38,21 +39,30 @@ def built(fmu_cache: None, tools: None) -> dict[str, fmus.Fmu]:
 
 
 @pytest.fixture(scope="session")
-def sources(built: dict[str, fmus.Fmu], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The folder of C sources of each FMU, as a user finds it."""
-    unpacked = tmp_path_factory.mktemp("sources")
-    for name, fmu in built.items():
-        fmpy.extract(fmu.path, unpacked / name)
-    return {name: unpacked / name / "sources" for name in built}
+def built3(built: dict[str, fmus.Fmu]) -> dict[str, fmus.Fmu]:
+    """All native FMUs of FMI 3."""
+
+    def build(name: str) -> fmus.Fmu:
+        return fmus.load(file_of(COMPONENTS[name], "native", ("linux64",), 3))
+
+    with ThreadPoolExecutor(max_workers=4) as pool:
+        return dict(zip(COMPONENTS, pool.map(build, COMPONENTS), strict=True))
 
 
 @pytest.fixture
-def native(built: dict[str, fmus.Fmu]):
-    """Opens instances and frees them after the test."""
-    opened: list[Native] = []
+def package(request: pytest.FixtureRequest):
+    """The native FMU of a component in either FMI."""
+    return lambda name, fmi: request.getfixturevalue("built" if fmi == 2 else "built3")[name]
 
-    def open_(component: str, **options: object) -> Native:
-        opened.append(Native(built[component], **options))
+
+@pytest.fixture
+def native(package):
+    """Opens instances and frees them after the test."""
+    opened: list[Instance] = []
+
+    def open_(component: str, kind: str = STEPPED, fmi: int = 2, **options: object) -> Instance:
+        made = Native if fmi == 2 else Native3
+        opened.append(made(package(component, fmi), kind, **options))
         return opened[-1]
 
     yield open_

@@ -1,20 +1,22 @@
-"""Every function of the standard in every state: what its table of calling sequences asks for."""
+"""Every function of the standards in every state: what their tables of calling sequences ask for."""
 
 import ctypes
+import re
 from ctypes import byref, c_double, c_int, c_size_t, c_void_p
 
 import pytest
-from natives import DISCARD, ERROR, OK, WARNING, Native
+from natives import DISCARD, ERROR, OK, SOLVED, STEPPED, WARNING, EventInfo, Instance, Native
 
-STATES = ("instantiated", "initialization", "step complete", "step failed", "terminated", "error")
+from loomfmu.fmi.native.builder import HEADERS
 
-# section 4.2.4 of FMI 2.0: where each function may be called
-TABLE = {
+# section 4.2.4 of FMI 2.0: where each function may be called in co-simulation
+STATES = ("instantiated", "initialization", "step", "failed", "terminated", "error")
+STEPPED_2 = {
     "SetDebugLogging": STATES,
     "SetupExperiment": ("instantiated",),
     "EnterInitializationMode": ("instantiated",),
     "ExitInitializationMode": ("initialization",),
-    "Terminate": ("step complete", "step failed"),
+    "Terminate": ("step", "failed"),
     "Reset": STATES,
     "GetReal": STATES[1:],
     "GetInteger": STATES[1:],
@@ -33,93 +35,198 @@ TABLE = {
     "GetDirectionalDerivative": (),  # not provided
     "SetRealInputDerivatives": STATES[:3],
     "GetRealOutputDerivatives": STATES[2:],
-    "DoStep": ("step complete",),
+    "DoStep": ("step",),
     "CancelStep": (),  # a step is never under way
-    "GetStatus": ("step complete", "step failed", "terminated"),
-    "GetRealStatus": ("step complete", "step failed", "terminated"),
-    "GetIntegerStatus": ("step complete", "step failed", "terminated"),
-    "GetBooleanStatus": ("step complete", "step failed", "terminated"),
-    "GetStringStatus": ("step complete", "step failed", "terminated"),
+    "GetStatus": ("step", "failed", "terminated"),
+    "GetRealStatus": ("step", "failed", "terminated"),
+    "GetIntegerStatus": ("step", "failed", "terminated"),
+    "GetBooleanStatus": ("step", "failed", "terminated"),
+    "GetStringStatus": ("step", "failed", "terminated"),
 }
 NONE_KEPT = ("GetIntegerStatus", "GetStringStatus")  # allowed, but there is nothing to tell
 
+# section 3.2.3: and in model exchange
+SOLVING = ("instantiated", "initialization", "event", "continuous", "terminated", "error")
+SOLVED_2 = {
+    "ExitInitializationMode": ("initialization",),
+    "Terminate": ("event", "continuous"),
+    "GetReal": SOLVING[1:],
+    "GetInteger": SOLVING[1:],
+    "SetReal": SOLVING[:4],
+    "SetInteger": SOLVING[:3],
+    "SetBoolean": SOLVING[:3],
+    "EnterEventMode": ("event", "continuous"),
+    "NewDiscreteStates": ("event",),
+    "EnterContinuousTimeMode": ("event",),
+    "CompletedIntegratorStep": ("continuous",),
+    "SetTime": ("event", "continuous"),
+    "SetContinuousStates": ("continuous",),
+    "GetEventIndicators": SOLVING[1:],
+    "GetContinuousStates": SOLVING[1:],
+    "GetDerivatives": SOLVING[1:],
+    "GetNominalsOfContinuousStates": SOLVING[1:],
+    "DoStep": (),
+    "GetRealOutputDerivatives": ("terminated", "error"),
+}
 
-def brought_to(instance: Native, state: str) -> c_void_p:
+# FMI 3.0, both interfaces; its functions by the names that FMI 2 has for them
+EVERYWHERE = {"instantiated", "initialization", "step", "event", "continuous", "terminated", "error"}
+SOLVERS = {"initialization", "event", "continuous", "terminated", "error"}
+TABLE_3 = {
+    "SetDebugLogging": EVERYWHERE,
+    "EnterInitializationMode": {"instantiated"},
+    "ExitInitializationMode": {"initialization"},
+    "Terminate": {"step", "event", "continuous"},
+    "Reset": EVERYWHERE,
+    "GetFloat64": EVERYWHERE,
+    "GetInt64": EVERYWHERE,
+    "GetBoolean": EVERYWHERE,
+    "GetString": EVERYWHERE,
+    "SetFloat64": {"instantiated", "initialization", "step", "event", "continuous"},
+    "SetInt64": {"instantiated", "initialization", "step", "event"},
+    "SetBoolean": {"instantiated", "initialization", "step", "event"},
+    "SetString": {"instantiated", "initialization", "step", "event"},
+    "GetFMUstate": EVERYWHERE,
+    "SetFMUstate": EVERYWHERE,
+    "FreeFMUstate": EVERYWHERE,
+    "SerializedFMUstateSize": EVERYWHERE,
+    "SerializeFMUstate": EVERYWHERE,
+    "DeSerializeFMUstate": EVERYWHERE,
+    "DoStep": {"step"},
+    "EnterStepMode": set(),
+    "EnterEventMode": {"continuous"},
+    "UpdateDiscreteStates": {"event"},
+    "EnterContinuousTimeMode": {"event"},
+    "CompletedIntegratorStep": {"continuous"},
+    "SetTime": {"event", "continuous"},
+    "SetContinuousStates": {"continuous"},
+    "GetContinuousStates": SOLVERS,
+    "GetContinuousStateDerivatives": SOLVERS,
+    "GetNominalsOfContinuousStates": SOLVERS,
+    "GetEventIndicators": SOLVERS,
+    "GetOutputDerivatives": {"step", "terminated", "error"},
+    "EvaluateDiscreteStates": set(),
+    "EnterConfigurationMode": set(),
+    "ExitConfigurationMode": set(),
+    "GetDirectionalDerivative": set(),
+    "GetAdjointDerivative": set(),
+    "GetNumberOfVariableDependencies": set(),
+    "GetVariableDependencies": set(),
+    "ActivateModelPartition": set(),
+    "GetClock": EVERYWHERE,
+    "SetClock": EVERYWHERE,
+}
+ELSEWHERE = {  # what only the other interface has is an error wherever it is called
+    STEPPED: {name for name in TABLE_3 if "Continuous" in name and "Get" in name}
+    | {"GetEventIndicators", "SetContinuousStates"},
+    SOLVED: {"GetOutputDerivatives"},
+}
+
+
+def of_3(kind: str) -> dict[str, set[str]]:
+    return {name: set() if name in ELSEWHERE[kind] else states for name, states in TABLE_3.items()}
+
+
+TABLES = {
+    (2, STEPPED): (STATES, STEPPED_2),
+    (2, SOLVED): (SOLVING, SOLVED_2),
+    (3, STEPPED): ([state for state in STATES if state != "failed"], of_3(STEPPED)),
+    (3, SOLVED): (SOLVING, of_3(SOLVED)),
+}
+
+
+def brought_to(instance: Instance, state: str) -> c_void_p:
     """Bring an instance into a state; a saved state to call functions with."""
-    instance.call("Reset")
+    fmi = instance.fmu.fmi
+    assert instance.call("Reset") == OK
     saved = instance.save()
-    assert instance.set_up() == OK
+    if fmi == 2:
+        assert instance.set_up() == OK
     if state != "instantiated":
-        assert instance.call("EnterInitializationMode") == OK
-    if state not in STATES[:2]:
+        assert instance.enter() == OK
+    if state not in ("instantiated", "initialization"):
         assert instance.call("ExitInitializationMode") == OK
+    if state in ("step", "failed"):
         assert instance.step(0.0, 1e-3) == OK
-    if state == "step failed":
+    if state == "failed":
         assert instance.step(1e-3, -1.0) == DISCARD
+    if state == "continuous":
+        assert (instance.update(), instance.call("EnterContinuousTimeMode")) == (OK, OK)
     if state == "terminated":
         assert instance.call("Terminate") == OK
     if state == "error":
-        assert instance.call("SetupExperiment", 0, c_double(), c_double(), 0, c_double()) == ERROR
+        assert instance.call("CancelStep" if fmi == 2 else "EnterConfigurationMode") == ERROR
     return saved
 
 
-def arguments(instance: Native, function: str, saved: c_void_p) -> tuple[object, ...]:
-    """What makes a proper call, where it is allowed."""
-    none, one, real = c_size_t(0), c_size_t(1), c_double()
-    speed, ports = instance.references(["shaft_velocity"]), instance.references(["travel"])
-    if function in ("SetReal", "GetReal"):
-        return speed, one, byref(c_double(40.0))
-    if function.startswith(("Set", "Get")) and function.endswith(("Integer", "Boolean", "String")):
-        return None, none, None
+def arguments(instance: Instance, function: str, saved: c_void_p) -> tuple[object, ...]:
+    """What makes a proper call, where it is allowed; C passes over what FMI 2 does not take."""
+    none, one, real, time = c_size_t(0), c_size_t(1), c_double(40.0), c_double(1e-3)
+    speed, travel = instance.references(["shaft_velocity"]), instance.references(["travel"])
     size = len(instance.packed(instance.save()))
+    flags = [byref(c_int()) for _ in range(5)]
+    value = (speed, one, byref(real), one)
+    rates = (travel, one, (c_int * 1)(1), byref(real), one)
     return {
         "SetDebugLogging": (1, none, None),
-        "SetupExperiment": (0, real, real, 0, real),
+        "SetupExperiment": (0, time, time, 0, time),
+        "EnterInitializationMode": (False, time, time, False, time),
+        **dict.fromkeys(("GetReal", "SetReal", "GetFloat64", "SetFloat64"), value),
         "GetFMUstate": (byref(c_void_p()),),
         "SetFMUstate": (saved,),
         "FreeFMUstate": (byref(c_void_p(saved.value)),),
         "SerializedFMUstateSize": (saved, byref(c_size_t())),
         "SerializeFMUstate": (saved, ctypes.create_string_buffer(size), c_size_t(size)),
         "DeSerializeFMUstate": (instance.packed(saved), c_size_t(size), byref(c_void_p())),
-        "GetDirectionalDerivative": (ports, one, speed, one, byref(real), byref(real)),
+        "GetDirectionalDerivative": (travel, one, speed, one, byref(real), byref(real)),
         "SetRealInputDerivatives": (speed, one, (c_int * 1)(1), byref(real)),
-        "GetRealOutputDerivatives": (ports, one, (c_int * 1)(1), byref(real)),
-        "DoStep": (c_double(1e-3), c_double(1e-3), 1),
-        "GetStatus": (0, byref(c_int())),
+        "GetRealOutputDerivatives": rates,
+        "GetOutputDerivatives": rates,
+        "DoStep": (time, time, 1, *flags[:3], byref(c_double())),
+        "SetTime": (time,),
+        "NewDiscreteStates": (byref(EventInfo()),),
+        "UpdateDiscreteStates": (*flags, byref(c_double())),
+        "CompletedIntegratorStep": (1, *flags[:2]),
+        "GetStatus": (0, flags[0]),
         "GetRealStatus": (2, byref(real)),
-        "GetIntegerStatus": (0, byref(c_int())),
-        "GetBooleanStatus": (3, byref(c_int())),
+        "GetIntegerStatus": (0, flags[0]),
+        "GetBooleanStatus": (3, flags[0]),
         "GetStringStatus": (1, byref(c_void_p())),
-    }.get(function, ())
+    }.get(function, (None, none, None, none))
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_every_function_in_every_state(native, state):
-    instance = native("WeftInsertion")
-    for function, allowed in TABLE.items():
+@pytest.mark.parametrize(
+    ("fmi", "kind", "state"), [(*key, state) for key, (states, _table) in TABLES.items() for state in states]
+)
+def test_every_function_in_every_state(native, fmi, kind, state):
+    instance = native("WeftInsertion", kind, fmi)
+    for function, allowed in TABLES[fmi, kind][1].items():
         saved = brought_to(instance, state)
         given = arguments(instance, function, saved)
         instance.log.clear()
         status = instance.call(function, *given)
-        if state not in allowed:
-            assert status == ERROR, function
-            assert [level for level, _category, _text in instance.log] == [ERROR], function
-            if function not in ("GetDirectionalDerivative",):
-                assert f"fmi2{function} is not allowed in the state" in instance.texts[0]
-        else:
-            assert status == (DISCARD if function in NONE_KEPT else OK), (function, instance.texts)
+        proper = DISCARD if function in NONE_KEPT else OK
+        assert status == (proper if state in allowed else ERROR), (function, instance.texts)
+        assert [level for level, *_rest in instance.log] == [status] * (status != OK), function
+        if (fmi, kind, status) == (2, STEPPED, ERROR) and function != "GetDirectionalDerivative":
+            assert f"fmi2{function} is not allowed in the state" in instance.texts[0]
 
 
-def test_the_table_is_complete(built):
-    import re
-
-    from loomfmu.fmi.native.builder import HEADERS
-
+def test_the_table_is_complete():
     header = (HEADERS / "fmi2Functions.h").read_text()
     everywhere = {"GetTypesPlatform", "GetVersion", "Instantiate", "FreeInstance"}
     parts = re.split(r"Functions for FMI2 for .*", header)
     named = set(re.findall(r"#define fmi2(\w+) +fmi2FullName", parts[0] + parts[2]))
-    assert named == {*TABLE, *everywhere}
+    assert named == {*STEPPED_2, *everywhere}
+
+
+def test_the_table_of_fmi_3_is_complete():
+    header = (HEADERS / "fmi3Functions.h").read_text()
+    named = re.findall(r"#define fmi3(\w+) +fmi3FullName\(fmi3\w+\)", header)
+    known = {name.lower() for name in TABLE_3}
+    other = r"(Get|Set)(U?Int\d+|Float32|Binary)$|(Get|Set)(Interval|Shift)|Instantiate"
+    rest = {name for name in named if name.lower() not in known and not re.match(other, name)}
+    assert rest == {"GetVersion", "FreeInstance", "GetNumberOfContinuousStates", "GetNumberOfEventIndicators"}
 
 
 def test_after_an_error_a_reset_or_a_saved_state_helps(native):
@@ -140,7 +247,7 @@ def test_no_instance_answers_with_an_error(native):
     instance = native("MainShaft")
     proper, instance.component = instance.component, c_void_p()
     try:
-        for function in TABLE:
+        for function in STEPPED_2:
             given = (None, c_size_t(0), None, None, None, None)
             if function in ("SetupExperiment", "DoStep"):
                 given = (0, c_double(), c_double(), 0, c_double())
@@ -151,22 +258,28 @@ def test_no_instance_answers_with_an_error(native):
 
 
 @pytest.mark.parametrize(
-    ("options", "reason"),
+    ("name", "fmi", "kind", "options", "reason"),
     [
-        ({"guid": "another"}, "the GUID must be that of MainShaft"),
-        ({"name": ""}, "the instance name is empty"),
-        ({"name": " \t"}, "the instance name is empty"),
-        ({"name": None}, "the instance name is empty"),
-        ({"kind": 2}, "the type must be fmi2CoSimulation or fmi2ModelExchange"),
+        ("MainShaft", 2, STEPPED, {"token": "another"}, "the GUID must be that of MainShaft"),
+        ("MainShaft", 2, STEPPED, {"name": ""}, "the instance name is empty"),
+        ("MainShaft", 2, STEPPED, {"name": " \t"}, "the instance name is empty"),
+        ("MainShaft", 2, STEPPED, {"name": None}, "the instance name is empty"),
+        ("MainShaft", 2, "none", {}, "the type must be fmi2CoSimulation or fmi2ModelExchange"),
+        ("BeltMonitor", 2, SOLVED, {}, "keeps a state from step to step: it supports co-simulation only"),
+        ("BeltMonitor", 3, STEPPED, {"token": "another"}, "the token must be that of BeltMonitor"),
+        ("BeltMonitor", 3, STEPPED, {"name": " "}, "the instance name is empty"),
+        ("BeltMonitor", 3, STEPPED, {"name": None}, "the instance name is empty"),
+        ("BeltMonitor", 3, STEPPED, {"event_mode": True}, "event mode is not supported"),
+        ("BeltMonitor", 3, SOLVED, {}, "keeps a state from step to step: it supports co-simulation only"),
+        ("BeltMonitor", 3, "ScheduledExecution", {}, "scheduled execution is not supported"),
     ],
 )
-def test_an_instance_that_cannot_be_is_refused_with_a_reason(native, options, reason):
-    instance = native("MainShaft", logging=False, **options)
+def test_an_instance_that_cannot_be_is_refused_with_a_reason(native, name, fmi, kind, options, reason):
+    instance = native(name, kind, fmi, logging=False, **options)
     assert not instance.component
-    assert len(instance.log) == 1
-    status, category, text = instance.log[0]
+    ((status, category, text),) = instance.log
     assert (status, category) == (ERROR, "logStatusError") and reason in text
-    assert not instance.memory
+    assert fmi == 3 or not instance.memory
 
 
 def test_memory_is_the_hosts_and_all_given_back(native):

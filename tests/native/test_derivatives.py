@@ -178,9 +178,10 @@ def test_a_carried_input_keeps_its_limits(native):
 # ---- outputs
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", COMPONENTS)
-def test_derivatives_of_outputs_are_their_declared_rates(native, name):
-    instance = native(name).start()
+def test_derivatives_of_outputs_are_their_declared_rates(native, name, fmi):
+    instance = native(name, fmi=fmi).start()
     rates = {v.name: v.rate for v in variables_of(COMPONENTS[name])}
     for variable in variables_of(COMPONENTS[name]):
         if variable.causality == "output" and variable.type is float:

@@ -6,11 +6,13 @@ import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
 import zipfile
+from ctypes import c_char_p
 from pathlib import Path
 
+import fmpy
 import pytest
 from fmpy.validation import validate_fmu
-from natives import MEMORYLESS, library
+from natives import MEMORYLESS, binary
 
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
@@ -22,6 +24,7 @@ from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
 from loomfmu.fmi.native.platforms import check_platforms
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
+either_fmi = pytest.mark.parametrize("fmi", [2, 3])
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 
@@ -30,14 +33,11 @@ def output_of(*command: str | Path) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 
-def binary(fmu: fmus.Fmu) -> Path:
-    return fmu.directory / "binaries" / "linux64" / f"{fmu.name}.so"
-
-
-@pytest.mark.few(4)
+@pytest.mark.few(4, each="fmi")
+@either_fmi
 @every_fmu
-def test_it_is_valid(built, name):
-    assert validate_fmu(str(built[name].path)) == []
+def test_it_is_valid(package, name, fmi):
+    assert validate_fmu(str(package(name, fmi).path)) == []
 
 
 @every_fmu
@@ -74,50 +74,43 @@ def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(buil
     assert built[name].guid == guid(COMPONENTS[name])
 
 
+@either_fmi
 @every_fmu
-def test_it_needs_nothing_but_libc_and_libm(built, name):
-    needed = {
-        line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", binary(built[name])).splitlines()
-    }
-    assert needed <= {"linux-vdso.so.1", "libm.so.6", "libc.so.6", "ld-linux-x86-64.so.2"}
-    versions = re.findall(r"GLIBC_(\d+)\.(\d+)", output_of("objdump", "-T", binary(built[name])))
+def test_it_exports_the_functions_of_the_standard_and_needs_only_libc_and_libm(package, name, fmi):
+    header = (native_builder.HEADERS / f"fmi{fmi}Functions.h").read_text()
+    wanted = set(re.findall(rf"#define (fmi{fmi}\w+) +fmi{fmi}FullName\(fmi{fmi}\w+\)", header))
+    assert {f"fmi{fmi}Terminate", "fmi2NewDiscreteStates" if fmi == 2 else "fmi3SetTime"} <= wanted
+    library = binary(package(name, fmi))
+    symbols = output_of("objdump", "-T", library)
+    assert {line.split()[-1] for line in symbols.splitlines() if " g " in line} == wanted
+    versions = re.findall(r"GLIBC_(\d+)\.(\d+)", symbols)
     assert max((int(major), int(minor)) for major, minor in versions) <= (2, 17)
+    needed = {line.split()[0].rsplit("/", 1)[-1] for line in output_of("ldd", library).splitlines()}
+    assert needed <= {"linux-vdso.so.1", "libm.so.6", "libc.so.6", "ld-linux-x86-64.so.2"}
 
 
+def test_it_states_its_version_and_platform(native):
+    library = native("MainShaft").library
+    library.fmi2GetVersion.restype = library.fmi2GetTypesPlatform.restype = c_char_p
+    assert (library.fmi2GetVersion(), library.fmi2GetTypesPlatform()) == (b"2.0", b"default")
+
+
+@pytest.mark.few(3, each="fmi")
+@either_fmi
 @every_fmu
-def test_it_exports_the_functions_of_the_standard_and_nothing_else(built, name):
-    header = (native_builder.HEADERS / "fmi2Functions.h").read_text()
-    common, model_exchange, co_simulation = re.split(
-        r"Functions for FMI2 for .*", header[: header.rindex("*/")]
-    )[:3]
-    every = common + model_exchange + co_simulation
-    wanted = set(re.findall(r"#define (fmi2\w+) +fmi2FullName\(fmi2\w+\)", every))
-    assert len(wanted) == 44 and "fmi2NewDiscreteStates" in wanted
-    symbols = output_of("objdump", "-T", binary(built[name])).splitlines()
-    exported = {line.split()[-1] for line in symbols if " g " in line}
-    assert exported == wanted
-    assert library(built[name]).fmi2GetVersion() == b"2.0"
-    assert library(built[name]).fmi2GetTypesPlatform() == b"default"
-
-
-@pytest.mark.few(3)
-@every_fmu
-def test_its_sources_compile_without_a_warning(sources, gcc, name):
-    call = [gcc, "-std=c99", "-O1", *WARNINGS, "-c", "fmi2.c", "-o", os.devnull]
-    run = subprocess.run(call, cwd=sources[name], capture_output=True, text=True, check=False)
+def test_its_sources_compile_without_a_warning(package, gcc, tmp_path, name, fmi):
+    fmpy.extract(package(name, fmi).path, tmp_path)
+    call = [gcc, "-std=c99", "-O1", *WARNINGS, "-c", f"fmi{fmi}.c", "-o", os.devnull]
+    run = subprocess.run(call, cwd=tmp_path / "sources", capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
 
 
-def test_the_documented_command_builds_it_again(sources, gcc, tmp_path):
-    name = "BeltMonitor"
-    page = (sources[name].parent / "documentation" / "index.html").read_text()
+def test_the_documented_command_builds_it_again(built, gcc, tmp_path):
+    fmpy.extract(built["BeltMonitor"].path, tmp_path)
+    page = (tmp_path / "documentation" / "index.html").read_text()
     command = re.search(r"<code>(cc [^<]*)", page)[1]
-    folder = tmp_path / "sources"
-    folder.mkdir()
-    for file in sources[name].iterdir():
-        (folder / file.name).write_bytes(file.read_bytes())
-    subprocess.run(command, shell=True, cwd=folder, check=True)
-    assert "fmi2DoStep" in output_of("objdump", "-T", folder / f"{name}.so")
+    subprocess.run(command, shell=True, cwd=tmp_path / "sources", check=True)
+    assert "fmi2DoStep" in output_of("objdump", "-T", tmp_path / "sources" / "BeltMonitor.so")
 
 
 def test_all_it_holds_has_a_licence(built):

@@ -29,16 +29,17 @@ def run(instance: Native, name: str, first: int, last: int) -> list[dict[str, ob
     return found
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
 @every_fmu
-def test_a_restored_state_goes_on_as_if_nothing_had_happened(native, name):
-    instance = native(name).start()
+def test_a_restored_state_goes_on_as_if_nothing_had_happened(native, name, fmi):
+    instance = native(name, fmi=fmi).start()
     run(instance, name, 0, 20)
     state = instance.save()
     content = instance.packed(state)
     ahead = run(instance, name, 20, 40)
     assert instance.call("SetFMUstate", state) == OK
     assert run(instance, name, 20, 40) == ahead
-    other = native(name)  # a new instance, and from bytes
+    other = native(name, fmi=fmi)  # a new instance, and from bytes
     status, unpacked = other.unpack(content)
     assert status == OK and other.call("SetFMUstate", unpacked) == OK
     assert run(other, name, 20, 40) == ahead

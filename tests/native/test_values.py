@@ -190,8 +190,7 @@ def test_a_result_that_is_not_finite_is_none(native):
 
 def test_no_step_goes_past_the_stop_time(native):
     instance = native("MainShaft")
-    assert instance.set_up(1.0, 2.0) == OK
-    assert instance.initialize() == OK
+    assert (instance.enter(1.0, 2.0), instance.call("ExitInitializationMode")) == (OK, OK)
     # what a host's own sum of steps is off does not count
     assert instance.step(1.0, 1.0 + 1e-10) == OK
     assert instance.step(1.9, 0.2) == ERROR
@@ -208,7 +207,7 @@ def test_the_experiment_comes_first(native):
 
 def test_a_run_may_start_at_any_time(native):
     instance = native("MainShaft")
-    assert instance.set_up(10.0) == OK and instance.initialize() == OK
+    assert (instance.enter(10.0), instance.call("ExitInitializationMode")) == (OK, OK)
     component = COMPONENTS["MainShaft"]()
     component.initialize(10.0)
     assert instance.get("angle") == [component.angle]
