@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LoomfmuError, shown, suggestion
+from ..cosim.scenes.settings import check_table
+from ..errors import LoomfmuError, shown
 from .varied import Value, Varied
 
 MOST = 10_000_000  # combinations, points of an axis
@@ -49,8 +50,7 @@ def whole(given: Any, where: str, low: int, high: int = MOST) -> int:
 
 def flattened(table: Any, where: str, prefix: str = "") -> dict[str, Any]:
     """A table with its keys joined by dots, quoted or not; a table that is a range stays one."""
-    if not isinstance(table, dict):
-        raise LoomfmuError(f"{where} must be a table")
+    check_table(table, where)
     flat: dict[str, Any] = {}
     for key, value in table.items():
         nested = isinstance(value, dict) and not set(RANGE) & set(value)
@@ -167,9 +167,7 @@ def _ends(
     varied: Varied, table: dict[str, Any], where: str, lists: str = "grid"
 ) -> tuple[float, float, bool]:
     """Both ends of a range, and whether it is logarithmic."""
-    for key in table:
-        if key not in RANGE:
-            raise LoomfmuError(f"{where}.{key} is unknown{suggestion(key, RANGE)}")
+    check_table(table, where, RANGE)
     for key in ("from", "to"):
         if key not in table:
             raise LoomfmuError(f"{where} has no {key!r}")

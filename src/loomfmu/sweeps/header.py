@@ -1,32 +1,41 @@
 """The head of the files of sweeps and searches: the scene, its fixed values and its variables."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..cosim.importing.built import Flavour, check_flavour
 from ..cosim.planning.requested import checked_claims
 from ..cosim.scenes import scene as scenes
+from ..cosim.scenes.keys import toml
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.settings import text as text_in
 from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
+from ..files import text_of
 from .axes import Axis, flattened
 from .varied import Varied, varied
+
+Parsed = TypeVar("Parsed")
 
 HEAD = ("title", "scene", "flavour", "set")  # keys of every such file
 
 
 @dataclass(frozen=True)
 class Header:
-    """The scene that a file names, read with the values that stay; `path` is that of the scene."""
+    """The scene that a file names, read with the values that stay; `path` is that of the scene.
+
+    `name` and `text` are the file's own.
+    """
 
     title: str
+    name: str
+    text: str
     path: Path
     scene: Scene
     flavour: Flavour
@@ -39,14 +48,26 @@ def read_scene(path: Path, fixed: dict[str, Any]) -> Scene:
     return reader(path, fixed)
 
 
-def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -> Header:
-    """Return the head of a file; `keys` are all that it may have, `what` names its kind.
+def read(
+    path: Path, what: str, keys: Sequence[str], parse: Callable[[Header, dict[str, Any]], Parsed]
+) -> Parsed:
+    """Read a file; `keys` are all that it may have, `what` names its kind, and `parse` reads the rest.
 
-    Raises LoomfmuError.
+    Raises LoomfmuError naming the file and what is wrong, before anything runs.
     """
-    for key in tables:
-        if key not in keys:
-            raise LoomfmuError(f"{key} is unknown{suggestion(key, keys)}")
+    text = text_of(path)
+    try:
+        tables = toml(text, what)
+        for key in tables:
+            if key not in keys:
+                raise LoomfmuError(f"{key} is unknown{suggestion(key, keys)}")
+        return parse(_header(text, tables, path, what), tables)
+    except LoomfmuError as error:
+        raise LoomfmuError(f"{path}: {error}") from None
+
+
+def _header(text: str, tables: dict[str, Any], path: Path, what: str) -> Header:
+    """The head of a file."""
     if not isinstance(tables.get("scene"), str):
         raise LoomfmuError(f'a {what} must name its scene: scene = "loom.toml", relative to the {what} file')
     flavour = tables.get("flavour", "native")
@@ -54,7 +75,8 @@ def header(tables: dict[str, Any], path: Path, keys: Sequence[str], what: str) -
     scene_path = _beside(path, tables["scene"])
     fixed = flattened(tables.get("set", {}), "set")
     scene = checked_claims(read_scene(scene_path, fixed)).scene
-    return Header(text_in(tables, "title", path.stem), scene_path, scene, flavour, fixed)
+    title = text_in(tables, "title", path.stem)
+    return Header(title, path.stem, text, scene_path, scene, flavour, fixed)
 
 
 def _beside(path: Path, name: str) -> Path:

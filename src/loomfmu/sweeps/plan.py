@@ -2,27 +2,27 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosim.importing.fmus import Flavour, Port
+from ..cosim.importing.fmus import Port
 from ..cosim.planning.requested import output_port
-from ..cosim.scenes.keys import toml
 from ..cosim.scenes.scene import Scene
-from ..errors import LoomfmuError, suggestion
+from ..cosim.scenes.settings import read_table
+from ..errors import LoomfmuError
 from ..extras import need
-from ..files import text_of
 from .axes import MOST, Axis, flattened, grid_axis, range_of, sample_axes, whole
-from .header import HEAD, Header, check_by_scene, header, variables
+from .header import HEAD, Header, check_by_scene, read, variables
 from .request import Map, requested
 from .sensitivity import OPTIONS, Sensitivity, sensitivity_of
 
 KEYS = (*HEAD, "values", "grid", "sample", "sensitivity", "traces", "map")
 EXTRAS = {"map": "plot", "sensitivity": "study"}  # that tables need beside the extra `sweep`
+TRACES = dict.fromkeys(("failures", "sample"), partial(whole, low=0))
 NO_TRACES = {"failures": 0, "sample": 0}  # by default of rows that only indices need
 
 
@@ -35,16 +35,9 @@ class Traces:
 
 
 @dataclass(frozen=True)
-class SweepPlan:
+class SweepPlan(Header):
     """A sweep. Row numbers count the grid, its last axis fastest, then the points of the sample."""
 
-    title: str
-    name: str
-    text: str
-    path: Path  # of the scene
-    scene: Scene
-    flavour: Flavour
-    fixed: dict[str, Any]
     grid: tuple[Axis, ...]
     sample: tuple[Axis, ...]
     values: tuple[str, ...]
@@ -97,17 +90,10 @@ class SweepPlan:
 
 def load(path: str | Path) -> SweepPlan:
     """Read a sweep file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
-    path = Path(path)
-    text = text_of(path)
-    try:
-        return _parse(text, path)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{path}: {error}") from None
+    return read(Path(path), "sweep", KEYS, _parse)
 
 
-def _parse(text: str, path: Path) -> SweepPlan:
-    tables = toml(text, "sweep")
-    head = header(tables, path, KEYS, "sweep")
+def _parse(head: Header, tables: dict[str, Any]) -> SweepPlan:
     need("a sweep", "sweep", *(extra for table, extra in EXTRAS.items() if table in tables))
     columns = _results(head.scene, tables.get("values", []))
     wanted = _sensitivity(head, tables, columns) if "sensitivity" in tables else None
@@ -116,17 +102,11 @@ def _parse(text: str, path: Path) -> SweepPlan:
     values = _values(head.scene, tables.get("values", []), [*grid, *sample])
     request = requested(tables["map"], [*grid, *sample], columns) if "map" in tables else None
     plan = SweepPlan(
-        title=head.title,
-        name=path.stem,
-        text=text,
-        path=head.path,
-        scene=head.scene,
-        flavour=head.flavour,
-        fixed=head.fixed,
+        **vars(head),
         grid=tuple(grid),
         sample=tuple(sample),
         values=tuple(values),
-        traces=_traces(tables.get("traces", NO_TRACES if wanted else {})),
+        traces=Traces(**read_table(tables.get("traces", NO_TRACES if wanted else {}), "traces", TRACES)),
         map=request,
         sensitivity=wanted,
     )
@@ -183,13 +163,3 @@ def _values(scene: Scene, given: Any, axes: list[Axis]) -> list[str]:
             raise LoomfmuError(f"values: {signal} is already a column")
         taken.append(signal)
     return given
-
-
-def _traces(table: Any) -> Traces:
-    if not isinstance(table, dict):
-        raise LoomfmuError("traces must be a table")
-    known = ("failures", "sample")
-    for key in table:
-        if key not in known:
-            raise LoomfmuError(f"traces.{key} is unknown{suggestion(key, known)}")
-    return Traces(**{key: whole(value, f"traces.{key}", 0) for key, value in table.items()})

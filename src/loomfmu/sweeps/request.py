@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cosim.scenes.settings import check_table
 from ..errors import LoomfmuError, suggestion
 from .axes import Axis, flattened
 from .varied import Value
@@ -25,11 +26,7 @@ class Map:
 
 def requested(table: Any, axes: list[Axis], columns: list[str]) -> Map:
     """The picture of a `[map]` table. Raises LoomfmuError for what cannot be drawn."""
-    if not isinstance(table, dict):
-        raise LoomfmuError("map must be a table")
-    for key in table:
-        if key not in KEYS:
-            raise LoomfmuError(f"map.{key} is unknown{suggestion(key, KEYS)}")
+    check_table(table, "map", KEYS)
     for key in ("x", "value"):
         if key not in table:
             raise LoomfmuError(f"map has no {key!r}")

@@ -2,7 +2,7 @@
 
 import fnmatch
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ from .keys import ACCURACY, CHOSEN, COARSE, COUPLINGS, GRIDS, MAY_END, TIMES
 
 SLOWEST = 1e-12  # rad/s: below, times overflow
 ROUNDING = 1e-9  # of a duration: one that is off by more than that from whole steps is refused
+Readers = Mapping[str, Callable[[Any, str], Any]]  # of the keys of a table
 EXAMPLES = {"duration": "2 s", "step": "1 ms"}
 
 
@@ -173,6 +174,21 @@ def _check_whole(times: Times, key: str, unit: str, step: str) -> None:
 # ---- values
 
 
+def check_table(given: Any, where: str, known: Collection[str] | None = None) -> None:
+    """Refuse what is no table, and its keys that are not known, if these are given."""
+    if not isinstance(given, dict):
+        raise LoomfmuError(f"{where} must be a table")
+    for key in given:
+        if known is not None and key not in known:
+            raise LoomfmuError(f"{where}.{key} is unknown{suggestion(key, known)}")
+
+
+def read_table(given: Any, where: str, readers: Readers) -> dict[str, Any]:
+    """Read the keys of a table, each by its own reader, which takes a value and the words for its place."""
+    check_table(given, where, readers)
+    return {key: readers[key](value, f"{where}.{key}") for key, value in given.items()}
+
+
 def text(tables: dict[str, Any], key: str, default: str = "") -> str:
     """A text."""
     given = tables.get(key, default)
@@ -220,7 +236,7 @@ def seconds(given: Any, key: str, low: float) -> float:
 
 
 # the keys that say one thing each, and how they are read; a scene has their defaults
-READERS: dict[str, Callable[[Any, str], Any]] = {
+READERS: Readers = {
     COARSE: lambda given, key: int(number(given, key, 1, 1e9, whole=True)),
     ISOLATED: truth,
     MAY_END: truth,

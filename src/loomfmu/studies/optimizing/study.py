@@ -2,27 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from pathlib import Path
 from typing import Any
 
 from ...cosim.claims.measures import measure, signal_in
-from ...cosim.importing.fmus import Flavour
 from ...cosim.planning.requested import output_port
-from ...cosim.scenes.keys import toml
 from ...cosim.scenes.scene import Scene
+from ...cosim.scenes.settings import read_table
 from ...errors import LoomfmuError, listed, shown, suggestion
-from ...files import text_of
 from ...sweeps.axes import Range, flattened, grid_axis, range_of, whole
-from ...sweeps.header import HEAD, Header, check_by_scene, header, variables
+from ...sweeps.header import HEAD, Header, check_by_scene, read, variables
 from ...sweeps.varied import Value, Varied
 from .constraints import names_of, required_of, safety_of
 
 WAYS = {"minimise": 1.0, "maximise": -1.0}  # what a goal is multiplied by to be made small
 KEYS = (*HEAD, *WAYS, "safety", "except", "ranges", "choices", "search")
-SEARCH = {"runs": 2000, "seed": 1, "points": 11}  # of the search, and what they are by default
-LEAST = {"runs": 50, "seed": 0, "points": 3}
+USUAL = {"runs": 2000, "seed": 1, "points": 11}  # of the search
+SEARCH = {key: partial(whole, low=low) for key, low in {"runs": 50, "seed": 0, "points": 3}.items()}
 MOST_GOALS = 3
 
 
@@ -81,7 +79,7 @@ class Goal:
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Header):
     """A search for the best design: a scene, its variables, goals, and the claims' distances from their
     bounds.
 
@@ -89,9 +87,6 @@ class Study:
     of its bound, and in its unit.
     """
 
-    name: str
-    text: str
-    header: Header
     variables: tuple[Variable, ...]
     goals: tuple[Goal, ...]
     measures: tuple[str, ...]
@@ -101,34 +96,9 @@ class Study:
     search: dict[str, int]
 
     @property
-    def title(self) -> str:
-        """The title."""
-        return self.header.title
-
-    @property
-    def path(self) -> Path:
-        """The file of the scene."""
-        return self.header.path
-
-    @property
-    def scene(self) -> Scene:
-        """The scene with what stays."""
-        return self.header.scene
-
-    @property
-    def flavour(self) -> Flavour:
-        """The flavour of the FMUs."""
-        return self.header.flavour
-
-    @property
     def values(self) -> tuple[str, ...]:
         """Signals whose final values are wanted: none."""
         return ()
-
-    @property
-    def fixed(self) -> dict[str, Any]:
-        """Values that stay."""
-        return self.header.fixed
 
     @cached_property
     def continuous(self) -> list[int]:
@@ -177,32 +147,24 @@ class Study:
 
 def load(path: Path) -> Study:
     """Read a study file. Raises LoomfmuError naming the file and what is wrong, before anything runs."""
-    text = text_of(path)
-    try:
-        return _parse(text, path)
-    except LoomfmuError as error:
-        raise LoomfmuError(f"{path}: {error}") from None
+    return read(path, "study", KEYS, _parse)
 
 
-def _parse(text: str, path: Path) -> Study:
-    tables = toml(text, "study")
-    head = header(tables, path, KEYS, "study")
+def _parse(head: Header, tables: dict[str, Any]) -> Study:
     found = _variables(head, tables)
     goals = _goals(head.scene, tables, found)
     required = required_of(head.scene, tables.get("except", []))
     shares, amounts = safety_of(head.scene, tables.get("safety", 0.0), required)
     signals = tuple(goal.name for goal in goals if goal.kind == "signal")
     return Study(
-        path.stem,
-        text,
-        head,
-        tuple(found),
-        tuple(goals),
-        signals,
-        required,
-        shares,
-        amounts,
-        _search(tables.get("search", {})),
+        **vars(head),
+        variables=tuple(found),
+        goals=tuple(goals),
+        measures=signals,
+        required=required,
+        shares=shares,
+        amounts=amounts,
+        search=USUAL | read_table(tables.get("search", {}), "search", SEARCH),
     )
 
 
@@ -277,12 +239,3 @@ def _goal(scene: Scene, way: str, name: str, sign: float, known: Sequence[Variab
         near = suggestion(name, [*keys, *(claim for claim in claims if claim != "None")])
         raise LoomfmuError(f"{error}; or a variable of [ranges] or a claim{near}") from None
     return Goal(name, sign, "signal", signals, port.unit, port.display)
-
-
-def _search(given: Any) -> dict[str, int]:
-    if not isinstance(given, dict):
-        raise LoomfmuError("search must be a table")
-    for key in given:
-        if key not in SEARCH:
-            raise LoomfmuError(f"search.{key} is unknown{suggestion(key, SEARCH)}")
-    return {key: whole(given.get(key, usual), f"search.{key}", LEAST[key]) for key, usual in SEARCH.items()}
