@@ -102,7 +102,7 @@ class Dependence:
         """The instances on which the signals of each claim depend."""
         signals = (claim.signals(self._requested) for claim in self.claims)
         owners = ({signal.partition(".")[0] for signal in each} for each in signals)
-        return [set(upstream(each, self._sources)) for each in owners]
+        return [set(upstream(owner, self._sources)) for owner in owners]
 
     @cached_property
     def _sources(self) -> dict[str, set[str]]:
@@ -121,8 +121,8 @@ class Dependence:
 
     def _is_ours(self, wire: Wire) -> bool:
         """Return whether some loop through a wire is of our own FMUs alone."""
-        ours = {name for name, each in self._scene.instances.items() if each.fmu.trusted}
-        sources = {name: each & ours for name, each in self._sources.items() if name in ours}
+        ours = {name for name, instance in self._scene.instances.items() if instance.fmu.trusted}
+        sources = {name: source & ours for name, source in self._sources.items() if name in ours}
         return wire.sink[0] in upstream([wire.source[0]], sources) and wire.source[0] in ours
 
     @cached_property
@@ -151,8 +151,12 @@ class Dependence:
             method = MEMORY if MOTION in kept else HELD if EXTREMES in kept else PRESENT
             method = LAGGED if self._lagged else method
             components = self._components(names)
-            method = BOUNCING if any(each and each.bounces for each in components) else method
-            found.append(method._replace(scatter=max(each.scatter if each else 0.0 for each in components)))
+            method = BOUNCING if any(component and component.bounces for component in components) else method
+            found.append(
+                method._replace(
+                    scatter=max(component.scatter if component else 0.0 for component in components)
+                )
+            )
         return found
 
     @cached_property

@@ -146,7 +146,9 @@ class Estimates:
         ]
         counters = self._dependence.counters
         counted = {each: Count(trace.time, trace[each]) for each in counters if each in trace}
-        return Judged(worst, counted, {each: _fastest(trace, each) for each in self._angles if each in trace})
+        return Judged(
+            worst, counted, {angle: _fastest(trace, angle) for angle in self._angles if angle in trace}
+        )
 
     def of(
         self, scene: Scene, trace: Signals, verdicts: Sequence[Verdict], coarser: Coarser

@@ -151,7 +151,7 @@ class Pattern:
         about = attributes(plan, flavour, target.parent)  # paths hold before an FMU changes the directory
         everything = range(len(self._all))
         coarser = known
-        if coarser is None and any(each.fmu.component is None for each in scene.instances.values()):
+        if coarser is None and any(instance.fmu.component is None for instance in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
             coarser = self._estimates.coarser(scene, plan.grid, everything)
         with ExitStack() as instances:
@@ -260,7 +260,7 @@ class Prepared:
         """Free the instances; a later run makes new ones."""
         with self._turn:
             self._patterns.clear()
-            pool.free([(each.fmu, name) for name, each in self.scene.instances.items()])
+            pool.free([(instance.fmu, name) for name, instance in self.scene.instances.items()])
 
     def __enter__(self) -> Prepared:
         return self

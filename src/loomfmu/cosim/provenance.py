@@ -78,7 +78,7 @@ def _described(instance: Instance, values: list[str]) -> dict[str, str]:
 
 def _flavour(scene: Scene, wanted: str) -> str:
     """The flavour of the FMUs that were built for a scene, which may be another one than was wanted."""
-    built = {each.fmu.flavour for each in scene.instances.values() if each.fmu.built}
+    built = {instance.fmu.flavour for instance in scene.instances.values() if instance.fmu.built}
     return wanted if wanted in built or not built else built.pop()
 
 

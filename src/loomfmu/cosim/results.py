@@ -62,7 +62,7 @@ class Judged:
         notes += [f"warning: {each}" for each in self.warnings]
         return notebook.block(
             f"{heading(self.scene)}: {summary}",
-            *([notebook.table(HEADINGS, [each.row for each in self.claims])] if self.claims else []),
+            *([notebook.table(HEADINGS, [claim.row for claim in self.claims])] if self.claims else []),
             *map(notebook.line, notes),
         )
 

@@ -69,9 +69,9 @@ def _giving(run: Wired, fmu: str, *outputs: str) -> list[str]:
     """The instances of an FMU, whatever is recorded of them, and all others with these outputs."""
     owners = sorted({name.partition(".")[0] for name in run})
     return [
-        each
-        for each in owners
-        if run.fmus.get(each) == fmu or all(f"{each}.{name}" in run for name in outputs)
+        owner
+        for owner in owners
+        if run.fmus.get(owner) == fmu or all(f"{owner}.{name}" in run for name in outputs)
     ]
 
 

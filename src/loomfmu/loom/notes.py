@@ -17,7 +17,7 @@ LOADS_OF_RAPIER = ("moving_mass", "wheel_inertia", "belt_mass", "belt_length")
 def mirrored(instances: Mapping[str, Instance], wires: Iterable[Wire]) -> Iterable[str]:
     """Warnings where the weft takes the taker to move as the giver does, but it does not."""
     feeds = {wire.sink: wire.source[0] for wire in wires}
-    yarns = [name for name, each in instances.items() if each.fmu.name == "WeftTension"]
+    yarns = [name for name, instance in instances.items() if instance.fmu.name == "WeftTension"]
     for transfer in instances:
         giver, taker = (feeds.get((transfer, f"{head}_travel"), "") for head in ("giver", "taker"))
         if giver not in instances or taker not in instances:

@@ -148,7 +148,7 @@ def _sensitivity(head: Header, tables: dict[str, Any], columns: list[str]) -> Se
 def _results(scene: Scene, values: Any) -> list[str]:
     """The columns of results that a picture or indices can be of."""
     claims = range(len(scene.claims))
-    listed = [each for each in values if isinstance(each, str)] if isinstance(values, list) else []
+    listed = [value for value in values if isinstance(value, str)] if isinstance(values, list) else []
     return [*listed, *(f"claim_{number + 1}.{part}" for part in ("worst", "distance") for number in claims)]
 
 

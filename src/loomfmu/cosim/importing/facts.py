@@ -20,14 +20,14 @@ class Facts:
         self.variables = {each.name: each for each in declared}
         self.inputs = [each for each in declared if each.causality == "input"]
         self.outputs = {each.name: each for each in declared if each.causality == "output"}
-        self.caused = [each for each in self.inputs if each.source_for]
+        self.caused = [input_ for input_ in self.inputs if input_.source_for]
         arrays = arrays_of(component).values()
         self.gathering = [each for each in arrays if (each[0].source or "").startswith(ALL)]
         sources = (each.source or "" for each in declared)
-        self.gathers = next((each.removeprefix(ALL) for each in sources if each.startswith(ALL)), "")
-        names = {each.name for each in self.inputs}
-        self.taken = [each for each in component.terminals if each.variables[0] in names]
-        self.offered = [each for each in component.terminals if each.variables[0] in self.outputs]
+        self.gathers = next((source.removeprefix(ALL) for source in sources if source.startswith(ALL)), "")
+        names = {input_.name for input_ in self.inputs}
+        self.taken = [terminal for terminal in component.terminals if terminal.variables[0] in names]
+        self.offered = [terminal for terminal in component.terminals if terminal.variables[0] in self.outputs]
         # outputs that hold an extreme, or whose extreme is held: whose it is, and 1 for its lowest, else -1
         self.extremes: dict[str, tuple[str, float]] = {}
         for variable in declared:

@@ -169,7 +169,7 @@ def _fed_apart(
 
 def _needs_equal_steps(scene: Scene) -> str:
     """The first instance whose FMU takes equal steps alone; empty where none does."""
-    return next((name for name, each in scene.instances.items() if each.fmu.fixed_step), "")
+    return next((name for name, instance in scene.instances.items() if instance.fmu.fixed_step), "")
 
 
 def _rows(scene: Scene, turns: Iterable[float]) -> Floats:

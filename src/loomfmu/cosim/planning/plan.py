@@ -51,7 +51,7 @@ class Plan:
     @property
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
-        return {name: each.fmu.name for name, each in self.pruned.scene.instances.items()}
+        return {name: instance.fmu.name for name, instance in self.pruned.scene.instances.items()}
 
 
 class Stepping:

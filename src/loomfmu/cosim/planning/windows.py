@@ -136,8 +136,8 @@ def _showing(scene: Scene, movements: Movements) -> Iterator[tuple[float, str]]:
     """The longest steps that show how mechanisms move and how the shaft's speed changes, and why."""
     fine = period(scene) / scene.steps_per_period
     yield period(scene) / scene.coarse_steps_per_revolution, ""
-    for each in scene.instances:
-        longest, why = movements.longest_step(scene, each)
+    for name in scene.instances:
+        longest, why = movements.longest_step(scene, name)
         yield longest or fine, why
 
 

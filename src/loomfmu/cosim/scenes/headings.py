@@ -32,7 +32,9 @@ def heading(scene: Scene, varied: Collection[str] = ()) -> str:
 def _published(scene: Scene) -> Iterator[str]:
     """The machines and the heads that instances have, be it by default."""
     for kind in machines.TAKERS:
-        names = (each.published.get(kind) or _default(each, kind) for each in scene.instances.values())
+        names = (
+            instance.published.get(kind) or _default(instance, kind) for instance in scene.instances.values()
+        )
         if found := dict.fromkeys(filter(None, names)):
             yield listed(found)
 
@@ -53,22 +55,24 @@ def _default(instance: Instance, kind: str) -> str:
 def _own_values(scene: Scene) -> dict[str, str]:
     """The values of a published machine or head that instances do not have."""
     found = {}
-    for name, each in scene.instances.items():
-        published = machines.parameters(each.fmu.name, **each.published) if each.published else {}
+    for name, instance in scene.instances.items():
+        published = machines.parameters(instance.fmu.name, **instance.published) if instance.published else {}
         for variable, value in published.items():
-            own = each.values.get(variable, value)
+            own = instance.values.get(variable, value)
             if own != value:
-                found[f"{name}.{variable}"] = _quantity(each, variable)
+                found[f"{name}.{variable}"] = _quantity(instance, variable)
     return found
 
 
 def _weave(instances: Iterable[Instance]) -> str:
     """The pegs of all heald frames, if there are any."""
-    frames = [each for each in instances if each.fmu.ours and "pattern_length" in each.fmu.ports]
+    frames = [
+        instance for instance in instances if instance.fmu.ours and "pattern_length" in instance.fmu.ports
+    ]
     if not frames:
         return ""
-    starts = [{name: port.start for name, port in each.fmu.ports.items()} for each in frames]
-    pegs = [standard().pegs(start | each.values) for start, each in zip(starts, frames, strict=True)]
+    starts = [{name: port.start for name, port in frame.fmu.ports.items()} for frame in frames]
+    pegs = [standard().pegs(start | frame.values) for start, frame in zip(starts, frames, strict=True)]
     text = "/".join(pegs)
     if len(text) > LONGEST_WEAVE:
         text = f"of {len(pegs)} frames and {max(map(len, pegs))} picks"

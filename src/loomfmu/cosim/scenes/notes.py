@@ -39,7 +39,7 @@ def of_scene(
             yield f"{name} runs at its own constant speed: {each.fmu.name} has no terminal SHAFT"
     yield from _loads(instances, wires)
     yield from standard().mirrored(instances, wires)
-    doubts = [doubt for each in instances.values() for doubt in each.doubts.values()]
+    doubts = [doubt for instance in instances.values() for doubt in instance.doubts.values()]
     yield from filter(None, (*doubts, *(each.doubt for each in drives)))
     yield from standard().added(tables, directory)
     yield from _still(instances, tables.get("wires", {}), fed)
@@ -51,10 +51,10 @@ def _mixed(instances: dict[str, Instance], wires: list[Wire]) -> list[str]:
     notes, moved_by = [], {wire.sink: wire.source[0] for wire in wires}
     for kind, takers in machines.TAKERS.items():
         groups: dict[str, list[Instance]] = {}
-        for name, each in instances.items():
-            if each.fmu.ours and each.fmu.name in takers:
+        for name, instance in instances.items():
+            if instance.fmu.ours and instance.fmu.name in takers:
                 rapier = moved_by.get((name, "travel"), name) if kind == "head" else ""
-                groups.setdefault(rapier, []).append(each)
+                groups.setdefault(rapier, []).append(instance)
         notes += [note for fitted in groups.values() if (note := _mixture(kind, fitted))]
     return notes
 
@@ -83,8 +83,8 @@ def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:
     sinks: dict[tuple[str, str], dict[str, list[str]]] = {}  # of each output, by their instances
     for wire in wires:
         sinks.setdefault(wire.source, {}).setdefault(wire.sink[0], []).append(".".join(wire.sink))
-    for name, each in instances.items():
-        torque = each.fmu.facts.gathers if each.fmu.facts else ""
+    for name, instance in instances.items():
+        torque = instance.fmu.facts.gathers if instance.fmu.facts else ""
         if not torque:
             continue
         for other, mechanism in instances.items():
@@ -102,11 +102,13 @@ def _still(
 ) -> Iterable[str]:
     """Warnings about mechanisms whose motion is cut off and has no other source or value."""
     followed = standard().SOURCES.keys() - {SHAFT.name}
-    for name, each in instances.items():
-        motions = [end for end in each.fmu.facts.taken if end.name in followed] if each.fmu.facts else []
+    for name, instance in instances.items():
+        motions = (
+            [end for end in instance.fmu.facts.taken if end.name in followed] if instance.fmu.facts else []
+        )
         for inputs in (end.variables for end in motions):
             cut = all(wires.get(f"{name}.{key}") is False for key in inputs)
-            if cut and not any((name, key) in fed or key in each.values for key in inputs):
+            if cut and not any((name, key) in fed or key in instance.values for key in inputs):
                 yield f"{name} does not move: {listed(inputs)} are cut and have no value"
 
 

@@ -75,7 +75,7 @@ class Scene:
     def check_step_timeout(self) -> None:
         """Refuse a `step_timeout` in a scene with no FMU that it could stop."""
         stoppable = (
-            self.isolates(name) or each.fmu.flavour == "live" for name, each in self.instances.items()
+            self.isolates(name) or instance.fmu.flavour == "live" for name, instance in self.instances.items()
         )
         if self.step_timeout != Scene.step_timeout and not any(stoppable):
             raise LoomfmuError(
@@ -86,7 +86,11 @@ class Scene:
     @property
     def unprotected(self) -> list[str]:
         """The instances that run in this process and whose FMUs were given as files: they may end it."""
-        return [name for name, each in self.instances.items() if not (each.fmu.built or self.isolates(name))]
+        return [
+            name
+            for name, instance in self.instances.items()
+            if not (instance.fmu.built or self.isolates(name))
+        ]
 
     @property
     def times(self) -> Times:
@@ -96,7 +100,7 @@ class Scene:
     @property
     def doubts(self) -> set[str]:
         """Warnings of values that were probably meant in another unit."""
-        found = {doubt for each in self.instances.values() for doubt in each.doubts.values()}
+        found = {doubt for instance in self.instances.values() for doubt in instance.doubts.values()}
         return found - {""}
 
     @property
@@ -164,8 +168,8 @@ def parse(
 
 def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:
     """Refuse values for inputs that have another source; `keys` are pairs of instance and key."""
-    wired = {each.sink: ".".join(each.source) for each in scene.wires}
-    driven = {(each.instance, each.variable) for each in scene.drives}
+    wired = {wire.sink: ".".join(wire.source) for wire in scene.wires}
+    driven = {(drive.instance, drive.variable) for drive in scene.drives}
     for owner, key in keys:
         sink = (owner, scene.instances[owner].fmu.name_of(key))
         if sink in wired:
@@ -199,7 +203,7 @@ def assemble(
     outputs = (f"{name}.{variable}" for name, each in instances.items() for variable in each.fmu.outputs)
     fields = settings_of(tables, origin["name"], dict.fromkeys(outputs), speed)
     if fields["coupling"] is None:
-        trusted = all(each.fmu.trusted for each in instances.values())
+        trusted = all(instance.fmu.trusted for instance in instances.values())
         fields["coupling"] = usual_coupling(instances, wires, trusted)
     scene = Scene(instances=instances, wires=wires, drives=drives, **fields, **origin)
     _check_single(scene)
@@ -221,15 +225,15 @@ def _speed(instances: Mapping[str, Instance]) -> float | None:
 def _check_single(scene: Scene) -> None:
     """Refuse a second instance in this process of what a process can have one of."""
     found: dict[str, str] = {}
-    for name, each in scene.instances.items():
-        if not each.fmu.single or scene.isolates(name):
+    for name, instance in scene.instances.items():
+        if not instance.fmu.single or scene.isolates(name):
             continue
-        if each.fmu.sha256 in found:
+        if instance.fmu.sha256 in found:
             raise LoomfmuError(
-                f"{found[each.fmu.sha256]} and {name}: a process can hold only one instance of"
-                f" {each.fmu.path} (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
+                f"{found[instance.fmu.sha256]} and {name}: a process can hold only one instance of"
+                f" {instance.fmu.path} (canBeInstantiatedOnlyOncePerProcess); set isolated = true"
             )
-        found[each.fmu.sha256] = name
+        found[instance.fmu.sha256] = name
 
 
 def _check_tolerances(scene: Scene) -> None:

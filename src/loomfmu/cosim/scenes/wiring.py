@@ -26,11 +26,13 @@ def wires_of(instances: dict[str, Instance], scene: Mapping[str, Any]) -> list[W
     if not isinstance(spelt_out, dict):
         raise LoomfmuError('wires must be a table of "instance.input" = "instance.output"')
     spelt = dotted(spelt_out)
-    known = {name: each.fmu.facts for name, each in instances.items() if each.fmu.facts}
+    known = {name: instance.fmu.facts for name, instance in instances.items() if instance.fmu.facts}
     usual = usual_wires(known)
     sources: dict[str, Any] = {sink: each for sink, each in usual.items() if each.split(".")[0] in instances}
     values = {
-        f"{name}.{key}": value for name, each in instances.items() for key, value in each.values.items()
+        f"{name}.{key}": value
+        for name, instance in instances.items()
+        for key, value in instance.values.items()
     }
     tables = values | (dotted(driven) if isinstance(driven, dict) else {}) | spelt
     _check_sources(known, usual, tables)

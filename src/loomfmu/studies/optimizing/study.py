@@ -103,12 +103,12 @@ class Study(Header):
     @cached_property
     def continuous(self) -> list[int]:
         """The places of the variables that have a range of real numbers."""
-        return [place for place, each in enumerate(self.variables) if each.range]
+        return [place for place, variable in enumerate(self.variables) if variable.range]
 
     @property
     def combinations(self) -> int:
         """Number of combinations of options."""
-        return prod(len(each.options) for each in self.variables if not each.range)
+        return prod(len(variable.options) for variable in self.variables if not variable.range)
 
     @property
     def enumerable(self) -> bool:
@@ -128,15 +128,15 @@ class Study(Header):
     @property
     def notes(self) -> tuple[str, ...]:
         """The warnings for the user."""
-        doubts = (doubt for each in self.variables if each.range for doubt in each.range.doubts)
+        doubts = (doubt for variable in self.variables if variable.range for doubt in variable.range.doubts)
         return (*self.scene.notes, *doubts)
 
     def setting(self, values: Sequence[Value]) -> dict[str, Any]:
         """Return the settings of the scene for values of the variables."""
         return {
-            target: each.varied.setting(value)
-            for each, value in zip(self.variables, values, strict=True)
-            for target in each.varied.targets
+            target: variable.varied.setting(value)
+            for variable, value in zip(self.variables, values, strict=True)
+            for target in variable.varied.targets
         }
 
     def written(self, values: Sequence[Value]) -> dict[str, Any]:
