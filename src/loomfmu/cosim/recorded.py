@@ -18,8 +18,7 @@ from .master.master import Interrupted
 from .planning.plan import Plan
 from .planning.requested import output_port
 from .provenance import groups, scene_file, texts
-from .scenes.scene import Scene
-from .scenes.scene_files import files_of
+from .scenes.scene import Scene, files_of
 
 LONG_RUN = 20_000  # steps from which a progress bar is shown
 LARGE_TRACE = 300_000_000  # bytes from which its size is reported before the run

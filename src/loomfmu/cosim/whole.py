@@ -17,8 +17,7 @@ from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
 from .scenes.keys import UNIFORM
-from .scenes.scene import Scene
-from .scenes.scene_files import files_of
+from .scenes.scene import Scene, files_of
 
 
 def export(

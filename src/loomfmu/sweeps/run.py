@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..cosim.scenes.scene_files import files_of
+from ..cosim.scenes.scene import files_of
 from ..display.printed import as_csv
 from ..display.progress import Advance
 from ..display.progress import progress as progress_bar

@@ -1,8 +1,10 @@
 """Prepared calls of an FMU's functions: as Python makes them, and as the compiled stepper does."""
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, cast
+
+from .ports import Port
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)  # any other status is a failure, too
 PENDING = 5  # of FMI 2.0: it goes on with a step in the background
@@ -86,3 +88,30 @@ class Call(NamedTuple):
 def address(function: Any) -> int | None:
     """Return the address of a library function's machine code."""
     return ctypes.cast(cast(Any, getattr(function, "plain", function)), ctypes.c_void_p).value
+
+
+# ---- start values, set in many runs
+
+C_TYPES: dict[str, Any] = {"Real": ctypes.c_double, "Integer": ctypes.c_int32, "Boolean": ctypes.c_int32}
+
+
+class Setting(NamedTuple):
+    """A function that sets the values of one type, and its arguments."""
+
+    function: str
+    names: list[str]
+    references: Any
+    size: ctypes.c_size_t
+    values: Any
+
+
+def settings(ports: Sequence[Port]) -> list[Setting]:
+    """The functions that set these variables."""
+    chosen = {kind: [port for port in ports if port.kind == kind] for kind in C_TYPES}
+    return [_setting(kind, same) for kind, same in chosen.items() if same]
+
+
+def _setting(kind: str, ports: Sequence[Port]) -> Setting:
+    references = (ctypes.c_uint * len(ports))(*(port.reference for port in ports))
+    names, values = [port.name for port in ports], (C_TYPES[kind] * len(ports))()
+    return Setting(f"Set{kind}", names, references, ctypes.c_size_t(len(ports)), values)

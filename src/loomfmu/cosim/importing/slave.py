@@ -29,10 +29,22 @@ from fmpy.fmi2 import (
 from ...errors import LoomfmuError
 from . import calls
 from .arithmetic import Environment, Guarded
-from .calls import DISCARD, ERROR, FATAL, OK, PENDING, REFUSED, WARNING, Call, Compiled, Rollback
+from .calls import (
+    DISCARD,
+    ERROR,
+    FATAL,
+    OK,
+    PENDING,
+    REFUSED,
+    WARNING,
+    Call,
+    Compiled,
+    Rollback,
+    Setting,
+    settings,
+)
 from .logged import Logged
 from .ports import Value
-from .settings import Setting, settings
 
 if TYPE_CHECKING:
     from .fmus import Fmu

@@ -44,15 +44,15 @@ def toml(text: str, kind: str = "") -> dict[str, Any]:
         raise LoomfmuError(f"not valid TOML: {error}") from None
     except ValueError:  # what tomllib passes on from int() and from dates
         raise LoomfmuError("not valid TOML: a number has too many digits, or a date does not exist") from None
-    for place, value in _texts(tables):
+    for place, value in texts_in(tables):
         check_text(value, place, LONGEST_TEXT)
     if kind:
         _check_kind(tables, kind)
     return tables
 
 
-def _texts(tables: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """The texts among the values, with the keys that lead to them; the keys are checked on the way."""
+def texts_in(tables: Any) -> Iterator[tuple[str, str]]:
+    """The texts in tables and lists, with the keys that lead to them; the keys are checked on the way."""
     level: list[tuple[str, Any]] = [("", tables)]
     for _ in range(DEEPEST):
         below: list[tuple[str, Any]] = []

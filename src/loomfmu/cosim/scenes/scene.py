@@ -1,5 +1,6 @@
 """Scenes: what is simulated, for how long, what is recorded and what is claimed of it."""
 
+import contextlib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ from . import notes
 from .graph import Drive, Wire, usual_coupling
 from .instance_tables import overridden, read
 from .instances import Instance
-from .keys import KEYS, LAGGED, UNIFORM, replaced, toml
+from .keys import KEYS, LAGGED, UNIFORM, replaced, texts_in, toml
 from .settings import Times, settings_of
 from .wiring import drives_of, wires_of
 
@@ -164,6 +165,19 @@ def parse(
     if not {"loom", "claims"} & set(tables) and not set(tables) - set(KEYS):
         raise LoomfmuError("the scene is empty: add [loom] for a standard loom, or tables such as [weft]")
     return scene
+
+
+def files_of(scene: Scene) -> list[Path]:
+    """The file of a scene, and what it names: FMUs, weaves, every text that is the name of a file."""
+    found = [path for path in (scene.file, scene.package) if path is not None]
+    found += [instance.fmu.path for instance in scene.instances.values() if not instance.fmu.built]
+    found += [scene.directory / name for name in scene.texts]
+    tables = {} if scene.package is not None else toml(scene.text)
+    for _place, text in (*texts_in(tables), *texts_in(scene.overrides)):
+        with contextlib.suppress(OSError, ValueError):  # most texts cannot be a file's name
+            if (scene.directory / text).is_file():
+                found.append(scene.directory / text)
+    return found
 
 
 def check_free(scene: Scene, keys: Iterable[tuple[str, str]]) -> None:

@@ -23,8 +23,7 @@ from ..importing.fmus import Fmu, Port, Value
 from ..importing.ports import Definition
 from ..scenes.headings import heading
 from ..scenes.instances import Instance
-from ..scenes.scene import Scene
-from ..scenes.scene_files import files_of
+from ..scenes.scene import Scene, files_of
 from .layout import Box, bends, layout
 from .xml import FMU, OMS, OSP, OURS, PARAMETER_SET, SSD_FILE, root, write_units
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...cosim.prepared import Prepared
 from ...cosim.reading import protected
-from ...cosim.scenes.scene_files import files_of
+from ...cosim.scenes.scene import files_of
 from ...display.progress import progress as progress_bar
 from ...errors import LoomfmuError, path_of
 from ...extras import need
