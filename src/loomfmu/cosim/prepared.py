@@ -12,7 +12,7 @@ from time import perf_counter
 from typing import Any, Literal, get_args
 
 from ..errors import LoomfmuError, path_of, shown, suggestion
-from ..traces import Signals, Verdict
+from ..traces import Signals, TraceWriter, Verdict
 from . import accuracy
 from .claims import judging
 from .claims.claim import Claim
@@ -21,8 +21,8 @@ from .estimates import Coarser, Estimates
 from .importing import pool
 from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
-from .master.master import Interrupted
-from .planning.plan import InMemory, Stepping, build_needed, early_end, explained, record
+from .master.master import Interrupted, Master
+from .planning.plan import InMemory, Plan, Stepping, build_needed, early_end, explained, record
 from .planning.requested import Requested, check_bounds
 from .planning.windows import window_grid
 from .provenance import attributes
@@ -138,9 +138,12 @@ class Pattern:
         trace = self._on(scene, uniform(scene))
         return trace, self._judged(trace)
 
+    def _coarser(self, scene: Scene, grid: Grid) -> Coarser:
+        return self._estimates.coarser(scene, grid, range(len(self._all)))
+
     def run(self, scene: Scene, path: Path, flavour: str, overwrite: bool, progress: bool) -> Result:
         """Run the scene, record it to a file, and judge its claims."""
-        scene, known, chosen = self._with_steps(scene)
+        scene, coarser, chosen = self._with_steps(scene)
         needed = self._requested.needed(self._all, self._requested.recorded)
         signals = list(dict.fromkeys([*needed, *self._estimates.shown]))
         stepping = self.stepping(signals)
@@ -149,29 +152,23 @@ class Pattern:
         target = target_of(plan, path, overwrite, progress)
         replaced = written_at(target)
         about = attributes(plan, flavour, target.parent)  # paths hold before an FMU changes the directory
-        everything = range(len(self._all))
-        coarser = known
         if coarser is None and any(instance.fmu.component is None for instance in scene.instances.values()):
             # coarser steps first: what an FMU leaves behind, such as a log, is that of the run itself
-            coarser = self._estimates.coarser(scene, plan.grid, everything)
+            coarser = self._coarser(scene, plan.grid)
         with ExitStack() as instances:
             master = instances.enter_context(stepping.stepped(plan))
             if master.interrupted.value:
                 raise KeyboardInterrupt("interrupted before the first step")
             writer = writer_of(plan, stepping.channels, path, target, about)
-            with kept_readable(writer, path), progress_of(plan, progress) as advance:
-                begun = perf_counter()
-                record(master, writer, advance)
-                seconds = perf_counter() - begun
-                if master.interrupted.value:
-                    raise Interrupted
+            with kept_readable(writer, path):
+                seconds = _recorded(master, writer, plan, progress)
             steps, early = master.steps, early_end(plan, master.ended)
             warnings = (*scene.notes, *master.warnings())
             if coarser is None:
                 instances.close()  # coarser runs may be stepped by the same master
                 with kept_readable(writer, path):
                     try:
-                        coarser = self._estimates.coarser(scene, plan.grid, everything)
+                        coarser = self._coarser(scene, plan.grid)
                     except KeyboardInterrupt:
                         raise Interrupted from None
             # third-party instances are still there: one that crashes when it is freed takes nothing with it
@@ -189,6 +186,17 @@ class Pattern:
             chosen=chosen,
             replaced=replaced,
         )
+
+
+def _recorded(master: Master, writer: TraceWriter, plan: Plan, progress: bool) -> float:
+    """Step an initialized master to the end and record it; return the time that took [s]."""
+    with progress_of(plan, progress) as advance:
+        begun = perf_counter()
+        record(master, writer, advance)
+        seconds = perf_counter() - begun
+    if master.interrupted.value:
+        raise Interrupted
+    return seconds
 
 
 class Prepared:
@@ -283,7 +291,7 @@ class Prepared:
         overrides = {key: value for key, value in before.items() if key not in given} | given
         values = {key: value for key, value in given.items() if self._base.values.targets(key)}
         # a pattern that was read with some values serves for other ones of the same variables
-        key = repr(({key: each for key, each in overrides.items() if key not in values}, sorted(values)))
+        key = repr(({name: each for name, each in overrides.items() if name not in values}, sorted(values)))
         pattern = self._base if len(values) == len(given) else self._patterns.get(key)
         scene = pattern.with_values(values, overrides) if pattern else None
         if pattern is None or scene is None:
