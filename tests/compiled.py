@@ -11,7 +11,7 @@ from sharing import made_by_gcc
 
 from loomfmu.components import BeltDynamics
 from loomfmu.declaring.variables import Component, variables_of
-from loomfmu.fmi.native.builder import ARITHMETIC, SHELL
+from loomfmu.fmi.native.native_fmu import ARITHMETIC, SHELL
 from loomfmu.fmi.native.translate import translate
 
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]

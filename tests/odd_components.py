@@ -10,7 +10,7 @@ from loomfmu import components
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.declarations import input_, output, parameter
 from loomfmu.declaring.variables import Component, Problem
-from loomfmu.fmi import builder
+from loomfmu.fmi import fmu_files
 
 
 @dataclass(slots=True)
@@ -109,9 +109,9 @@ ODD = (Overflowing, Raising, Complaining, Switched)
 @pytest.fixture
 def odd(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Components that misbehave, as FMUs."""
-    home = builder.folder(components.MainShaft)
+    home = fmu_files.folder(components.MainShaft)
     for component in ODD:
         monkeypatch.setitem(fmus.COMPONENTS, component.__name__, component)
-    monkeypatch.setattr(builder, "folder", lambda component: home)
+    monkeypatch.setattr(fmu_files, "folder", lambda component: home)
     yield
     fmus._known.clear()

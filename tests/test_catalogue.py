@@ -11,7 +11,7 @@ from loomfmu.cli import main
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi import builder
+from loomfmu.fmi import live_fmu
 from loomfmu.machines import HEADS, MACHINES
 
 
@@ -106,7 +106,7 @@ def test_the_file_of_an_fmu_is_described_too(tmp_path: Path, capsys: pytest.Capt
         lines = capsys.readouterr().out.splitlines()
         assert lines[0].startswith(f"{name}: FMI {3 if name == 'Motor3' else 2}.0, ")
         assert "  mode = both_ways" in lines and "  w_free = 60.0 rad/s" in lines
-    shaft = builder.build(COMPONENTS["MainShaft"], tmp_path)
+    shaft = live_fmu.build(COMPONENTS["MainShaft"], tmp_path)
     assert main(["list", str(shaft)]) == 0
     assert "  speed = 400 rev/min  [from -9549.3 to 9549.3]" in capsys.readouterr().out.splitlines()
     assert main(["list", str(tmp_path / "none.fmu")]) == 2

@@ -22,7 +22,7 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.scenes import scene
 from loomfmu.declaring.variables import MIXED, OWN, PUBLISHED, variables_of
-from loomfmu.fmi.builder import folder
+from loomfmu.fmi.fmu_files import folder
 from loomfmu.sweeps import plan
 
 HOUSE = Path(__file__).parents[1]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from loomfmu.components import COMPONENTS
-from loomfmu.fmi.builder import folder
+from loomfmu.fmi.fmu_files import folder
 
 ROOT = Path(__file__).parents[2]
 HOME, TOUR = "README.md", "docs/tour.md"

@@ -21,8 +21,7 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import step_order
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.native import builder as native_builder
-from loomfmu.fmi.native import compiler, platforms
+from loomfmu.fmi.native import compiler, native_fmu, platforms
 from loomfmu.fmi.native.translate import translate
 
 HERE = Path(__file__).parent
@@ -104,7 +103,7 @@ def loop(source: Source, directory: Path) -> Program:
     scene = source.scene()
     text = "\n".join(_loop_parts(scene))
     (directory / "loop.c").write_text(text, encoding="utf-8")
-    for name, place in (("python_arithmetic.h", native_builder.SHELL), ("timed_loop.h", HERE)):
+    for name, place in (("python_arithmetic.h", native_fmu.SHELL), ("timed_loop.h", HERE)):
         (directory / name).write_bytes((place / name).read_bytes())
     return Program(_compiled(directory, "loop.c"), _columns(scene))
 
@@ -197,7 +196,7 @@ def _hosted(scene: Scene, directory: Path) -> Path:
     (directory / "plan.h").write_text("\n".join(_plan(scene)), encoding="utf-8")
     for name in ("host.c", "timed_loop.h"):
         (directory / name).write_bytes((HERE / name).read_bytes())
-    return _compiled(directory, "host.c", (f"-I{native_builder.HEADERS}",))
+    return _compiled(directory, "host.c", (f"-I{native_fmu.HEADERS}",))
 
 
 def _plan(scene: Scene) -> Iterator[str]:

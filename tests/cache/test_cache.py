@@ -15,7 +15,7 @@ from loomfmu import LoomfmuError
 from loomfmu.cache import directory
 from loomfmu.cache.directory import cache_directory, compiler_environment
 from loomfmu.cosim.importing import fmus
-from loomfmu.fmi import builder
+from loomfmu.fmi import live_fmu
 
 SIMS = Path(__file__).parents[2] / "sims"
 unix = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes of files are those of Unix")
@@ -204,7 +204,7 @@ def test_a_built_fmu_is_as_open_as_the_umask_lets_it_be_and_the_cache_is_closed(
     monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path / "cache"))
     before = os.umask(mask)
     try:
-        made = builder.build("MainShaft", tmp_path)
+        made = live_fmu.build("MainShaft", tmp_path)
         unpacked = fmus.load(made).directory
     finally:
         os.umask(before)

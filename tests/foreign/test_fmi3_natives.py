@@ -11,7 +11,7 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 PARTS = {"shaft": "MainShaft", "dobby": "DobbyDrive", "heald_1": "HealdFrame"}

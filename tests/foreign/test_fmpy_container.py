@@ -10,7 +10,7 @@ from fmpy.container_fmu.config import Component, Configuration, Connection
 from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, ModelVariable
 
 from loomfmu.components import WeftInsertion
-from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 SHAFT = ("angle", "velocity", "acceleration")

@@ -7,7 +7,7 @@ from ctypes import byref, c_double, c_int, c_size_t, c_void_p
 import pytest
 from natives import DISCARD, ERROR, OK, SOLVED, STEPPED, WARNING, EventInfo, Instance, Native
 
-from loomfmu.fmi.native.builder import HEADERS
+from loomfmu.fmi.native.native_fmu import HEADERS
 
 # section 4.2.4 of FMI 2.0: where each function may be called in co-simulation
 STATES = ("instantiated", "initialization", "step", "failed", "terminated", "error")

@@ -13,8 +13,8 @@ from natives import DISCARD, ERROR, MEMORYLESS, OK, SOLVED, TIME
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.builder import guid
-from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.live_fmu import guid
+from loomfmu.fmi.native import native_fmu
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
@@ -135,7 +135,7 @@ def test_time_can_go_back(native):
 
 @pytest.mark.slow
 def test_it_is_built_for_all_platforms(tools, tmp_path):
-    path = native_builder.build_native("MainShaft", tmp_path, fmi=3)
+    path = native_fmu.build_native("MainShaft", tmp_path, fmi=3)
     with zipfile.ZipFile(path) as zipped:
         places = {name.split("/")[1] for name in zipped.namelist() if name.startswith("binaries/")}
     assert places == {"x86_64-linux", "x86_64-windows", "x86_64-darwin", "aarch64-darwin"}

@@ -14,7 +14,7 @@ from fmpy import platform
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.native.builder import HEADERS, sources
+from loomfmu.fmi.native.native_fmu import HEADERS, sources
 
 pytestmark = pytest.mark.no_cover  # FMUs beside components, step by step: the tests of these cover them
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)

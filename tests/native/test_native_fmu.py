@@ -18,8 +18,8 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.variables import variables_of
 from loomfmu.errors import LoomfmuError
-from loomfmu.fmi.builder import guid
-from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.live_fmu import guid
+from loomfmu.fmi.native import native_fmu
 from loomfmu.fmi.native.fat_binary import ALIGNMENT, fat_binary
 from loomfmu.fmi.native.platforms import check_platforms
 
@@ -77,7 +77,7 @@ def test_its_description_is_that_of_the_live_flavour_but_for_what_it_can_do(buil
 @either_fmi
 @every_fmu
 def test_it_exports_the_functions_of_the_standard_and_needs_only_libc_and_libm(package, name, fmi):
-    header = (native_builder.HEADERS / f"fmi{fmi}Functions.h").read_text()
+    header = (native_fmu.HEADERS / f"fmi{fmi}Functions.h").read_text()
     wanted = set(re.findall(rf"#define (fmi{fmi}\w+) +fmi{fmi}FullName\(fmi{fmi}\w+\)", header))
     assert {f"fmi{fmi}Terminate", "fmi2NewDiscreteStates" if fmi == 2 else "fmi3SetTime"} <= wanted
     library = binary(package(name, fmi))
@@ -130,7 +130,7 @@ def test_builds_repeat_to_the_byte(built, tmp_path, monkeypatch):
     # another directory and an empty cache of the compiler: nothing is taken from the first build
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "zig"))
     monkeypatch.setenv("ZIG_LOCAL_CACHE_DIR", str(tmp_path / "zig"))
-    again = native_builder.build_native("MainShaft", tmp_path, ("linux64",))
+    again = native_fmu.build_native("MainShaft", tmp_path, ("linux64",))
     assert hashlib.sha256(again.read_bytes()).hexdigest() == built["MainShaft"].sha256
 
 
@@ -159,7 +159,7 @@ def test_an_unknown_platform_or_flavour_is_named(tools):
 
 @pytest.mark.slow
 def test_it_is_built_for_all_platforms(tools, tmp_path):
-    path = native_builder.build_native("MainShaft", tmp_path)
+    path = native_fmu.build_native("MainShaft", tmp_path)
     assert validate_fmu(str(path)) == []
     with zipfile.ZipFile(path) as zipped:
         windows = zipped.read("binaries/win64/MainShaft.dll")
@@ -167,4 +167,4 @@ def test_it_is_built_for_all_platforms(tools, tmp_path):
         assert "documentation/licenses/mingw-w64.txt" in zipped.namelist()
     assert windows[:2] == b"MZ" and b"fmi2DoStep" in windows
     assert mac[:8] == bytes.fromhex("cafebabe00000002") and mac.count(b"_fmi2DoStep") >= 2
-    assert native_builder.build_native("MainShaft", tmp_path / "again").read_bytes() == path.read_bytes()
+    assert native_fmu.build_native("MainShaft", tmp_path / "again").read_bytes() == path.read_bytes()

@@ -14,7 +14,7 @@ from compiled import WARNINGS, compiled, library
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import Problem, variables_of
 from loomfmu.fmi.native import translate as translating
-from loomfmu.fmi.native.builder import sources
+from loomfmu.fmi.native.native_fmu import sources
 from loomfmu.fmi.native.tables import tables
 from loomfmu.fmi.native.translate import TranslationError, translate
 

@@ -12,8 +12,8 @@ import pytest
 
 from loomfmu.components import COMPONENTS
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi import builder
-from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi import live_fmu
+from loomfmu.fmi.native import native_fmu
 
 WINE = shutil.which("wine64") or shutil.which("wine") or shutil.which("/usr/lib/wine/wine64")
 HERE = Path(__file__).parent
@@ -35,7 +35,7 @@ def host(tools, tmp_path_factory) -> Path:
         "x86_64-windows-gnu",
         "-std=c99",
         "-O1",
-        f"-I{native_builder.HEADERS}",
+        f"-I{native_fmu.HEADERS}",
         "-o",
         path,
         HERE / "host.c",
@@ -48,12 +48,12 @@ def host(tools, tmp_path_factory) -> Path:
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_the_windows_binary_gives_the_components_results(fmu_cache, host, tmp_path, name):
     component = COMPONENTS[name]
-    fmu = native_builder.build_native(name, tmp_path, ("win64",))
+    fmu = native_fmu.build_native(name, tmp_path, ("win64",))
     with zipfile.ZipFile(fmu) as zipped:
         library = Path(zipped.extract(f"binaries/win64/{name}.dll", tmp_path))
     letters = "".join({float: "r", int: "i", bool: "b"}[v.type] for v in variables_of(component))
     run = subprocess.run(
-        [WINE, host, f"Z:{library}", builder.guid(component), str(STEPS), repr(SIZE), letters],
+        [WINE, host, f"Z:{library}", live_fmu.guid(component), str(STEPS), repr(SIZE), letters],
         capture_output=True,
         text=True,
         check=False,

@@ -41,8 +41,8 @@ def build(options: argparse.Namespace) -> int:
     from functools import partial
 
     from .. import catalogue
-    from ..fmi import builder
-    from ..fmi.native.builder import build_native
+    from ..fmi import live_fmu
+    from ..fmi.native.native_fmu import build_native
 
     built = catalogue.components(options.names)
     if not options.native and (options.platform or options.fmi != 2):
@@ -55,7 +55,7 @@ def build(options: argparse.Namespace) -> int:
         )
     else:
         write = partial(
-            builder.build, directory=options.output or Path("build/fmus"), overwrite=options.force
+            live_fmu.build, directory=options.output or Path("build/fmus"), overwrite=options.force
         )
     with ThreadPoolExecutor() as pool:  # compilers run side by side
         for path in pool.map(write, built):

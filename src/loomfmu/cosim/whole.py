@@ -6,11 +6,11 @@ from pathlib import Path
 
 from ..errors import LoomfmuError
 from ..files import check_target, write_file
-from ..fmi.builder import FMU, zipped
+from ..fmi.fmu_files import FMU, zipped
 from ..fmi.native.c_code import KEYWORDS
 from ..fmi.native.platforms import PLATFORMS
-from ..fmi.system.builder import contents
 from ..fmi.system.system import Drive, Part, System
+from ..fmi.system.system_fmu import contents
 from .planning.pruning import prune
 from .planning.requested import Requested, checked_claims
 from .scenes.graph import step_order

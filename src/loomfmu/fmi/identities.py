@@ -112,14 +112,14 @@ def _everything() -> bytes:
 
 
 def _computed(component: type[Component]) -> Identity:
-    from . import builder
-    from .native import builder as native_builder
+    from . import fmu_files, live_fmu
+    from .native import native_fmu
 
-    texts = sorted(builder.beside(component, builder.TEXTS).items())
+    texts = sorted(fmu_files.beside(component, fmu_files.TEXTS).items())
     suffix = hashlib.sha256(repr(texts).encode()).hexdigest()[:8]
-    guid = builder.guid(component)
+    guid = live_fmu.guid(component)
     return {
         "guid": guid,
         "live": f"{guid}-{suffix}",
-        "native": f"{native_builder.identity(component)}-{suffix}",
+        "native": f"{native_fmu.identity(component)}-{suffix}",
     }

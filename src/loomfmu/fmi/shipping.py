@@ -12,8 +12,8 @@ from ..components import COMPONENTS
 from ..files import replace_file
 from . import identities
 from .native import libraries
-from .native.builder import build_native
 from .native.compiler import MINGW, mingw_licence
+from .native.native_fmu import build_native
 from .native.platforms import PLATFORMS, SHIPPED
 
 

@@ -23,8 +23,8 @@ from ..declaring.variables import Variable, variables_of
 from ..errors import path_of
 from ..extras import need
 from ..files import check_target, starts_with, write_file
-from ..fmi.system.builder import module
 from ..fmi.system.system import System, component_of
+from ..fmi.system.system_fmu import module
 from ..report.document import PRINT, assembled, sections
 from ..report.section import Section, Subject
 from ..report.templates import template

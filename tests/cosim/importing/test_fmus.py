@@ -16,8 +16,8 @@ from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.built import file_of, run_files
 from loomfmu.cosim.importing.descriptions import declared_ports, ports_of
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.fmi.builder import zipped
 from loomfmu.fmi.description.model_description import model_description
+from loomfmu.fmi.fmu_files import zipped
 from loomfmu.fmi.native import platforms
 from loomfmu.sweeps.plan import load
 

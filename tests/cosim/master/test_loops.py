@@ -26,7 +26,7 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
-from loomfmu.fmi.native.builder import build_native
+from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]

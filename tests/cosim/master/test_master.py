@@ -20,7 +20,7 @@ from loomfmu.cosim.master.master import Master
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.fmi import builder
+from loomfmu.fmi import live_fmu
 from loomfmu.traces import ROWS, Trace
 
 __all__ = ["odd"]
@@ -342,8 +342,8 @@ def test_instances_are_given_back_when_one_cannot_be_made(
 
 @pytest.mark.usefixtures("odd")
 def test_an_fmu_that_cannot_be_instantiated_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(builder, "__version__", "0.0.broken")  # an identity of its own
-    monkeypatch.setattr(builder, "_entry", lambda *_arguments: "raise ValueError('no entry')")
+    monkeypatch.setattr(live_fmu, "__version__", "0.0.broken")  # an identity of its own
+    monkeypatch.setattr(live_fmu, "_entry", lambda *_arguments: "raise ValueError('no entry')")
     fmu = fmus.of_component("Complaining")
     with pytest.raises(LoomfmuError) as raised:
         slave.Slave(fmu, "mine")

@@ -23,8 +23,8 @@ from loomfmu.cosim.planning.pruning import prune
 from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.fmi.native.builder import build_native
 from loomfmu.fmi.native.libraries import library_of
+from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]

@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element, fromstring
 import pytest
 from live_fmus import COMPONENTS
 
-from loomfmu.fmi import builder
+from loomfmu.fmi import fmu_files
 from loomfmu.fmi.description.equations import GREEK, NotTypeset, mathml, table
 
 every_fmu = pytest.mark.parametrize("name", COMPONENTS)
@@ -56,7 +56,7 @@ def test_what_is_no_formula_is_refused(text: str) -> None:
 
 @every_fmu
 def test_no_symbol_of_a_readme_is_lost(name: str) -> None:
-    readme = (builder.folder(COMPONENTS[name]) / "README.md").read_text(encoding="utf-8")
+    readme = (fmu_files.folder(COMPONENTS[name]) / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```\n(.*?)^```$", readme, re.MULTILINE | re.DOTALL)
     assert blocks
     symbols = str.maketrans(

@@ -12,7 +12,7 @@ from lxml import etree
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.terminals import FILE
-from loomfmu.fmi.native import builder as native_builder
+from loomfmu.fmi.native import native_fmu
 
 every_fmu = pytest.mark.parametrize("name", NAMES)
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
@@ -97,7 +97,7 @@ def test_one_connection_wires_head_rotor_and_frame() -> None:
 
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_native_fmus_have_the_same_file(monkeypatch: pytest.MonkeyPatch, fmi: int) -> None:
-    monkeypatch.setattr(native_builder, "binaries", lambda *_rest: {})
+    monkeypatch.setattr(native_fmu, "binaries", lambda *_rest: {})
     with zipfile.ZipFile(fmus.of_component("BeltMonitor").path) as zipped:
         wanted = zipped.read(FILE)
-    assert native_builder.contents(COMPONENTS["BeltMonitor"], ("linux64",), fmi)[FILE] == wanted
+    assert native_fmu.contents(COMPONENTS["BeltMonitor"], ("linux64",), fmi)[FILE] == wanted

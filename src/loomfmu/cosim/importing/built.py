@@ -92,9 +92,9 @@ def _place(component: type[Component], flavour: str, chosen: tuple[str, ...], fm
 
 
 def _archive(component: type[Component], flavour: str, chosen: tuple[str, ...], fmi: int) -> bytes:
-    from ...fmi import builder
-    from ...fmi.native import builder as native_builder
+    from ...fmi import live_fmu
+    from ...fmi.native import native_fmu
 
     if flavour == "live":
-        return builder.archive(component)
-    return native_builder.archive(component, chosen, fmi)
+        return live_fmu.archive(component)
+    return native_fmu.archive(component, chosen, fmi)

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ...declaring.variables import AT_STEP_END
 from ...errors import LoomfmuError
 from ...files import check_target, write_file, zip_with
-from ...fmi import builder
+from ...fmi import fmu_files
 from ...fmi.description.model_description import DEFAULT_TOLERANCE
 from ...fmi.description.xml_text import text_of
 from ...fmi.native import platforms as native
@@ -53,7 +53,7 @@ def export(
         raise LoomfmuError(f"{scene.package} is already a system package")
     inputs = files_of(scene)
     check_target(path, PACKAGE, inputs, overwrite)  # before the FMUs are built
-    content = builder.zipped(contents(scene, flavour or default_flavour(scene), platforms))
+    content = fmu_files.zipped(contents(scene, flavour or default_flavour(scene), platforms))
     write_file(path, content, PACKAGE, inputs, overwrite)
     return [*scene.notes, *_driven(scene), *_enumerated(scene)]
 

@@ -21,7 +21,7 @@ from loomfmu import LoomfmuError, components
 from loomfmu.cosim.importing import fmus
 from loomfmu.declaring.declarations import output, parameter
 from loomfmu.declaring.variables import Component, variables_of
-from loomfmu.fmi import builder
+from loomfmu.fmi import fmu_files, live_fmu
 from loomfmu.fmi.description import documentation
 from loomfmu.fmi.source import SourceError, flatten
 
@@ -76,7 +76,7 @@ def test_licences_of_all_that_is_in_it(name: str) -> None:
 
 @every_fmu
 def test_documentation_shows_the_drawing_that_lies_beside_it(name: str) -> None:
-    if not (builder.folder(COMPONENTS[name]) / "drawing.svg").exists():
+    if not (fmu_files.folder(COMPONENTS[name]) / "drawing.svg").exists():
         return
     files = contents(name)
     assert '<img src="drawing.svg" alt="' in files["documentation/index.html"].decode()
@@ -85,7 +85,7 @@ def test_documentation_shows_the_drawing_that_lies_beside_it(name: str) -> None:
 
 @every_fmu
 def test_icon_is_a_png_of_128_by_128(name: str) -> None:
-    if not (builder.folder(COMPONENTS[name]) / "icon.png").exists():
+    if not (fmu_files.folder(COMPONENTS[name]) / "icon.png").exists():
         return
     png = contents(name)["model.png"]
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
@@ -105,7 +105,7 @@ def test_its_python_imports_little_and_bears_a_name_of_its_own(name: str) -> Non
     modules = {path: text for path, text in files.items() if path.endswith(".py")}
     entry = files["resources/slavemodule.txt"].decode()
     package = entry.removesuffix("_entry")
-    identity = builder.guid(COMPONENTS[name]).replace("-", "")
+    identity = live_fmu.guid(COMPONENTS[name]).replace("-", "")
     assert package == f"loomfmu_{name.lower()}_{identity[:16]}"
     assert set(modules) == {
         f"resources/{entry}.py",
@@ -148,7 +148,7 @@ def test_the_component_in_it_imports_math_alone(name: str) -> None:
 
 @every_fmu
 def test_the_readme_in_the_repository_is_up_to_date(name: str) -> None:
-    text = (builder.folder(COMPONENTS[name]) / "README.md").read_text(encoding="utf-8")
+    text = (fmu_files.folder(COMPONENTS[name]) / "README.md").read_text(encoding="utf-8")
     assert documentation.with_table(text, COMPONENTS[name]) == text, "run `make docs`"
 
 
@@ -169,7 +169,7 @@ def digest(path: Path) -> str:
 @pytest.mark.slow
 def test_builds_repeat_in_another_directory_and_another_process(tmp_path: Path) -> None:
     before = {name: digest(fmus.of_component(name).path) for name in NAMES}
-    assert {name: digest(builder.build(name, tmp_path / "here")) for name in NAMES} == before
+    assert {name: digest(live_fmu.build(name, tmp_path / "here")) for name in NAMES} == before
     for seed in ("1", "4242"):
         there = tmp_path / f"there {seed}"
         script = "import sys; from loomfmu.cli import main; main(['build', '--output', sys.argv[1]])"
@@ -189,10 +189,10 @@ def test_nothing_is_left_behind_where_an_fmu_cannot_be_written(tmp_path: Path) -
     (tmp_path / "MainShaft.fmu").mkdir()
     (tmp_path / "MainShaft.fmu" / "in the way").touch()
     with pytest.raises(LoomfmuError, match=r"MainShaft\.fmu: cannot be written \(it is a dir"):
-        builder.build("MainShaft", tmp_path)
+        live_fmu.build("MainShaft", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["MainShaft.fmu"]
     with pytest.raises(KeyError):
-        builder.build("Spindle", tmp_path)
+        live_fmu.build("Spindle", tmp_path)
 
 
 # ---- identity
@@ -244,12 +244,12 @@ def test_identity_changes_with_every_declaration() -> None:
         declared("more", float, output("rad", "More")),
     ]
     same = declared("angle", float, output("rad", "Angle", unbounded=True))
-    identities = [builder.guid(other) for other in [Original, *others]]
+    identities = [live_fmu.guid(other) for other in [Original, *others]]
     # an output without inputs depends on none, said or not: that one description is the same
     assert identities[10] == identities[0]
     del identities[10]
     assert len(set(identities)) == len(identities)
-    assert builder.guid(same) == builder.guid(Original)
+    assert live_fmu.guid(same) == live_fmu.guid(Original)
 
 
 def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -263,22 +263,22 @@ def test_identity_changes_with_the_source(monkeypatch: pytest.MonkeyPatch) -> No
             return 0
 
     Faster.__name__ = "MainShaft"
-    before = builder.guid(Original)
-    assert builder.guid(Faster) != before
-    source = builder._source
-    for copied in builder.LIVE:
-        monkeypatch.setattr(builder, "_source", lambda m, of=copied: source(m) + "# other\n" * (m is of))
-        assert builder.guid(Original) != before
-    monkeypatch.setattr(builder, "_source", source)
-    assert builder.guid(Original) == before
-    monkeypatch.setattr(builder, "__version__", "99.0")
-    assert builder.guid(Original) != before
+    before = live_fmu.guid(Original)
+    assert live_fmu.guid(Faster) != before
+    source = live_fmu._source
+    for copied in live_fmu.LIVE:
+        monkeypatch.setattr(live_fmu, "_source", lambda m, of=copied: source(m) + "# other\n" * (m is of))
+        assert live_fmu.guid(Original) != before
+    monkeypatch.setattr(live_fmu, "_source", source)
+    assert live_fmu.guid(Original) == before
+    monkeypatch.setattr(live_fmu, "__version__", "99.0")
+    assert live_fmu.guid(Original) != before
 
 
 @every_fmu
 def test_value_references_and_identity_are_those_of_the_file(name: str) -> None:
     fmu = fmus.of_component(name)
-    assert fmu.guid == builder.guid(COMPONENTS[name])
+    assert fmu.guid == live_fmu.guid(COMPONENTS[name])
     assert [port.reference for port in fmu.ports.values()] == list(range(1, len(fmu.ports) + 1))
     assert fmu.identifier == name
 
@@ -301,7 +301,7 @@ def test_a_component_that_cannot_stand_alone_is_refused() -> None:
 
 @every_fmu
 def test_the_fmu_gives_the_reference_results(name: str) -> None:
-    path = builder.folder(COMPONENTS[name]) / "reference.csv"
+    path = fmu_files.folder(COMPONENTS[name]) / "reference.csv"
     expected = np.genfromtxt(path, delimiter=",", names=True)
     assert len(expected) == SAMPLES
     found = fmpy.simulate_fmu(
@@ -332,6 +332,6 @@ def test_reference_results_are_written_where_the_fmus_lie(
 
 
 def test_the_documentation_says_what_the_fmu_calls_numbered_variables() -> None:
-    page = builder.described(COMPONENTS["HealdFrame"])["documentation/index.html"].decode()
+    page = fmu_files.described(COMPONENTS["HealdFrame"])["documentation/index.html"].decode()
     assert "<code>pattern_1</code> is called <code>pattern[1]</code>" in page
-    assert "is called" not in builder.described(COMPONENTS["BeltWrap"])["documentation/index.html"].decode()
+    assert "is called" not in fmu_files.described(COMPONENTS["BeltWrap"])["documentation/index.html"].decode()

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from ...declaring.variables import Component
 from ...version import __version__
-from ..builder import NAMESPACE
 from ..description import documentation
 from ..description.model_description import model_description
 from ..description.terminals import terminal_files
-from ..native import builder as native
+from ..fmu_files import NAMESPACE
+from ..native import native_fmu as native
 from ..native.compiler import web_assembly
 from ..native.tables import tables
 from .code import inner_step, stepped, translated

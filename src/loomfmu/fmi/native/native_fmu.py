@@ -9,19 +9,10 @@ from ...components import COMPONENTS
 from ...declaring.variables import Component
 from ...files import write_file
 from ...version import __version__
-from ..builder import (
-    FMU,
-    HEADERS,
-    beside,
-    described,
-    file_in,
-    guid,
-    license_of,
-    license_of_headers,
-    zipped,
-)
 from ..description.model_description import model_description, output_order
 from ..description.model_description3 import model_description3
+from ..fmu_files import FMU, HEADERS, beside, described, file_in, license_of, license_of_headers, zipped
+from ..live_fmu import guid
 from .compiler import ARITHMETIC, MINGW, binaries, mingw_licence
 from .platforms import PLATFORMS
 from .tables import tables
