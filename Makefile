@@ -15,6 +15,9 @@ FIGURES := $(CURDIR)/tests/validation/tables/attack.csv
 VERDICTS := $(CURDIR)/tests/validation/tables/verdicts.csv
 VALIDATE := PYTHONPATH=tests $(BIN)/python -m validation
 
+# tests start hundreds of processes: each would compile the package again, which takes longer than most that it does
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test test-all coverage check stress attack verdicts bench docs site validation wheel pins clean
 
 demo: .venv/installed

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 from belt_loom import ends
+from compiled import quick_belt
 from scipy.optimize import brentq
 
 from loomfmu.components.belt_dynamics import BeltDynamics
@@ -55,7 +56,7 @@ def bent(turn: float, clearance: float, guide: float, length: float) -> float:
 
     At rest neither its mass nor its damping matters; with these it needs few steps.
     """
-    belt = BeltDynamics(bow=0.0, guide_end=2, guide_clearance=clearance, guide_length=guide, damping=600.0)
+    belt = quick_belt()(bow=0.0, guide_end=2, guide_clearance=clearance, guide_length=guide, damping=600.0)
     belt.travel = belt.idle_travel + belt.head_length + length
     belt.belt_mass = belt.bending_stiffness * (math.pi / length) ** 4 / belt.damping**2
     belt.initialize(0.0)

@@ -3,6 +3,8 @@
 import ctypes
 import shutil
 import subprocess
+import tempfile
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -99,9 +101,15 @@ def in_c(component: type[Component], folder: Path) -> type[Any]:
     return InC
 
 
-@pytest.fixture(scope="session")
-def belt_in_c(tmp_path_factory: pytest.TempPathFactory) -> type[Any]:
+@cache
+def quick_belt() -> type[Any]:
     """BeltDynamics for long runs: in C thirty times as fast, with the same bits."""
     if shutil.which("gcc") is None:
         return BeltDynamics
-    return in_c(BeltDynamics, tmp_path_factory.mktemp("belt_dynamics"))
+    with tempfile.TemporaryDirectory(prefix="belt-") as folder:
+        return in_c(BeltDynamics, Path(folder))
+
+
+@pytest.fixture(scope="session")
+def belt_in_c() -> type[Any]:
+    return quick_belt()

@@ -1,9 +1,12 @@
 """What all processes have in common that share the tests of one session."""
 
 import hashlib
+import platform
 import shutil
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -37,6 +40,21 @@ def made_by_gcc(name: str, sources: list[str], make: Callable[[], bytes]) -> Pat
     stamp = Path(gcc).stat().st_mtime_ns if gcc else 0
     key = hashlib.sha256(repr((name, sources, stamp)).encode()).hexdigest()
     return made_file(FMUS, key, name, make)
+
+
+def made_of_sources(folder: Path, make: Callable[[], bytes]) -> bytes:
+    """A result that only sources decide: made once for each state of these, as an entry of the cache.
+
+    They are the package, a folder of tests, the modules beside it and the libraries that compute and draw.
+    """
+    root = Path(__file__).parents[1]
+    files = [*(root / "src").rglob("*"), *(root / "tests").glob("*.py"), *folder.rglob("*")]
+    libraries = [version(name) for name in ("matplotlib", "numpy", "pillow", "scipy")]
+    digest = hashlib.sha256(repr((sys.version, platform.machine(), libraries)).encode())
+    for file in sorted(file for file in files if file.is_file() and "__pycache__" not in file.parts):
+        digest.update(file.relative_to(root).as_posix().encode())
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return made_file(FMUS, digest.hexdigest(), folder.name, make).read_bytes()
 
 
 def native_fmus() -> dict[str, fmus.Fmu]:

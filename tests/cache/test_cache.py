@@ -143,12 +143,11 @@ def test_another_users_cache_is_not_used(
         cache_directory()
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("flavour", [["--live"], ["--native"]])
+@pytest.mark.parametrize("flavour", [["--live"], pytest.param(["--native"], marks=pytest.mark.slow)])
 def test_a_run_without_a_home_that_can_be_written_takes_a_temporary_one(
     no_home: Path, tmp_path: Path, flavour: list[str]
 ) -> None:
-    if flavour:
+    if flavour == ["--native"]:
         pytest.importorskip("ziglang", reason="ziglang is not installed: no native FMU can be built")
     (tmp_path / "temporary").mkdir()
     done = subprocess.run(

@@ -1,10 +1,14 @@
 """The validation report: the same as the committed one, honest about what is not reproduced."""
 
+import pickle
 import re
+from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 from PIL import Image
+from sharing import made_of_sources
 
 from validation import calls, digits, figures, report
 from validation.computed import accuracy, verdicts
@@ -15,23 +19,39 @@ ROOT = Path(__file__).parents[2]
 LARGEST = 60_000  # bytes of a figure
 
 
+@dataclass(frozen=True)
+class Generated:
+    """What the sources give: the report, its chapters and figures, and each number that was rounded."""
+
+    text: str
+    chapters: tuple[report.Chapter, ...]
+    figures: dict[str, bytes]
+    rounded: list[tuple[float, int]]
+
+
 @pytest.fixture(scope="module")
-def generated(untraced):
-    """A fresh report, and every number that was rounded for it."""
+def generated(untraced, tmp_path_factory):
     seen, original = [], digits.rounded
 
     def rounded(value, places):
         seen.append((value, places))
         return original(value, places)
 
-    with pytest.MonkeyPatch.context() as patch, untraced():
-        patch.setattr(digits, "rounded", rounded)
-        return report.markdown(), seen
+    def made():
+        with pytest.MonkeyPatch.context() as patch, untraced():
+            patch.setattr(digits, "rounded", rounded)
+            text, chapters = report.markdown(), report.chapters()
+            drawn = {
+                path.name: path.read_bytes() for path in figures.write(tmp_path_factory.mktemp("figures"))
+            }
+        return pickle.dumps(Generated(text, chapters, drawn, seen))
+
+    return pickle.loads(made_of_sources(Path(__file__).parent, made))
 
 
 @pytest.fixture(scope="module")
 def text(generated):
-    return generated[0]
+    return generated.text
 
 
 def test_committed_report_is_the_one_that_the_tables_and_the_components_give(text):
@@ -39,9 +59,8 @@ def test_committed_report_is_the_one_that_the_tables_and_the_components_give(tex
 
 
 def test_the_last_bits_of_a_computation_do_not_show(generated):
-    _text, seen = generated
-    assert len(seen) > 1000
-    for value, places in seen:
+    assert len(generated.rounded) > 1000
+    for value, places in generated.rounded:
         shown = digits.rounded(value, places)
         # a tie would fall to either side on another machine
         assert digits.rounded(value * (1.0 + 1e-9), places) == shown, value
@@ -59,31 +78,28 @@ def test_every_row_has_as_many_cells_as_its_heading(text):
         assert len({line.count(" | ") for line in block.splitlines()}) == 1, block[:80]
 
 
-@pytest.mark.no_cover
-def test_figures_are_the_committed_ones_and_small(text, tmp_path):
-    shown = set(re.findall(r"\(validation/(\w+\.png)\)", text))
+def test_figures_are_the_committed_ones_and_small(generated):
+    shown = set(re.findall(r"\(validation/(\w+\.png)\)", generated.text))
     committed = ROOT / "results" / "validation"
     assert shown == set(figures.described()) == {path.name for path in committed.iterdir()}
-    for path in figures.write(tmp_path):
-        assert path.read_bytes() == (committed / path.name).read_bytes(), path.name
-        assert path.stat().st_size < LARGEST
-        with Image.open(path) as image:
+    assert set(generated.figures) == shown
+    for name, content in generated.figures.items():
+        assert content == (committed / name).read_bytes(), name
+        assert len(content) < LARGEST
+        with Image.open(BytesIO(content)) as image:
             assert image.width == 800
 
 
 # Honest
 
 
-def test_what_is_not_reproduced_is_marked_and_listed(text):
+def test_what_is_not_reproduced_is_marked_and_listed(generated):
+    text = generated.text
     listed = text.split("\n## Not reproduced\n")[1].split("\n## ")[0]
-    missed = [n.verdict for chapter in report.chapters() for n in chapter.numbers if not n.reproduced]
+    missed = [n.verdict for chapter in generated.chapters for n in chapter.numbers if not n.reproduced]
     assert len(missed) == listed.count("computed") == 112
     for verdict in missed:
         assert verdict in listed and text.count(f"not reproduced: {verdict}") + text.count(f": {verdict}") > 1
-
-
-def sections(start):
-    return next(s for chapter in report.chapters() for s in chapter.sections if s.title.startswith(start))
 
 
 @pytest.mark.parametrize(
@@ -110,13 +126,14 @@ def sections(start):
         ("Appendix 2", "used", 2, 3),
     ],
 )
-def test_what_a_number_can_prove(start, role, count, total):
-    numbers = sections(start).numbers
+def test_what_a_number_can_prove(generated, start, role, count, total):
+    sections = (section for chapter in generated.chapters for section in chapter.sections)
+    numbers = next(section for section in sections if section.title.startswith(start)).numbers
     assert (sum(number.role == role for number in numbers), len(numbers)) == (count, total)
 
 
-def test_the_documents_quote_the_totals():
-    numbers = [number for chapter in report.chapters() if chapter.source for number in chapter.numbers]
+def test_the_documents_quote_the_totals(generated):
+    numbers = [number for chapter in generated.chapters if chapter.source for number in chapter.numbers]
     total, *counted = report.counts(numbers)
     by_outcome = dict(zip(OUTCOMES, counted, strict=True))
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())

@@ -10,7 +10,6 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
-from direct_loom import traced
 from scipy.optimize import brentq
 
 from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
@@ -52,7 +51,7 @@ def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Callable[
                 f"loom_{len(known)}",
                 changed | {"steps_per_revolution": steps},
             )
-            known[key] = traced(scene, directory)
+            known[key] = run(scene, output=directory / f"{scene.name}.h5").trace
         return known[key]
 
     return open_

@@ -89,11 +89,11 @@ def test_instances_side_by_side_do_not_touch_each_other(live: Open) -> None:
     alone = {}
     for key in speeds:
         instance = started(key)
-        alone[key] = [excite(instance, speeds[key][0], step) for step in range(40)]
+        alone[key] = [excite(instance, speeds[key][0], step) for step in range(12)]
         instance.free()
     together = {key: started(key) for key in speeds}
     traces: dict[str, list[object]] = {key: [] for key in speeds}
-    for step in range(40):
+    for step in range(12):
         for key, instance in together.items():
             traces[key].append(excite(instance, speeds[key][0], step))
     assert traces == alone
@@ -253,10 +253,10 @@ for name in NAMES:
     data = bytes(instance.slave.serializeFMUState(instance.slave.getFMUState()))
     bad = [data[:length] for length in (1, 35, 36, 48, len(data) // 2, len(data) - 1)]
     bad += [data + b"x", bytes(len(data)), foreign, b"\\xff" * len(data)]
-    bad += [rng.randbytes(rng.randint(1, 2 * len(data))) for _ in range(50)]
+    bad += [rng.randbytes(rng.randint(1, 2 * len(data))) for _ in range(10)]
     # any flipped bit among the values too
     bad += [data[:place] + bytes([data[place] ^ 1 << rng.randrange(8)]) + data[place + 1:]
-            for place in range(len(data))]
+            for place in rng.sample(range(len(data)), 30)]
     for junk in bad:
         assert instance.call("reset") == OK
         instance.start()
@@ -525,7 +525,7 @@ logging.disable()
 def instances():
     gc.collect()
     return sum(type(each).__name__ == "BeltMonitorSlave" for each in gc.get_objects())
-for calls in range(30):
+for calls in range(8):
     instance = Live("BeltMonitor")
     instance.call("setupExperiment", None, 0.0, None)
     instance.set(head_mass=-1.0)
