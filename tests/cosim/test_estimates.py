@@ -585,6 +585,29 @@ def test_steps_that_an_accuracy_chose_say_so_too() -> None:
     assert found.note.startswith("not settled: about 559")
 
 
+def test_mechanisms_at_different_speeds_may_need_a_longer_run() -> None:
+    """The reed turns twice in three turns of the shaft, and comes to the front in the third."""
+    text = """
+    revolutions = 2
+    steps_per_revolution = 360
+    [loom]
+    machine = "WL680-3600"
+    head = "G6300 left"
+    reed = true
+    [shaft]
+    speed = "300 rev/min"
+    [reed]
+    beat_up_angle = "250 deg"
+    follow_shaft = false
+    speed = "200 rev/min"
+    [[claims]]
+    kind = "reed_clear_of_rapier"
+    clearance = "10 mm"
+    """
+    (found,) = evaluate(parse(text)).claims
+    assert found.note.startswith("not settled: about ") and found.note.endswith(" in a run of 4 revolutions")
+
+
 ANOTHER_SHAFT = """
 {length}
 [weft]

@@ -10,11 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..components import COMPONENTS
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import EXTREMES, MOTION
 from ..errors import listed
 from ..traces.signals import Floats, Integers
 from .claims.claim import Claim
+from .claims.movers import movers_of
 from .master.grid import SAME, contradicted, passed_by, period
 from .planning.movements import Movements
 from .planning.requested import Requested
@@ -132,6 +134,21 @@ class Dependence:
             {MOTION if each is None else each.keeps for each in self._components(names)}
             for names in self._upstream
         ]
+
+    @cached_property
+    def unsettled(self) -> set[int]:
+        """The claims, counted from 0, on what a longer run may change.
+
+        Mechanisms of the package without a memory repeat with the shaft and the weave.
+        """
+        ours = set(COMPONENTS.values())
+        return {
+            number
+            for number, names in enumerate(self._upstream)
+            if MOTION in self.kept[number]
+            or not ours.issuperset(self._components(names))
+            or len(movers_of(names, self._requested)) > 1
+        }
 
     @cached_property
     def foreign(self) -> dict[int, str]:

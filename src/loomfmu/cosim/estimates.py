@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..declaring.variables import MOTION
 from ..errors import LoomfmuError
 from ..traces import Signals, Verdict
 from .claims.claim import Claim
@@ -117,7 +116,7 @@ class Estimates:
         A part of a revolution is chosen for what it leaves out.
         """
         whole = scene.periods >= 1.0 or scene.step is not None
-        moving = [number for number in wanted if whole and MOTION in self._dependence.kept[number]]
+        moving = [number for number in wanted if whole and number in self._dependence.unsettled]
         longer = altered(scene, periods=LONGER * scene.periods)
         grid = uniform(longer, SHARES[-1])
         if moving and grid.steps * self._signals <= MOST_VALUES:

@@ -262,6 +262,11 @@ class Trace(Signals):
             names = dict.fromkeys(signal.partition(".")[0] for signal in self)
             return {name: str(member(file, name).attrs.get("fmu", "")) for name in names}
 
+    @cached_property
+    def own_speeds(self) -> frozenset[str]:
+        """The instances that have a speed [rad/s] at which they turn by themselves."""
+        return frozenset(name for name in self.fmus if self.parameter_unit(f"{name}.speed") == "rad/s")
+
     def _damaged(self, why: str) -> LoomfmuError:
         return LoomfmuError(f"{self.given}: the file is damaged ({why})")
 

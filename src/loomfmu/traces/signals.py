@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -171,6 +171,11 @@ class Signals(ABC):
         return {}
 
     @property
+    def own_speeds(self) -> Container[str]:
+        """The instances that have a speed [rad/s] at which they turn by themselves."""
+        return ()
+
+    @property
     def shared(self) -> dict[Any, Any]:
         """Data that the claims on a run share, where it is kept: that of a file may be too large."""
         return {}
@@ -209,7 +214,8 @@ class Recording(Signals):
     """A run that is kept in memory.
 
     It takes blocks as a `TraceWriter` does, and keeps their arrays. `parameter` gives a parameter of an
-    instance as it was set, or None; `wires` the source of each wired input; `fmus` the FMU of each instance.
+    instance as it was set, or None; `wires` the source of each wired input; `fmus` the FMU of each instance;
+    `own_speeds` the instances that have a speed at which they turn by themselves.
     """
 
     def __init__(
@@ -219,12 +225,14 @@ class Recording(Signals):
         parameter: Callable[[str, str], float | int | bool | None],
         wires: Mapping[str, str] = MappingProxyType({}),
         fmus: Mapping[str, str] = MappingProxyType({}),
+        own_speeds: Container[str] = (),
     ):
         self.name = name
         self._channels = {channel.signal: channel for channel in channels}
         self._parameter = parameter
         self._wires = dict(wires)
         self._fmus = dict(fmus)
+        self._own_speeds = own_speeds
         self._parameters: dict[str, float] = {}
         self._shared: dict[Any, Any] = {}
         self._blocks: list[tuple[Floats, Floats, Floats, Integers]] = []
@@ -253,6 +261,11 @@ class Recording(Signals):
     def fmus(self) -> Mapping[str, str]:
         """The name of each instance's FMU."""
         return self._fmus
+
+    @property
+    def own_speeds(self) -> Container[str]:
+        """The instances that have a speed [rad/s] at which they turn by themselves."""
+        return self._own_speeds
 
     @property
     def shared(self) -> dict[Any, Any]:

@@ -26,6 +26,10 @@ class Run:
     def unit(self, signal: str) -> str:
         return "m" if signal.endswith("travel") else "rad"
 
+    @property
+    def own_speeds(self) -> Mapping[str, str]:
+        return self.fmus
+
     def parameter(self, signal: str) -> float:
         if signal.partition(".")[0] not in self._alone:
             raise LoomfmuError(f"{signal} is not recorded")
@@ -46,6 +50,7 @@ GEARED = {"weft.shaft_angle": "gear.turned", "gear.shaft_angle": "shaft.angle", 
             ("weft", "belt"),
             {"weft.speed", "belt.speed"},
         ),
+        ({"belt": "Winder"}, {}, ("belt",), {"belt.speed"}),
         (MAIN | {"belt": "Bump"}, {**GEARED, "belt.seen": "gear.turned"}, (), {"shaft.angle", "gear.turned"}),
     ],
 )
@@ -84,6 +89,9 @@ def test_angles_of_any_unit_that_an_fmu_takes_by_wire_or_table_count() -> None:
         Mover("bump.turned", turns=False),
         Mover("gear.turned", turns=False, turn=360.0),
     }
+    assert movers_of(["bump"], Degrees(fmus, {"bump.shaft_angle": "gear.turned"})) == [
+        Mover("gear.turned", turn=360.0)
+    ]
 
 
 @pytest.mark.parametrize(("unit", "turn"), [("rad", math.tau), ("deg", 360.0)])

@@ -12,7 +12,7 @@ from ...errors import LoomfmuError
 from ...units import UNITS, canonical
 
 ANGLE_INPUT, ANGLE = next(iter(FOLLOWED.items()))
-ALONE, SPEED = "follow_shaft", "speed"  # parameters: false where an instance turns by itself, and how fast
+SPEED = "speed"  # the parameter, or the input, of what turns by itself
 _OTHERS = {name for name, each in COMPONENTS.items() if not issubclass(each, ShaftDriven)}
 _SHAFTS = {name for name, each in COMPONENTS.items() if SHAFT.of(*SHAFT.members) in each.terminals}
 
@@ -33,7 +33,7 @@ class Mover(NamedTuple):
 class Wired(Protocol):
     """A run, or a scene before it: its signals, its wires from input to output, its FMUs and parameters.
 
-    An input that a table drives is wired to itself.
+    An input that a table drives is wired to itself; `own_speeds` are the instances with a speed to turn at.
     """
 
     @property
@@ -41,6 +41,9 @@ class Wired(Protocol):
 
     @property
     def fmus(self) -> Mapping[str, str]: ...
+
+    @property
+    def own_speeds(self) -> Container[str]: ...
 
     def __contains__(self, signal: object) -> bool: ...
 
@@ -78,14 +81,18 @@ def _of(name: str, given: Mapping[str, str], followed: Container[str], run: Wire
     """Yield what turns one instance, given the sources of its inputs; a `followed` shaft turns itself."""
     fmu, own = run.fmus.get(name, ""), f"{name}.{ANGLE}"
     if ANGLE_INPUT in given:
-        yield Mover(given[ANGLE_INPUT])
+        yield _turning(given[ANGLE_INPUT], run)
     elif turns_alone(name, run):
         yield Mover("", f"{name}.{SPEED}")
     if fmu in _SHAFTS or own in followed:
-        yield Mover(own)
+        yield _turning(own, run)
     for variable, source in given.items() if fmu not in COMPONENTS else ():
         if variable not in FOLLOWED and source in run and (turn := whole_turn(run.unit(source))):
             yield Mover(source, turns=run.fmus.get(source.rpartition(".")[0], "") in _SHAFTS, turn=turn)
+
+
+def _turning(angle: str, run: Wired) -> Mover:
+    return Mover(angle, turn=(angle in run and whole_turn(run.unit(angle))) or math.tau)
 
 
 def whole_turn(unit: str) -> float:
@@ -95,10 +102,11 @@ def whole_turn(unit: str) -> float:
 
 
 def turns_alone(name: str, run: Wired) -> bool:
-    """Return whether an instance turns at its own speed, although it could follow a shaft."""
-    if run.fmus.get(name, "") in _OTHERS:
+    """Return whether an instance turns at its own speed: it cannot follow a shaft, or is set not to."""
+    if run.fmus.get(name, "") in _OTHERS or name not in run.own_speeds:
         return False
     try:
-        return not run.parameter(f"{name}.{ALONE}")
-    except LoomfmuError:
+        run.parameter(f"{name}.{SPEED}")
+    except LoomfmuError:  # it has no effect
         return False
+    return True

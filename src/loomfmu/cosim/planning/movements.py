@@ -6,13 +6,11 @@ from functools import cached_property
 from ...components import COMPONENTS
 from ...declaring.variables import Component
 from ..claims.movers import movers_of, whole_turn
-from ..scenes.instances import Instance
 from ..scenes.scene import Scene
 from .requested import SHAFT_ANGLE, Requested
 
 EVENT = 4.0  # steps that show an event of a mechanism
 SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
-SPEED = "rad/s"
 
 
 class Movements:
@@ -42,7 +40,7 @@ class Movements:
             taken = [wires[each] for each in (f"{name}.{variable}" for variable in given) if each in wires]
         else:
             others = [each.angle for each in movers_of([name], self._outputs) if each.angle]
-            alone = _own_speed(instance) is not None
+            alone = instance.own_speed is not None
             taken = others or [*(() if alone else self._main)]
             taken = [each for each in taken if each.partition(".")[0] != name]
         return tuple(dict.fromkeys(taken))
@@ -93,11 +91,11 @@ class Movements:
         """The mean speed of the shafts by which an instance moves [rad/s]; None where it is not known."""
         angles = self.angles(name)
         if not angles:
-            return _own_speed(scene.instances[name])
+            return scene.instances[name].own_speed
         turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
         speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
         if not scene.instances[name].fmu.shaft_inputs:  # it may turn by itself as well
-            speeds.append(_own_speed(scene.instances[name]))
+            speeds.append(scene.instances[name].own_speed)
         return max((each for each in speeds if each is not None), default=None)
 
 
@@ -108,11 +106,3 @@ def _taking(turn: float, why: str, speed: float | None) -> tuple[float, str]:
     if speed is None:
         return 0.0, f"{why}, and the speed of the shaft is not known"
     return turn / speed, why
-
-
-def _own_speed(instance: Instance) -> float | None:
-    """The speed that an instance is given [rad/s]; None where it has none."""
-    port = instance.fmu.ports.get("speed")
-    if port is None or port.causality == "output" or port.unit != SPEED:
-        return None
-    return abs(float(instance.values.get("speed", port.start or 0.0)))

@@ -18,7 +18,7 @@ from ..master.master import Integers, Interrupted, Master, Reals
 from ..scenes.keys import MAY_END
 from ..scenes.scene import Scene
 from .pruning import Effective, Pruned, prune
-from .requested import Requested, beside_of, effective_wires, output_port
+from .requested import Requested, beside_of, effective_wires, output_port, own_speeds
 
 
 class Keeper(Protocol):
@@ -52,6 +52,11 @@ class Plan:
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
         return {name: instance.fmu.name for name, instance in self.pruned.scene.instances.items()}
+
+    @property
+    def own_speeds(self) -> frozenset[str]:
+        """The instances that have a speed at which they turn by themselves."""
+        return own_speeds(self.pruned.scene)
 
 
 class Stepping:
@@ -89,7 +94,9 @@ class Stepping:
         """Run a scene, which differs in values alone, and keep the signals in memory."""
         plan = self.plan(scene, grid)
         with self.stepped(plan) as master:
-            recording = Recording(scene.name, self.channels, plan.effective.value, plan.wires, plan.fmus)
+            recording = Recording(
+                scene.name, self.channels, plan.effective.value, plan.wires, plan.fmus, plan.own_speeds
+            )
             try:
                 record(master, recording, lambda _step: None, grid.steps + 1)
             except Interrupted:

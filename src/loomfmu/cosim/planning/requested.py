@@ -65,6 +65,11 @@ def effective_wires(scene: Scene) -> dict[str, str]:
     }
 
 
+def own_speeds(scene: Scene) -> frozenset[str]:
+    """The instances that have a speed [rad/s] at which they turn by themselves."""
+    return frozenset(name for name, each in scene.instances.items() if each.own_speed is not None)
+
+
 class Requested:
     """A scene and what is asked of it: its claims, read once, and the signals that a run must give for them.
 
@@ -88,6 +93,11 @@ class Requested:
     def fmus(self) -> dict[str, str]:
         """The name of each instance's FMU."""
         return {name: instance.fmu.name for name, instance in self.scene.instances.items()}
+
+    @cached_property
+    def own_speeds(self) -> frozenset[str]:
+        """The instances that have a speed at which they turn by themselves."""
+        return own_speeds(self.scene)
 
     def unit(self, signal: str) -> str:
         """The unit of an output."""

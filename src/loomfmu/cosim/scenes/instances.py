@@ -127,6 +127,14 @@ class Instance:
         found = {name: self.effect(name, fed) for name in self.fmu.ports}
         return {name: value for name, value in found.items() if value is not None}
 
+    @property
+    def own_speed(self) -> float | None:
+        """The speed that it is given to turn at [rad/s]; None where it has none."""
+        port = self.fmu.ports.get("speed")
+        if port is None or port.causality == "output" or port.unit != "rad/s":
+            return None
+        return abs(float(self.values.get("speed", port.start or 0.0)))
+
     def effect(self, name: str, fed: Collection[str] = ()) -> Value | None:
         """A parameter or an input at the start; None if it is fed, or has no effect."""
         switch, _wanted = self.switched_off(name, fed)
