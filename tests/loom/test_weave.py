@@ -14,6 +14,7 @@ HEAD = (
     "[WIF]\nVersion=1.1\n[WEAVING]\nRising Shed={rising}\nShafts={shafts}\nTreadles=2\n"
     "[WEFT]\nThreads={picks}\n"
 )
+PLAIN_HEAD = HEAD.format(rising="true", shafts=2, picks=2)
 PLAIN = "[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n[THREADING]\n1=1\n2=2\n3=1\n"
 
 
@@ -52,6 +53,12 @@ def test_a_pick_may_use_two_treadles_or_none(tmp_path):
     assert read.pegs == ("100", "100")
 
 
+def test_a_lift_plan_without_lines_is_none_and_other_sections_may_be_anything(tmp_path):
+    text = PLAIN_HEAD + PLAIN + "[LIFTPLAN]\n[NOTES]\n1=a\n1=b\n[LIFTPLAN SIZES]\nno line\n"
+    assert weave.read_wif(write(tmp_path, text)).pegs == ("10", "01")
+    assert weave.read_wif(write(tmp_path, PLAIN_HEAD + PLAIN + "[LIFTPLAN]\n1=1\n2=2\n")).pegs == ("10", "01")
+
+
 def test_pegs_as_a_list_and_as_a_text():
     assert weave.parse(["1010", "0101"], Path()).pegs == weave.parse("1010/0101", Path()).pegs
 
@@ -66,7 +73,7 @@ def test_pegs_as_a_list_and_as_a_text():
         (HEAD.format(rising="true", shafts=2, picks=2), "neither [LIFTPLAN] nor [TIEUP]"),
         (
             HEAD.format(rising="true", shafts=1, picks=2) + PLAIN,
-            "[TIEUP] raises frame 2, but [WEAVING] S",
+            "[TIEUP] has a line 2=2, but 2 is not in 0 to 1",
         ),
         (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=one\n", "[LIFTPLAN] has a line"),
         (HEAD.format(rising="true", shafts=21, picks=2) + PLAIN, "has 21 frames; the dobby has 20"),
@@ -81,6 +88,23 @@ def test_pegs_as_a_list_and_as_a_text():
         (HEAD.format(rising="true", shafts="\u00b2", picks=2) + PLAIN, "[WEAVING] Shafts = '\u00b2' is not"),
         (HEAD.format(rising="true", shafts=2, picks="\uff12") + PLAIN, "[WEFT] Threads = '\uff12' is not"),
         (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=1_0\n", "[LIFTPLAN] has a line"),
+        # files that contradict themselves
+        *(
+            (
+                PLAIN_HEAD + PLAIN.replace("2=2\n[TH", f"{line}\n[TH"),
+                f"[TREADLING] has a line {line}, but {rest}",
+            )
+            for line, rest in {
+                "2=3": "3 is not in 0 to 2",
+                "3=2": "3 is not in 1 to 2",
+                "2=-2": "-2 is",
+            }.items()
+        ),
+        (PLAIN_HEAD + PLAIN.replace("3=1", "3=9"), "[THREADING] has a line 3=9, but 9 is not in 0 to 2"),
+        (PLAIN_HEAD + PLAIN + "3=2\n", "[THREADING] has two lines 3="),
+        (PLAIN_HEAD + PLAIN + "[TIEUP]\n1=2\n", "has two sections [TIEUP]"),
+        (PLAIN_HEAD + PLAIN + "[LIFTPLAN]\n1=1\n2=1\n", "raise different frames at pick 2"),
+        (HEAD.format(rising="sinking", shafts=2, picks=2) + PLAIN, "Rising Shed = 'sinking' is neither"),
     ],
 )
 def test_a_bad_wif_is_refused_in_one_line(tmp_path, text, message):

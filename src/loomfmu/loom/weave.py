@@ -4,6 +4,7 @@ WIF, the Weaving Information File (version 1.1, 1997), is the trade's own exchan
 with the threading of the ends, and either a tie-up with a treadling or a lift plan.
 """
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from ..files import source
 MOST_FRAMES = 20  # of the KRU-20 dobby
 MOST_PICKS = 128  # that a heald frame's pattern holds
 MOST_BYTES = 4_000_000  # of a WIF file: thousands of ends and all their colours take a tenth
+SECTIONS = ("WIF", "WEAVING", "WEFT", "THREADING", "LIFTPLAN", "TIEUP", "TREADLING")  # read
 _WHOLE = re.compile(r"\s*-?[0-9]{1,9}\s*")
 
 
@@ -102,15 +104,23 @@ def wif_text(path: Path) -> str:
 
 
 def of_wif(text: str, path: Path) -> Weave:
-    """The weave of a WIF file's text: lift plan if it has one, else tie-up and treadling.
+    """The weave of a WIF file's text, by its lift plan or its tie-up and treadling; both must agree.
 
     Raises LoomfmuError naming the file, the section and the key.
     """
     import configparser  # few scenes have such a file
 
-    parser = configparser.ConfigParser(interpolation=None, strict=False)
+    parts = re.split(r"(?m)^(?=\[)", text)
+    wanted = [
+        part for part in parts if part[1 : part.find("]")].upper() in SECTIONS
+    ]  # others may be anything
+    parser = configparser.ConfigParser(interpolation=None)
     try:
-        parser.read_string(text)
+        parser.read_string("".join(wanted))
+    except configparser.DuplicateOptionError as error:
+        raise LoomfmuError(f"{path}: [{error.section}] has two lines {error.option}=") from None
+    except configparser.DuplicateSectionError as error:
+        raise LoomfmuError(f"{path}: has two sections [{error.section}]") from None
     except configparser.Error as error:
         raise LoomfmuError(f"{path}: not a WIF file ({str(error).splitlines()[0]})") from None
     sections = {name.upper(): dict(parser[name]) for name in parser.sections()}
@@ -129,48 +139,64 @@ def _weave(sections: dict[str, dict[str, str]]) -> Weave:
     _check_frames(frames, "it")
     _check_picks(picks, "it")
     raised = _raised(sections, frames, picks)
-    if weaving.get("rising shed", "true").strip().lower() in ("false", "no", "off", "0"):
+    if not _rising(weaving):
         everything = set(range(1, frames + 1))
         raised = {pick: everything - up for pick, up in raised.items()}
     pegs = tuple(
         "".join("1" if frame in up else "0" for up in raised.values()) for frame in range(1, frames + 1)
     )
-    threading = _numbers(sections.get("THREADING", {}), "THREADING")
+    threading = _numbers(sections, "THREADING", math.inf, frames)
     ends = tuple(min(threading[end]) for end in sorted(threading) if threading[end])
     return Weave(pegs, ends)
 
 
+def _rising(weaving: dict[str, str]) -> bool:
+    from configparser import ConfigParser
+
+    given = weaving.get("rising shed", "true").split(";")[0].strip()
+    if given.lower() not in ConfigParser.BOOLEAN_STATES:
+        raise LoomfmuError(f"[WEAVING] Rising Shed = {shown(given)} is neither true nor false")
+    return ConfigParser.BOOLEAN_STATES[given.lower()]
+
+
 def _raised(sections: dict[str, dict[str, str]], frames: int, picks: int) -> dict[int, set[int]]:
     """Raised frames (of a rising shed: else the sunk ones) of each pick, counted from 1."""
-    direct = "LIFTPLAN" in sections
-    if not direct and not {"TIEUP", "TREADLING"} <= set(sections):
+    found = []
+    if sections.get("LIFTPLAN"):
+        found.append(_numbers(sections, "LIFTPLAN", picks, frames))
+    if sections.get("TIEUP") and sections.get("TREADLING"):
+        treadles = _count(sections.get("WEAVING", {}), "WEAVING", "treadles")
+        tied = _numbers(sections, "TIEUP", treadles, frames)
+        treadling = _numbers(sections, "TREADLING", picks, treadles).items()
+        found.append(
+            {pick: set().union(*(tied.get(each, ()) for each in trodden)) for pick, trodden in treadling}
+        )
+    if not found:
         raise LoomfmuError("it has neither [LIFTPLAN] nor [TIEUP] with [TREADLING]")
-    lifted = "LIFTPLAN" if direct else "TIEUP"
-    frames_of = _numbers(sections[lifted], lifted)
-    highest = max((frame for each in frames_of.values() for frame in each), default=0)
-    if highest > frames:
-        raise LoomfmuError(f"[{lifted}] raises frame {highest}, but [WEAVING] Shafts = {frames}")
-    numbers = range(1, picks + 1)
-    if direct:
-        return {pick: frames_of.get(pick, set()) for pick in numbers}
-    treadling = _numbers(sections["TREADLING"], "TREADLING")
-    none: set[int] = set()
-    return {
-        pick: none.union(*(frames_of.get(treadle, none) for treadle in treadling.get(pick, none)))
-        for pick in numbers
-    }
+    raised, *others = ({pick: each.get(pick, set()) for pick in range(1, picks + 1)} for each in found)
+    for pick in raised:
+        if any(each[pick] != raised[pick] for each in others):
+            raise LoomfmuError(f"[LIFTPLAN] and [TREADLING] raise different frames at pick {pick}")
+    return raised
 
 
-def _numbers(section: dict[str, str], name: str) -> dict[int, set[int]]:
-    """A section of lines `number=number,number`; 0 stands for none."""
-    lines = {key: value.split(";")[0].split(",") for key, value in section.items()}
-    try:
-        return {
-            _whole(key): {_whole(part) for part in parts if part.strip() and _whole(part) > 0}
-            for key, parts in lines.items()
-        }
-    except ValueError:
-        raise LoomfmuError(f"[{name}] has a line that is not number=number,number") from None
+def _numbers(sections: dict[str, dict[str, str]], name: str, lines: float, most: int) -> dict[int, set[int]]:
+    """A section of lines `number=number,number`, counted from 1 to the given ones; 0 stands for none."""
+    found = dict[int, set[int]]()
+    for key, text in sections.get(name, {}).items():
+        try:
+            parts = filter(str.strip, text.split(";")[0].split(","))
+            place, values = _whole(key), set(map(_whole, parts))
+        except ValueError:
+            raise LoomfmuError(f"[{name}] has a line that is not number=number,number") from None
+        limits = (place, 1, lines), *((value, 0, most) for value in values)
+        for number, least, highest in limits:
+            if not least <= number <= highest:
+                raise LoomfmuError(
+                    f"[{name}] has a line {key}={text}, but {number} is not in {least} to {highest}"
+                )
+        found[place] = values - {0}
+    return found
 
 
 def _count(section: dict[str, str], name: str, key: str) -> int:
