@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 from .. import units
 from ..cosim.importing.fmus import Port, Value
@@ -52,6 +53,9 @@ def knobs(scene: Scene, parameters: Iterable[str], vary: Sequence[str]) -> list[
         if key in found:
             raise LoomfmuError(f"--vary {key} is given twice")
         found[key] = _knob(scene, known, key, wanted)
+    for one, two in combinations(found.values(), 2):
+        if both := set(one.targets) & set(two.targets):
+            raise LoomfmuError(f"--vary {one.key} and --vary {two.key} both set {min(both)}; leave out one")
     return list(found.values())
 
 

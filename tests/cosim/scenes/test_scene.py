@@ -153,6 +153,17 @@ def test_set_reaches_one_member_all_members_and_the_runs_own_keys() -> None:
     assert (scene.periods, scene.steps_per_period, scene.steps) == (2.5, 360, 900)
 
 
+def test_a_value_of_one_member_prevails_over_that_of_all_in_any_order() -> None:
+    """As in a scene, where [heald_1] prevails over [heald]."""
+    given = {"heald_1.stroke": "60 mm", "heald.stroke": "98 mm"}
+    for overrides in (given, dict(reversed(given.items()))):
+        instances = scenes.parse(LOOM, overrides=overrides).instances
+        assert [instances[f"heald_{n}"].values["stroke"] for n in (1, 2)] == [0.06, 0.098]
+    both = {"machine": "WL680-3800", "loom.machine": "WL680-3600"}
+    with pytest.raises(LoomfmuError, match=r"machine and loom\.machine both set \w+\.machine; leave out"):
+        scenes.parse(LOOM, overrides=both)
+
+
 def test_numbers_are_si_and_texts_have_units() -> None:
     for given in (71.733, "71.733", "71.733 rad/s"):
         scene = scenes.parse("[shaft]", overrides={"shaft.speed": given})

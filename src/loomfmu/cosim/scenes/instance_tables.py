@@ -1,6 +1,7 @@
 """The instances that a scene's tables name, and the values that they and `--set` give them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -32,16 +33,15 @@ def read(tables: dict[str, Any], overrides: Mapping[str, Any], directory: Path) 
     rest = _override_weave(tables, overrides)
     texts = standard().resolve(tables, directory)
     given = _instance_tables(tables, directory)
-    changed = {key for key, value in rest.items() if override(given, key, value)}
+    changed = {key for key in rest if override(given, key, rest)}
     instances = {
         name: Instance(name, _fmu_of(name, table, directory, texts)) for name, table in given.items()
     }
-    for key in (key for key in rest if key not in changed):
-        for name, variable in overridden(instances, key):
-            if name:
-                given[name] = given[name] | {variable: rest[key]}
-            else:
-                tables[variable] = rest[key]
+    for key, name, variable in prevailing(rest, partial(overridden, instances)):
+        if not name:
+            tables[variable] = rest[key]
+        elif key not in changed:
+            given[name] = given[name] | {variable: rest[key]}
     for name, table in given.items():
         _set(instances[name], table)
     keys = [(name, key) for name, table in given.items() for key in table]
@@ -144,14 +144,17 @@ def _override_weave(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dic
     return {key: value for key, value in overrides.items() if key != WEAVE}
 
 
-def override(given: dict[str, dict[str, Any]], key: str, value: Any) -> bool:
+def override(given: dict[str, dict[str, Any]], key: str, overrides: Mapping[str, Any]) -> bool:
     """Change one value in the tables of instances; false for a key that names none of them."""
+    value = overrides[key]
     instance, _, variable = key.partition(".")
     named = [instance] if instance in given else members(instance, given)
     if not variable:
         return False
     about = unit_of(variable)
     for name in named:
+        if name != instance and f"{name}.{variable}" in overrides:
+            continue
         if about:
             stated = given[name].get("units", {})
             value = {**stated, about: value} if isinstance(stated, dict) else stated
@@ -191,6 +194,26 @@ def overridden(instances: Mapping[str, Instance], key: str) -> list[tuple[str, s
     if not found:
         raise LoomfmuError(f"{key}: the scene has no instance {instance!r}{suggestion(instance, instances)}")
     return [(member, variable) for member in found]
+
+
+def prevailing(
+    keys: Collection[str], targets: Callable[[str], Iterable[tuple[str, str]]]
+) -> Iterator[tuple[str, str, str]]:
+    """Yield the keys with the variables that each sets, as (key, instance, variable).
+
+    A key that names the very variable prevails over those for all members or of the loom. Raises
+    LoomfmuError for two others that set the same one.
+    """
+    setting: dict[str, str] = {}
+    for key in keys:
+        for instance, variable in targets(key):
+            name = f"{instance}.{variable}" if instance else variable
+            if key != name and name in keys:
+                continue
+            if name in setting:
+                raise LoomfmuError(f"{setting[name]} and {key} both set {name}; leave out one of them")
+            setting[name] = key
+            yield key, instance, variable
 
 
 def _nearest(key: str, instances: Mapping[str, Instance]) -> str:

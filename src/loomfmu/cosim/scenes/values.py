@@ -7,7 +7,7 @@ from ...components.shaft_driven import FOLLOWING
 from ...errors import LoomfmuError
 from ...machines import TAKERS
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
-from .instance_tables import overridden
+from .instance_tables import overridden, prevailing
 from .instances import Instance, altered
 from .scene import Scene
 from .settings import check_times
@@ -77,9 +77,9 @@ class Values:
             return changed[name]
 
         own: set[tuple[str, str]] = set()
-        for key, given in values.items():
-            for name, variable in self.targets(key):
-                copied(name).set(variable, given)
+        for key, name, variable in prevailing(overrides, self.targets):
+            if key in values:
+                copied(name).set(variable, values[key])
                 own.add((name, variable))
         for name, each in self.scene.instances.items():
             for parameter, owner in each.inherited.items():

@@ -7,6 +7,7 @@ tool's package runs by seconds and records all outputs.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
@@ -17,7 +18,7 @@ from ...own.declared import PARAMETER_SETS
 from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
-from ..scenes.instance_tables import overridden, override, unit_of
+from ..scenes.instance_tables import overridden, override, prevailing, unit_of
 from ..scenes.instances import Instance
 from ..scenes.keys import DEEPEST, TIMES, check_name, toml
 from ..scenes.scene import Scene, assemble
@@ -232,9 +233,9 @@ def _names(found: list[_Found]) -> dict[str, _Found]:
 def _stated(names: Iterable[str], text: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
     """The units that the text of our scene states for each instance, and those that are set."""
     tables = {name: {"units": text.get(name, {}).get("units", {})} for name in names}
-    for key, value in overrides.items():
+    for key in overrides:
         if unit_of(key.partition(".")[2]):
-            override(tables, key, value)
+            override(tables, key, overrides)
     return {name: table["units"] for name, table in tables.items()}
 
 
@@ -243,9 +244,8 @@ def _override(
 ) -> list[tuple[str, str]]:
     """Let some values be others, a published name before what prevails over it; what was changed."""
     changed = [
-        (name, variable, value)
-        for key, value in overrides.items()
-        for name, variable in overridden(instances, key)
+        (name, variable, overrides[key])
+        for key, name, variable in prevailing(overrides, partial(overridden, instances))
         if not unit_of(variable)  # units are known from the beginning
     ]
     for name, variable, value in sorted(changed, key=lambda each: each[1] not in PARAMETER_SETS):
