@@ -204,10 +204,15 @@ class Si(float):
 def ends_of(text: str) -> tuple[str, str]:
     """Return both ends of a range LOW..HIGH; an end that is missing is an empty text.
 
+    Raises UnitError where one end alone, other than 0, has no unit.
+
     >>> ends_of("0.2 mm .. 0.5 mm")
     ('0.2 mm', '0.5 mm')
     """
     low, _, high = (end.strip() for end in text.partition(".."))
+    plain = [end for end in (low, high) if is_plain(end)]
+    if low and high and len(plain) == 1 and float(plain[0]) != 0.0:
+        raise UnitError(f"{shown(text)}: {plain[0]} has no unit; give both ends theirs")
     return low, high
 
 

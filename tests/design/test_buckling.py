@@ -52,6 +52,7 @@ def test_a_fitted_factor_goes_on_to_the_safe_speed():
         ([0.4, 0.5], [29], "2 lengths and 1 loads"),
         ([0.4, -0.5], [29, 20], r"lengths\[1\] = -0.5 m must be positive and finite"),
         ([0.4, 0.5], [29, float("nan")], r"loads\[1\]"),
+        ([414, 514, 665], [22, 15, 9], r"length_factor = 0\.000801362 is outside \[0\.1, 2\]"),  # in mm
     ],
 )
 def test_tests_that_say_nothing_are_refused(lengths, loads, message):

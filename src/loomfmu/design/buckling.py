@@ -37,7 +37,8 @@ def fit_length_factor(
         stiffness: bending stiffness EI [N m2]
 
     Raises:
-        LoomfmuError: fewer than two tests, or a length or load that is not positive
+        LoomfmuError: fewer than two tests, a length or load that is not positive, or a factor that is no
+            column's, as of lengths in mm
 
     >>> fit = fit_length_factor(["414 mm", "514 mm", "665 mm"], [22, 15, 9])  # Table 2, c = 0.3 mm
     >>> round(fit.factor, 3), round(fit.standard_error, 3)  # Table 3: 0.80
@@ -56,6 +57,6 @@ def fit_length_factor(
     square = float(pinned @ pinned)
     inverse = float(pinned @ load) / square  # 1 / mu^2
     residuals = load - inverse * pinned
-    factor = 1.0 / sqrt(inverse)
+    factor = read("length_factor", 1.0 / sqrt(inverse))
     scatter = sqrt(float(residuals @ residuals) / (length.size - 1) / square)
     return LengthFactor(factor, 0.5 * factor**3 * scatter, tuple(float(each) for each in residuals))

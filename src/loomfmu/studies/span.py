@@ -84,7 +84,10 @@ def span_of(scene: Scene, text: str, from_: Any = None, to: Any = None) -> Span:
         raise LoomfmuError(f"vary = {shown(text)} is not a variable such as 'shaft.speed'")
     key, equals, wanted = (part.strip() for part in text.partition("="))
     if equals:
-        first, last = units.ends_of(wanted)
+        try:
+            first, last = units.ends_of(wanted)
+        except units.UnitError as error:
+            raise LoomfmuError(f"vary {key}: {error}") from None
         if not (first and last):
             raise LoomfmuError(f"vary {text}: {shown(wanted)} is not a range; {FORM}")
         if from_ is not None or to is not None:

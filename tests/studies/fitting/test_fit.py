@@ -1,6 +1,7 @@
 """Fits: known values found again, intervals that cover them, published tests, what is refused."""
 
 import csv
+import math
 import tomllib
 from dataclasses import replace
 from functools import cache
@@ -388,6 +389,14 @@ def test_a_fit_that_is_of_no_use_has_status_1_and_its_scene_says_so(
     assert "e+02 %" not in printed
     description = tomllib.loads(output.read_text())["description"].splitlines()
     assert set(said) <= set(description) & set(printed.splitlines())
+
+
+def test_data_that_do_not_vary_are_not_explained_by_a_curve_that_misses_them(tmp_path: Path) -> None:
+    rows = [(length, 0.0) for length in np.linspace(0.3, 0.9, 25)]
+    found = fit(*written(tmp_path, rows), vary="belt.prescribed_length_factor=0.5..2")
+    assert found.curves[0].share == math.inf and not found.curves[0].explained
+    assert any("does not reach the data, which do not vary" in each for each in found.notes)
+    assert not any("nan" in each or "e+" in each for each in found.notes)
 
 
 def test_an_accuracy_is_refused(tmp_path: Path) -> None:

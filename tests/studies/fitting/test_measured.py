@@ -48,6 +48,7 @@ def test_a_trace_is_a_measurement(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("", "the file is empty"),
+        ('time [s],belt.margin [1]\n0,"' + 200_000 * "1" + '"\n', "line 2: not a table \\(field larger"),
         ("shaft_angle [deg],belt.margin\n0,1\n", "column 'belt.margin' has no unit"),
         ("shaft_angle,belt.margin [1]\n0,1\n", "column 'shaft_angle' has no unit"),
         ("angle [deg],belt.margin [1]\n0,1\n", "the first column is 'angle', not shaft_angle or time"),

@@ -191,6 +191,10 @@ def test_pictures_are_written_and_repeat(arguments: list[str]) -> None:
             "shaft.speed: the range from 9",
         ),
         (
+            ["limit", DEMO, "--vary", "damper.spring_stiffness=1..20N/mm"],
+            "vary damper.spring_stiffness: '1..20N/mm': 1 has no unit; give both ends theirs",
+        ),
+        (
             ["limit", DEMO, "--vary", "a=1..2", "--vary", "b", "--vary", "c"],
             "vary = ['a=1..2', 'b', 'c'] must be",
         ),

@@ -73,6 +73,7 @@ def test_what_varies_and_what_is_wanted(tmp_path: Path) -> None:
         (f"maximize = 'shaft.speed'\n{SPEED}", "maximize is unknown; did you mean 'maximise'?"),
         (f"{GOAL}safety = '2 mm'\n{SPEED}", "safety: '2 mm' is in mm, which does not fit"),
         (f"{GOAL}safety = -1\n{SPEED}", "safety = -1 is outside [0, 1000]"),
+        (f"{GOAL}safety = 2\n{SPEED}", 'safety = 2 is 200% of the bound; write "2 %"'),
         (f"{GOAL}{SPEED}[safety]\n'the belt' = 0.1", "safety: the scene has no claim 'the belt'"),
         (f"{GOAL}{SPEED}[safety]\n'the stops withstand the carrier' = '3 mm'", "which does not fit N"),
         (f"{GOAL}except = 'the belt'\n{SPEED}", "except = 'the belt' must be a list of claims"),

@@ -1,5 +1,6 @@
 """Cautions about a fit, in words."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
@@ -12,6 +13,7 @@ from .offset import DISPLAY
 MORE = 10  # values than parameters, of each signal whose noise must be known
 UNTRUSTED = "not to be trusted"  # of an interval
 REACH = 2.0  # standard errors: what the residuals would not show
+LARGEST = 2.0 * math.pi  # offset that is worth a word [rad or s]: a revolution
 STRONG = 0.9  # correlation that is worth a word
 
 
@@ -49,6 +51,8 @@ def cautions(curves: Sequence[Compared], found: Sure, over: str) -> tuple[str, .
 
 def _explains(share: float) -> str:
     """Say how little a fit explains that leaves this share of the variation of the data."""
+    if math.isinf(share):
+        return "does not reach the data, which do not vary"
     if share >= 1.0:
         return "explains nothing of the variation of the data"
     return f"leaves {100.0 * share:.3g} % of the variation of the data unexplained"
@@ -77,7 +81,7 @@ def _dependent(found: Sure, over: str) -> Iterator[str]:
         )
         return
     for one in found.parameters:
-        if one.shift < REACH * found.offset.error:
+        if one.shift < min(REACH * found.offset.error, LARGEST):
             yield (
                 f"{one.span.key}: an offset of the data of {_offset(over, one.shift)} moves it to the end of"
                 " its interval, and the residuals would not show it: --offset allows for it"

@@ -12,7 +12,7 @@ from .measured import Measured
 
 Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
-ROUNDING = 1e-9  # of a turn, or of the time
+ROUNDING = 1e-9  # of a turn, of the time, or of the largest value
 EXACT = 1e-4  # of the largest value: an interpolation as good needs no word
 COARSE = 0.1  # of the difference from the measurement: an error of the interpolation as large is noted
 UNEXPLAINED = 0.3  # share of the variation that may remain
@@ -42,9 +42,11 @@ class Compared:
 
     @property
     def share(self) -> float:
-        """The difference as a share of the measured values' standard deviation; 0 if that is 0."""
-        spread = float(np.std(self.measured))
-        return self.rms / spread if spread else 0.0
+        """The difference as a share of the measured values' standard deviation; 0 or inf of constants."""
+        spread, least = float(np.std(self.measured)), ROUNDING * float(np.max(np.abs(self.measured)))
+        if spread > least:
+            return self.rms / spread
+        return 0.0 if self.rms <= least else math.inf
 
     @property
     def explained(self) -> bool:

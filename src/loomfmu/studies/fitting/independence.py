@@ -100,7 +100,7 @@ def _runs(residuals: Floats) -> tuple[int, float, float]:
     above = residuals[residuals != 0.0] > 0.0
     count, positive = len(above), int(np.sum(above))
     if positive in (0, count):
-        return int(count > 0), math.nan, 1.0
+        return int(count > 0), 1.0, 1.0
     runs = 1 + int(np.sum(above[1:] != above[:-1]))
     mean = 1.0 + 2.0 * positive * (count - positive) / count
     variance = (mean - 1.0) * (mean - 2.0) / (count - 1.0)

@@ -93,7 +93,10 @@ def _table(path: Path, scene: Scene, signals: Sequence[str]) -> Measured:
     if ";" in lines[0]:
         raise LoomfmuError(f"{path}: separate the columns with commas, and write decimals with points")
     reader = csv.reader(lines)
-    heading, *rows = ((f"{path}: line {numbers[reader.line_num - 1]}", row) for row in reader)
+    try:
+        heading, *rows = ((f"{path}: line {numbers[reader.line_num - 1]}", row) for row in reader)
+    except csv.Error as error:
+        raise LoomfmuError(f"{path}: line {numbers[reader.line_num - 1]}: not a table ({error})") from None
     over, factor, named = _headings(*heading, scene)
     values = _values(heading[1], rows)
     columns = {name: values[:, place] * scale for name, (place, scale) in named.items()}

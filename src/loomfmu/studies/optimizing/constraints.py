@@ -60,6 +60,8 @@ def _distance(given: Any, name: str) -> tuple[float, str]:
         if not isinstance(given, str) or not name:
             raise LoomfmuError(f"{where}: {error}; give a share of the bound, such as '2 %'") from None
         share, amount = 0.0, given
+    if units.is_plain(given) and share > 1.0:
+        raise LoomfmuError(f'{where} = {share:g} is {share:.0%} of the bound; write "{share:g} %"')
     if not 0.0 <= share < 1000.0:
         raise LoomfmuError(f"{where} = {share:g} is outside [0, 1000]")
     return share, amount
