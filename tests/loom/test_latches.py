@@ -91,7 +91,9 @@ def test_in_a_window_what_is_held_bounds_the_signal(
     assert judged(trace, window, possible - near)[1] == "holds"
     assert judged(trace, window, worst + near)[1] == "FAILS"
     if possible < worst:
-        assert judged(trace, window, possible + near)[1] == "undecided"
+        _value, word, note = judged(trace, window, possible + near)
+        assert word == "undecided"
+        assert ("a.low was reached elsewhere" in note) == (worst == 1.0)
 
 
 def test_what_a_signal_may_be_off_by_is_stated_beside_it(tmp_path: Path) -> None:

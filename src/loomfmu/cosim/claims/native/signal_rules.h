@@ -88,6 +88,9 @@ static struct extreme worst_of(struct run *run, const struct call *call, const s
         note_unknown_with(run, answer, motion, fails ? "" : AT_SAMPLES);
     else if (latched(run, signal, sense, &found, within) >= 0)
         note(run, answer, text(run, "between the samples by %s", run->signals[latch].name), PLAIN);
+    else if (!(sense * found.possible >= sense * answer->bound))
+        note(run, answer, text(run, "%s was reached elsewhere, and nothing else tells of the time between these samples",
+                               run->signals[latch].name), PLAIN);
     note_coarse(run, answer, found);
     return found;
 }
