@@ -214,7 +214,7 @@ FOLLOWED = (
     "optimizing",
     "fitting",
 )
-LONG = ("report", "limits", "testing", "optimizing")  # followed by the slow tests
+LONG = ("report", "limits", "testing", "tolerances", "optimizing", "fitting")  # followed by the slow tests
 NOT_RUN = {  # pages with commands or Python of which no test runs all, and why
     "importing": "other tools, which tests/foreign runs where they are installed",
     "sweeps": "its Python reads the results of a sweep that takes minutes",

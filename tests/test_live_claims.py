@@ -4,7 +4,7 @@ import json
 import math
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -126,7 +126,9 @@ def on_the_loom(values: dict[str, Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def said(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, float | None], Any]:
+def said(
+    chromium: Any, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Callable[[str, float | None], Any]]:
     """Return the words of a page at a speed, None for its own, beside those of a run: made once."""
     pages: dict[str, Any] = {}
     known: dict[tuple[str, float | None], Any] = {}
@@ -141,7 +143,9 @@ def said(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Callable[[s
             known[name, speed] = both(pages[name], scene, speed)
         return known[name, speed]
 
-    return of
+    yield of
+    for page in pages.values():
+        page.close()  # its loom would turn until the last test
 
 
 def both(page: Any, scene: Any, speed: float | None) -> list[tuple[dict[str, Any], list[str], Verdict]]:

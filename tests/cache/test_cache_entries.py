@@ -166,6 +166,7 @@ def test_no_bytecode_lies_beside_the_source_that_is_checked(own_cache: Path) -> 
     assert list(own_cache.rglob("*.py")) and not list(own_cache.rglob("*.pyc"))
 
 
+@pytest.mark.slow
 def test_a_native_library_that_was_exchanged_is_not_run(own_cache: Path) -> None:
     pytest.importorskip("ziglang", reason="ziglang is not installed: no native FMU can be built")
     said = run(own_cache, "--native")

@@ -172,6 +172,7 @@ def test_a_value_is_set_once_and_a_trace_is_called_what_it_is(capsys: pytest.Cap
     assert not Path("x.csv").exists()
 
 
+@pytest.mark.slow
 def test_a_cache_may_lie_anywhere(tmp_path: Path) -> None:
     # pythonfmu's wrapper decodes no escape but that of a space and crashes where it finds no resources
     for name in ("with space", "Jürgen", "50% #1 +ä"):

@@ -8,10 +8,10 @@ import pytest
 from masters import oms_library
 
 from loomfmu.components import COMPONENTS
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.declaring.variables import variables_of
-from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 PARTS = {"shaft": "MainShaft", "dobby": "DobbyDrive", "heald_1": "HealdFrame"}
@@ -29,11 +29,13 @@ pattern = "10"
 WEAKLY_COUPLED = 1  # oms_system_wc
 
 
+def native3(name: str) -> Path:
+    return file_of(COMPONENTS[name], "native", (host(),), 3)
+
+
 @pytest.mark.usefixtures("natives")
 def test_they_give_the_bits_of_fmi_2(tmp_path: Path) -> None:
-    for name in PARTS.values():
-        build_native(name, tmp_path, (host(),), 3)
-    third = {f"{instance}.fmu": str(tmp_path / f"{name}.fmu") for instance, name in PARTS.items()}
+    third = {f"{instance}.fmu": str(native3(name)) for instance, name in PARTS.items()}
     expected = run(scenes.parse(SCENE), output=tmp_path / "2.h5", flavour="native").trace
     result = run(scenes.parse(SCENE, overrides=third), output=tmp_path / "3.h5")
     assert {instance.fmu.fmi for instance in result.scene.instances.values()} == {3}
@@ -48,7 +50,7 @@ def test_they_give_the_bits_of_fmi_2(tmp_path: Path) -> None:
 def test_omsimulator_steps_each_of_them(tmp_path: Path, name: str) -> None:
     # it takes the references in a ModelStructure for places in the list of variables, counted from 1
     library = oms_library()
-    path = build_native(name, tmp_path, (host(),), 3)
+    path = native3(name)
     assert library.oms_setTempDirectory(str(tmp_path).encode()) == 0
     assert library.oms_newModel(b"model") == 0
     try:

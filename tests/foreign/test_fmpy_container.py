@@ -9,15 +9,15 @@ from fmpy.container_fmu.cli import create_container_fmu
 from fmpy.container_fmu.config import Component, Configuration, Connection
 from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, ModelVariable
 
-from loomfmu.components import WeftInsertion
-from loomfmu.fmi.native.native_fmu import build_native
+from loomfmu.components import COMPONENTS, WeftInsertion
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.fmi.native.platforms import host
 
 SHAFT = ("angle", "velocity", "acceleration")
 
 
-def part(name: str, directory: Path) -> Component:
-    path = build_native(name, directory, (host(),), 3)
+def part(name: str) -> Component:
+    path = file_of(COMPONENTS[name], "native", (host(),), 3)
     return Component(name, path, fmpy.read_model_description(path))
 
 
@@ -27,7 +27,7 @@ def variable(part: Component, name: str) -> ModelVariable:
 
 @pytest.mark.usefixtures("natives")
 def test_a_shaft_drives_the_weft_in_it(tmp_path: Path) -> None:
-    shaft, weft = part("MainShaft", tmp_path), part("WeftInsertion", tmp_path)
+    shaft, weft = part("MainShaft"), part("WeftInsertion")
     time = ModelVariable(type="Float64", name="time", causality="independent", variability="continuous")
     follow = ModelVariable(
         type="Boolean", name="follow_shaft", causality="parameter", variability="fixed", start="true"

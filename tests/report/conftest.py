@@ -1,10 +1,13 @@
-"""Traces that reports are written of."""
+"""Traces that reports are written of, and their reports."""
 
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 import loomfmu
+from loomfmu import report
 from loomfmu.traces import Trace
 
 SIMS = Path(__file__).parents[2] / "sims"
@@ -26,3 +29,21 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Trace:
 def yarn(tmp_path_factory: pytest.TempPathFactory) -> Trace:
     """The trace of a loom with its weft, over two revolutions."""
     return loomfmu.run(SIMS / "weft_tension.toml", output=tmp_path_factory.mktemp("yarn") / "yarn.h5").trace
+
+
+@pytest.fixture(scope="session")
+def fast(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """The trace of the demo, too fast for its belt."""
+    output = tmp_path_factory.mktemp("fast") / "fast.h5"
+    return loomfmu.run(SIMS / "wl680_3600.toml", set={"shaft.speed": "700 rpm"}, output=output).trace
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """Writes the report of some traces, once for all tests."""
+
+    @cache
+    def write(*traces: Trace) -> Path:
+        return report.write(list(traces), tmp_path_factory.mktemp("written") / "report.html")
+
+    return write

@@ -19,6 +19,7 @@ from loomfmu.traces import Trace
 
 SIMS = Path(__file__).parents[2] / "sims"
 Open = Callable[..., Any]
+Written = Callable[..., Path]
 BEGINNINGS = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
 
@@ -28,8 +29,8 @@ def copied(demo: Trace, tmp_path: Path) -> Path:
     return tmp_path / "demo.h5"
 
 
-def test_a_click_moves_the_cursor_to_its_angle(demo: Trace, tmp_path: Path, opened: Open) -> None:
-    page = opened(report.write([demo], tmp_path / "demo.html"))
+def test_a_click_moves_the_cursor_to_its_angle(demo: Trace, written: Written, opened: Open) -> None:
+    page = opened(written(demo))
     for picture, across in (("straight", 110 + 0.25 * 770), ("round", None)):
         box = page.locator(f"#diagram-{picture}").bounding_box()
         scale = box["width"] / (900 if across else 690)
@@ -40,9 +41,9 @@ def test_a_click_moves_the_cursor_to_its_angle(demo: Trace, tmp_path: Path, open
 
 
 def test_the_drawing_is_that_of_the_revolution_under_the_cursor(
-    whole: Trace, tmp_path: Path, opened: Open
+    whole: Trace, written: Written, opened: Open
 ) -> None:
-    page = opened(report.write([whole], tmp_path / "whole.html"))
+    page = opened(written(whole))
     visible = "#diagram-straight g[data-drawing]:not([hidden])"
     first = page.locator(visible).get_attribute("data-drawing")
     page.evaluate("loomfmu.seek(5.5 * 2 * Math.PI)")
@@ -113,8 +114,8 @@ def test_coarse_samples_are_not_shown_as_if_they_were_fine(
             diagram.write(trace, tmp_path / "coarse.svg")
 
 
-def test_labels_can_be_read_on_a_narrow_screen(whole: Trace, tmp_path: Path, opened: Open) -> None:
-    page = opened(report.write([whole], tmp_path / "whole.html"), NARROW)
+def test_labels_can_be_read_on_a_narrow_screen(whole: Trace, written: Written, opened: Open) -> None:
+    page = opened(written(whole), NARROW)
     for picture in ("straight", "round"):
         size = page.evaluate(
             "name => { const text = document.querySelector(`#diagram-${name} text`);"
@@ -161,8 +162,8 @@ def test_a_legend_names_what_is_drawn_and_nothing_else(tmp_path: Path) -> None:
     assert '<span class="swatch buckled"' in page and '<span class="swatch fails"' in page
 
 
-def test_a_page_that_shows_no_buckling_has_none_in_its_legend(demo: Trace, tmp_path: Path) -> None:
-    page = report.write([demo], tmp_path / "demo.html").read_text()
+def test_a_page_that_shows_no_buckling_has_none_in_its_legend(demo: Trace, written: Written) -> None:
+    page = written(demo).read_text()
     assert '<span class="swatch dwell"' in page and '<span class="swatch buckled"' not in page
 
 
@@ -193,10 +194,10 @@ def test_claims_have_a_row_where_one_has_its_worst_value_in_the_revolution(
 
 
 def test_a_revolution_without_worst_values_says_where_they_are(
-    yarn: Trace, tmp_path: Path, opened: Open
+    yarn: Trace, written: Written, opened: Open
 ) -> None:
     assert {each.revolution for each in yarn.verdicts} == {1}
-    page = opened(report.write([yarn], tmp_path / "yarn.html"))
+    page = opened(written(yarn))
     text = page.locator("#diagram-straight .elsewhere")
     assert text.is_hidden()
     page.evaluate("loomfmu.seek(1.5 * 2 * Math.PI)")

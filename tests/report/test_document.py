@@ -22,28 +22,28 @@ MAIL = 4_000_000  # bytes that a mail takes
 
 
 @pytest.fixture
-def written(demo: Trace, tmp_path: Path) -> Path:
-    return report.write([demo], tmp_path / "demo.html")
+def demo_page(written: Callable[..., Path], demo: Trace) -> Path:
+    return written(demo)
 
 
-def test_it_opens_and_tells_the_verdict(written: Path, opened: Open) -> None:
-    found = opened(written)
+def test_it_opens_and_tells_the_verdict(demo_page: Path, opened: Open) -> None:
+    found = opened(demo_page)
     assert found.title() == "WL680-3600, G6300 left, weave 10/01/10/01, 600 rev/min"
     assert found.inner_text("header .about") == 'scene "Belt and healds of a published rapier loom"'
     assert found.inner_text(".outcome").endswith("All 6 claims hold")
     assert found.locator("table.claims tbody tr").count() == 6
 
 
-def test_a_click_on_a_place_moves_the_cursor_there(written: Path, opened: Open) -> None:
-    found = opened(written)
+def test_a_click_on_a_place_moves_the_cursor_there(demo_page: Path, opened: Open) -> None:
+    found = opened(demo_page)
     found.locator("#claims .place").first.click()
     assert found.inner_text("#cursor-place").startswith("rev. 1, 100.1°")
     found.keyboard.press("ArrowRight")  # the button that was clicked keeps only Space and Enter
     assert found.inner_text("#cursor-place").startswith("rev. 1, 101.1°")
 
 
-def test_the_cursor_follows_slider_keys_and_play(written: Path, opened: Open) -> None:
-    found = opened(written)
+def test_the_cursor_follows_slider_keys_and_play(demo_page: Path, opened: Open) -> None:
+    found = opened(demo_page)
     where = lambda: found.evaluate("loomfmu.position")  # noqa: E731
     found.keyboard.press("End")
     assert where() == found.evaluate("loomfmu.last")
@@ -62,8 +62,10 @@ def test_the_cursor_follows_slider_keys_and_play(written: Path, opened: Open) ->
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_nothing_stands_out_at_the_side_of_a_narrow_screen(written: Path, opened: Open, scheme: str) -> None:
-    found = opened(written, NARROW, color_scheme=scheme)
+def test_nothing_stands_out_at_the_side_of_a_narrow_screen(
+    demo_page: Path, opened: Open, scheme: str
+) -> None:
+    found = opened(demo_page, NARROW, color_scheme=scheme)
     assert found.evaluate("document.documentElement.scrollWidth") == NARROW[0]
 
 
@@ -76,8 +78,8 @@ def test_the_command_names_its_page_as_the_trace_was_named(
     assert capsys.readouterr().out == "written: demo.html\n"
 
 
-def test_it_is_small_enough_to_mail(written: Path) -> None:
-    assert written.stat().st_size < MAIL
+def test_it_is_small_enough_to_mail(demo_page: Path) -> None:
+    assert demo_page.stat().st_size < MAIL
 
 
 def test_foreign_text_is_shown_and_never_run(
@@ -131,8 +133,8 @@ def test_a_page_is_not_written_under_the_name_of_another_format(
     assert not (tmp_path / "x.pdf").exists()
 
 
-def test_the_end_of_a_run_is_the_end_of_its_last_revolution(written: Path, opened: Open) -> None:
-    found = opened(written)
+def test_the_end_of_a_run_is_the_end_of_its_last_revolution(demo_page: Path, opened: Open) -> None:
+    found = opened(demo_page)
     found.keyboard.press("End")
     assert found.inner_text("#cursor-place").startswith("rev. 3, 360.0°")
     assert found.inner_text("#diagram-revolution") == "3"

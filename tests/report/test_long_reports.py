@@ -23,7 +23,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
         loomfmu.run(
             SIMS / "wl680_3600.toml", set={"revolutions": number}, output=folder / f"{number}.h5"
         ).path
-        for number in (40, 160)
+        for number in (40, 100)
     ]
 
 
@@ -50,6 +50,6 @@ def test_a_long_run_moves_in_its_first_revolutions_as_a_short_one_does(runs: lis
     for name, track in short.data["tracks"].items():
         other = long.data["tracks"][name]
         kept = len(other["shown"])
-        assert 10 < kept < 40  # of 160
+        assert 10 < kept < 40  # of 100
         assert other["shown"] == track["shown"][:kept]
         assert [each.tolist() for each in other["frames"]] == [each.tolist() for each in track["frames"]]

@@ -1,12 +1,13 @@
 """Every scene in sims/ runs by the command, and what it claims is true."""
 
-import subprocess
-import sys
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from loomfmu import Trace
+from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.loom.standard_loom import COMPONENT_OF
 
@@ -14,17 +15,37 @@ SIMS = Path(__file__).parents[2] / "sims"
 SCENES = sorted(path.relative_to(SIMS).as_posix() for path in SIMS.glob("*.toml"))
 
 
-def run(scene: str, directory: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "loomfmu.cli", "run", str(SIMS / scene), *arguments]
-    return subprocess.run(command, cwd=directory, capture_output=True, text=True, timeout=120)
+@dataclass(frozen=True)
+class Done:
+    """What a command has said, and its exit status."""
+
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., Done]:
+    """Runs a scene of `sims` by the command, in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+
+    def of(scene: str | Path, *arguments: str) -> Done:
+        return Done(main(["run", str(SIMS / scene), *arguments]), *capsys.readouterr())
+
+    return of
+
+
+Run = Callable[..., Done]
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_all_claims_of_a_scene_hold(tmp_path: Path, scene: str) -> None:
-    done = run(scene, tmp_path)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "FAILS" not in done.stdout
-    assert "warning" not in done.stderr
+def test_all_claims_of_a_scene_hold(run: Run, tmp_path: Path, scene: str) -> None:
+    done = run(scene)
+    assert done.status == 0, done.out + done.err
+    assert "FAILS" not in done.out
+    assert "warning" not in done.err
     with Trace(tmp_path / "results" / f"{Path(scene).stem}.h5") as trace:
         assert trace.status == "complete"
         assert trace.verdicts, "a scene claims something"
@@ -42,8 +63,8 @@ def test_the_full_loom_has_every_mechanism_of_a_loom() -> None:
     assert {"weft_2", "belt_2", "belt_motion_2"} <= set(instances)
 
 
-def test_the_readme_shows_what_the_demonstration_prints(tmp_path: Path) -> None:
-    printed = run("wl680_3600.toml", tmp_path).stdout.splitlines()
+def test_the_readme_shows_what_the_demonstration_prints(run: Run) -> None:
+    printed = run("wl680_3600.toml").out.splitlines()
     readme = (SIMS.parent / "README.md").read_text()
     lines = readme.split("about 20 s; a wheel brings them.\n\n```text\n")[1].split("\n```")[0].splitlines()
     assert len(lines) > 4
@@ -56,16 +77,16 @@ BEYOND = sorted(path.name for path in (SIMS / "beyond_the_limit").glob("*.toml")
 
 
 @pytest.mark.parametrize("scene", BEYOND)
-def test_a_loom_beyond_its_limit_fails_its_claims(tmp_path: Path, scene: str) -> None:
-    done = run(f"beyond_the_limit/{scene}", tmp_path)
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "FAILS" in done.stdout
+def test_a_loom_beyond_its_limit_fails_its_claims(run: Run, scene: str) -> None:
+    done = run(f"beyond_the_limit/{scene}")
+    assert done.status == 1, done.out + done.err
+    assert "FAILS" in done.out
 
 
-def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> None:
-    done = run("wl680_3600.toml", tmp_path, "--set", "shaft.speed=700rpm")
-    assert done.returncode == 1, done.stderr
-    failed = [line for line in done.stdout.splitlines() if "FAILS" in line]
+def test_the_demonstration_fails_beyond_the_belts_safe_speed(run: Run, tmp_path: Path) -> None:
+    done = run("wl680_3600.toml", "--set", "shaft.speed=700rpm")
+    assert done.status == 1, done.err
+    failed = [line for line in done.out.splitlines() if "FAILS" in line]
     assert "the belt keeps a margin of 10 %: lowest margin" in failed[0]
     assert "the loom runs below its safe speed" in failed[1]
     (path,) = (tmp_path / "results").iterdir()
@@ -83,10 +104,10 @@ def test_the_demonstration_fails_beyond_the_belts_safe_speed(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("speed", "status"), [("681 rpm", 0), ("683 rpm", 1)])
-def test_the_margin_vanishes_at_the_speed_limit(tmp_path: Path, speed: str, status: int) -> None:
+def test_the_margin_vanishes_at_the_speed_limit(run: Run, tmp_path: Path, speed: str, status: int) -> None:
     # 681.80 rev/min by the equations, 685 as published
     scene = (SIMS / "wl680_3600.toml").read_text().split("[[claims]]")[0]
     (tmp_path / "limit.toml").write_text(scene + '[[claims]]\nkind = "lowest_margin"\nbound = 0.0\n')
     once = ("--set", "revolutions=1", "--set", f"shaft.speed={speed}")
-    done = run(str(tmp_path / "limit.toml"), tmp_path, *once)
-    assert done.returncode == status, done.stdout + done.stderr
+    done = run(tmp_path / "limit.toml", *once)
+    assert done.status == status, done.out + done.err

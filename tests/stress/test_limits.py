@@ -86,14 +86,14 @@ def run_at_corners(component: type[Component], seed: int, steps: int, **chosen: 
         assert all_finite(instance), drawn
 
 
-@seeds(15, 3000)
+@seeds(6, 3000)
 @pytest.mark.parametrize("name", [name for name in COMPONENTS if name not in ("BeltDynamics", "HealdDamper")])
 def test_corners_run_or_are_refused(name, drawn):
     for seed in drawn:
         run_at_corners(COMPONENTS[name], seed, 24)
 
 
-@seeds(15, 3000)
+@seeds(6, 3000)
 def test_corners_of_the_belt_in_motion_run_or_are_refused(belt_in_c, drawn):
     # a stiff or overloaded belt takes a second in Python until it is held
     for seed in drawn:

@@ -84,8 +84,8 @@ with tempfile.TemporaryDirectory() as directory:
 
 
 def test_a_long_run_takes_no_more_memory_than_a_short_one() -> None:
-    grown = int(in_a_process(LONG, "300", "20"))
-    print(f"memory grew by {grown / 1e6:.1f} MB in 300 blocks of 50 signals, 123 MB")
+    grown = int(in_a_process(LONG, "150", "20"))
+    print(f"memory grew by {grown / 1e6:.1f} MB in 150 blocks of 50 signals, 61 MB")
     # what HDF5 keeps of the places of the blocks; it would keep all blocks, up to 8 MB of each signal,
     # if its cache were not told to keep one
     assert grown < 10e6

@@ -15,6 +15,7 @@ import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.importing.calls import Call
 from loomfmu.cosim.importing.logged import Logged
 from loomfmu.cosim.importing.slave import Ended
@@ -26,7 +27,6 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire
-from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]
@@ -185,7 +185,7 @@ def test_iterated_in_c_it_gives_the_same_bits(inertia: float | None, flavour: st
 def test_fmus_of_fmi_3_are_iterated_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
     text = LOOP.format(coupling="iterated", inertia=LIGHT, steps=360, revolutions=1)
     files = {
-        name: build_native(name, tmp_path, (host(),), fmi=3) for name in ("DrivenShaft", "WeftInsertion")
+        name: file_of(COMPONENTS[name], "native", (host(),), 3) for name in ("DrivenShaft", "WeftInsertion")
     }
     given = text.replace('component = "DrivenShaft"', f'fmu = "{files["DrivenShaft"]}"')
     given += f'[weft]\nfmu = "{files["WeftInsertion"]}"\n'

@@ -15,7 +15,9 @@ from odd_components import odd
 import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.cache.entries import CHECKSUM
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
+from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.master import steppers
 from loomfmu.cosim.master.grid import Grid, chosen, uniform
 from loomfmu.cosim.master.master import Interrupted, Master
@@ -24,7 +26,6 @@ from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.fmi.native.libraries import library_of
-from loomfmu.fmi.native.native_fmu import build_native
 from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]
@@ -91,7 +92,7 @@ def test_the_python_loop_calls_the_fmus_without_a_call_of_its_own_around_each() 
 
 def test_fmus_of_fmi_3_are_stepped_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> None:
     files = {
-        instance: build_native(name, tmp_path, (host(),), fmi=3)
+        instance: file_of(COMPONENTS[name], "native", (host(),), 3)
         for instance, name in (("shaft", "MainShaft"), ("weft", "WeftInsertion"), ("belt", "BeltMonitor"))
     }
     text = 'revolutions = 1\nsteps_per_revolution = 180\n[loom]\nmachine = "WL680-3600"\n'

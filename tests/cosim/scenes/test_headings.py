@@ -101,6 +101,7 @@ def test_a_trace_of_an_older_version_quotes_the_title_and_says_what_differs(
     assert trace.heading == '"Mine"; shaft.speed = 300 rpm'
 
 
+@pytest.mark.slow
 def test_the_page_that_varies_a_value_names_none_of_it(tmp_path: Path) -> None:
     pytest.importorskip("ziglang")
     few = {"revolutions": 1, "steps_per_revolution": 90}

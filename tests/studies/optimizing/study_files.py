@@ -5,7 +5,7 @@ from pathlib import Path
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = SIMS / "wl680_3600.toml"
 FAST = "[set]\nrevolutions = 2\nsteps_per_revolution = 90\n"
-QUICK = "[search]\nruns = 100\n"
+QUICK = "[search]\nruns = 50\n"
 
 
 def study(directory: Path, text: str, scene: Path = DEMO, head: str = FAST) -> Path:
