@@ -118,11 +118,7 @@ def test_traces_outlast_many_power_losses(disk: Path, fmu_cache: None) -> None:
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     "command",
-    [
-        ("init", "--all", "examples"),
-        ("new", "PickingCam"),
-        ("build", "MainShaft", "--output", "fmus"),
-    ],
+    [("init", "--all", "examples"), ("new", "PickingCam"), ("build", "MainShaft", "--output", "fmus")],
 )
 def test_what_a_command_has_written_outlasts_a_power_loss(
     disk: Path, command: tuple[str, ...], fmu_cache: None

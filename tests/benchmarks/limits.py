@@ -114,10 +114,7 @@ def measure(effort: str, notes: Notes) -> list[Table]:
     masters["loomfmu, HDF5"] = (Ours, source, "native")
     rows = Table(NAME, COLUMNS)
     say(f"{NAME}: compiling")
-    with (
-        children(programs, notes, inside=True) as built,
-        children(masters, notes, inside=tiny) as asked,
-    ):
+    with children(programs, notes, inside=True) as built, children(masters, notes, inside=tiny) as asked:
         say(f"{NAME}: timing")
         repeats, turns = SIZES[effort]
         together = {**built, **asked}

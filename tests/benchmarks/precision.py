@@ -30,15 +30,7 @@ MOTIONS = (
     "heald_1.acceleration",
 )
 NAMES = tuple(
-    dict.fromkeys(
-        [
-            *SIGNALS,
-            *RATES.values(),
-            *MOTIONS,
-            "belt.lowest_margin",
-            "damper_1.peak_load",
-        ]
-    )
+    dict.fromkeys([*SIGNALS, *RATES.values(), *MOTIONS, "belt.lowest_margin", "damper_1.peak_load"])
 )
 COLUMNS = (
     "method",

@@ -14,17 +14,7 @@ from typing import Any
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-PACKAGES = (
-    "loomfmu",
-    "numpy",
-    "scipy",
-    "h5py",
-    "fmpy",
-    "libcosimpy",
-    "ecospy",
-    "ziglang",
-    "mpmath",
-)
+PACKAGES = ("loomfmu", "numpy", "scipy", "h5py", "fmpy", "libcosimpy", "ecospy", "ziglang", "mpmath")
 
 Row = dict[str, Any]
 

@@ -24,11 +24,7 @@ def untouched(path: Path) -> tuple[int, ...]:
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize(
     "command",
-    [
-        ["run", "scene.toml", "--output"],
-        ["export", "scene.toml", "--ssp"],
-        ["export", "scene.toml", "--fmu"],
-    ],
+    [["run", "scene.toml", "--output"], ["export", "scene.toml", "--ssp"], ["export", "scene.toml", "--fmu"]],
 )
 def test_no_command_overwrites_what_it_reads_or_what_is_no_file(
     command: list[str], force: list[str], capfd: pytest.CaptureFixture[str]

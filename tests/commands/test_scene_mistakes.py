@@ -44,10 +44,7 @@ CASES: dict[str, tuple[str, str]] = {
         HEAD + LOOM.replace("[loom]", "[loom]\nbelt_motion = true") + "[belt_motion]\nhead_end = 'fixed'\n",
         "belt_motion.head_end = 'fixed' must be 'pinned' or 'guided'",
     ),
-    "zero steps": (
-        HEAD.replace("90", "0"),
-        "steps_per_revolution = 0 is outside [1, 1e+09]",
-    ),
+    "zero steps": (HEAD.replace("90", "0"), "steps_per_revolution = 0 is outside [1, 1e+09]"),
     "half a step": (HEAD.replace("90", "90.5"), "steps_per_revolution = 90.5 is not a whole number"),
     "no number of steps": (HEAD.replace("90", "'many'"), "steps_per_revolution = 'many' is not a number"),
     "no way back": (
@@ -85,10 +82,7 @@ CASES: dict[str, tuple[str, str]] = {
         HEAD + LOOM.replace(" left", ""),
         "there is no head 'G6300'; did you mean 'G6300 left'?",
     ),
-    "dampers": (
-        HEAD + LOOM + 'dampers = "no"\n',
-        "loom.dampers = 'no' must be true or false",
-    ),
+    "dampers": (HEAD + LOOM + 'dampers = "no"\n', "loom.dampers = 'no' must be true or false"),
     "pattern": (
         HEAD + LOOM + '[heald_1]\npattern = "12"\n',
         "heald_1.pattern = '12' is not a string of pegs such as \"1010\"",
@@ -193,10 +187,7 @@ CASES: dict[str, tuple[str, str]] = {
         HEAD + LOOM + "[shaft]\nrecord = []\n",
         "shaft.record is unknown: record belongs to the scene, write it above the first [table]",
     ),
-    "wires no table": (
-        "wires = 5\n" + HEAD,
-        'wires must be a table of "instance.input" = "instance.output"',
-    ),
+    "wires no table": ("wires = 5\n" + HEAD, 'wires must be a table of "instance.input" = "instance.output"'),
     # claims
     "claims no tables": ("claims = 5\n" + HEAD, "claims are written as [[claims]] tables"),
     "claim kind": (

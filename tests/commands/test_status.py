@@ -56,10 +56,7 @@ def test_output_that_nobody_takes_is_no_failed_claim() -> None:
             ["show", "scene.toml"],
             "scene.toml: cannot be read as a trace (it is not an HDF5 file; loomfmu run writes one)",
         ),
-        (
-            ["show", "other.h5"],
-            "other.h5: not a trace of loomfmu (the dataset /shaft_angle is missing)",
-        ),
+        (["show", "other.h5"], "other.h5: not a trace of loomfmu (the dataset /shaft_angle is missing)"),
     ],
 )
 def test_a_mistake_in_a_file_name_is_told_in_one_line(

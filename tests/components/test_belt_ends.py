@@ -16,13 +16,7 @@ from scipy.special import ellipk
 from loomfmu import run
 from loomfmu.components.belt_dynamics import BeltDynamics
 from loomfmu.declaring.variables import variables_of
-from loomfmu.physics.belt_end_forces import (
-    CROSS_ALONG,
-    CROSS_TWICE,
-    SQUARE_ALONG,
-    SQUARE_TWICE,
-    head_forces,
-)
+from loomfmu.physics.belt_end_forces import CROSS_ALONG, CROSS_TWICE, SQUARE_ALONG, SQUARE_TWICE, head_forces
 from loomfmu.physics.belt_ends import CROSS, SQUARE, buckling, end_amplitudes, turned_by
 from loomfmu.physics.belt_modes import Bow
 from loomfmu.physics.belt_motion import accelerations

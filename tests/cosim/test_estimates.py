@@ -41,11 +41,7 @@ bound = {bound}
 def exact() -> dict[int, float]:
     """Values of the demonstration's claims, by their numbers, in closed form."""
     limit = loom.safe_speed("WL680-3600", length_factor=0.8).speed / loom.RPM
-    return {
-        0: 1.0 - (600.0 / limit) ** 2,
-        1: limit * math.pi / 30.0,
-        2: dwell_angle(SLOPED_SINE, 0.5, 0.015),
-    }
+    return {0: 1.0 - (600.0 / limit) ** 2, 1: limit * math.pi / 30.0, 2: dwell_angle(SLOPED_SINE, 0.5, 0.015)}
 
 
 @pytest.mark.parametrize("steps", STEPS)

@@ -29,11 +29,7 @@ def taken_up(driver, driven, eccentricity, distance, turn):
 
 @pytest.mark.parametrize(
     ("driver", "driven", "eccentricity", "distance"),
-    [
-        (0.06, 0.06, 0.015, 0.6),
-        (0.05, 0.08, 0.03, 0.2),
-        (0.08, 0.05, 0.02, 0.3),
-    ],
+    [(0.06, 0.06, 0.015, 0.6), (0.05, 0.08, 0.03, 0.2), (0.08, 0.05, 0.02, 0.3)],
 )
 @pytest.mark.parametrize("turn", [0.0, 1.0, 2.5, 4.0])
 def test_speed_from_the_chain_that_is_paid_out(driver, driven, eccentricity, distance, turn):

@@ -52,8 +52,7 @@ def test_an_impossible_wish_is_answered_with_what_can_be_had():
     with pytest.raises(LoomfmuError, match=r"no guide clearance gives 1000 rev/min: .* 779\.\d+ to 545\.\d+"):
         loom.clearance_for(1000 * RPM, "WL680-3600")
     with pytest.raises(
-        LoomfmuError,
-        match=r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm",
+        LoomfmuError, match=r"the belt is safe at 540 rev/min with any guide clearance from 0 mm to 0\.8 mm"
     ):
         loom.clearance_for("540 rpm", "WL680-3600")
 

@@ -8,12 +8,7 @@ from hypothesis import strategies as st
 
 from loomfmu.design.reed import crank_place, crank_rocker_without_quick_return, frame_angle_for, reed_dyad
 from loomfmu.physics.linkage import four_bar, wrapped
-from loomfmu.physics.reed import (
-    dead_centre,
-    reed_motion,
-    rod_margin,
-    smallest_transmission_angle,
-)
+from loomfmu.physics.reed import dead_centre, reed_motion, rod_margin, smallest_transmission_angle
 
 SWING = radians(13.610)
 ROCKER = 0.550

@@ -157,9 +157,4 @@ def omsimulator(scene: Scene, directory: Path) -> Signals:
     return {signal: np.array(values) for signal, values in rows.items()}
 
 
-MASTERS: dict[str, Master] = {
-    "libcosim": libcosim,
-    "ecos": ecos,
-    "fmpy": fmpy,
-    "OMSimulator": omsimulator,
-}
+MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy, "OMSimulator": omsimulator}

@@ -210,10 +210,7 @@ def test_a_start_from_rest_that_fails_names_its_steps():
     ("law", "note"),
     [
         ("uniform", "take more steps: the gap shrinks if the torque is right"),
-        (
-            "spline_cam",
-            "the velocity of a spline_cam jumps: its impulse is in the work, but in no torque",
-        ),
+        ("spline_cam", "the velocity of a spline_cam jumps: its impulse is in the work, but in no torque"),
     ],
 )
 def test_a_gap_between_torque_and_work_names_what_may_cause_it(law, note):

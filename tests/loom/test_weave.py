@@ -81,10 +81,7 @@ def test_pegs_as_a_list_and_as_a_text():
         # more than memory could hold: counted before anything is built
         (HEAD.format(rising="true", shafts="9" * 9, picks=2) + PLAIN, "has 999999999 frames"),
         (HEAD.format(rising="false", shafts=2, picks="9" * 9) + PLAIN, "has 999999999 picks"),
-        (
-            HEAD.format(rising="true", shafts="9" * 5000, picks=2) + PLAIN,
-            "not a whole number of 1 or more",
-        ),
+        (HEAD.format(rising="true", shafts="9" * 5000, picks=2) + PLAIN, "not a whole number of 1 or more"),
         (HEAD.format(rising="true", shafts="\u00b2", picks=2) + PLAIN, "[WEAVING] Shafts = '\u00b2' is not"),
         (HEAD.format(rising="true", shafts=2, picks="\uff12") + PLAIN, "[WEFT] Threads = '\uff12' is not"),
         (HEAD.format(rising="true", shafts=2, picks=2) + "[LIFTPLAN]\n1=1_0\n", "[LIFTPLAN] has a line"),

@@ -215,10 +215,7 @@ IN_MAP = [
         'x = "shaft.speed"\nvalue = "belt.lowest_sped_limit"',
         "is not a column of results; did you mean 'belt.low",
     ),
-    (
-        'x = "shaft.speed"\ny = "shaft.speed"\nvalue = "claim_1.worst"',
-        "map.x and map.y are both shaft.speed",
-    ),
+    ('x = "shaft.speed"\ny = "shaft.speed"\nvalue = "claim_1.worst"', "map.x and map.y are both shaft.speed"),
     (
         'x = "shaft.speed"\ny = "belt.guide_clearance"\nvalue = "claim_1.worst"\n'
         "[grid.weft]\nwheel_diameter = [0.3, 0.4]",

@@ -47,10 +47,7 @@ def test_numbers_of_a_signal(text: str, value: float) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            "a.value",
-            "a.value rises and falls in the run, so that its final value says little",
-        ),
+        ("a.value", "a.value rises and falls in the run, so that its final value says little"),
         ("mean a.value at 90 deg", "is not one of 'highest SIGNAL'"),
         ("worst a.value", "is not one of"),
         ("a.value at 90 mm", "does not fit rad"),

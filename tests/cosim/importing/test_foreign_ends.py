@@ -11,17 +11,7 @@ import pytest
 from foreign_motors import motor2, motor3
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran
 
-from loomfmu import (
-    LoomfmuError,
-    Trace,
-    evaluate,
-    fit,
-    judge,
-    limit,
-    optimize,
-    sweep,
-    tolerances,
-)
+from loomfmu import LoomfmuError, Trace, evaluate, fit, judge, limit, optimize, sweep, tolerances
 from loomfmu.cli import main
 from loomfmu.cosim.master import steppers
 from loomfmu.cosim.scenes import scene as scenes

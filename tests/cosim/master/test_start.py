@@ -36,8 +36,7 @@ def acceleration(shaft_acceleration: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("text", "signal", "cut"),
-    [(MOTOR, "motor.flange_a", ""), (LENGTH + SHAFT3, "shaft.acceleration", CUT)],
+    ("text", "signal", "cut"), [(MOTOR, "motor.flange_a", ""), (LENGTH + SHAFT3, "shaft.acceleration", CUT)]
 )
 def test_what_is_computed_on_leaving_initialization_is_recorded_and_handed_on(
     late: Path, tmp_path: Path, text: str, signal: str, cut: str

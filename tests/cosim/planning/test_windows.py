@@ -249,10 +249,7 @@ def test_windows_are_found_wherever_they_are(changed: dict[str, object]) -> None
             '[shaft]\ncomponent = "DrivenShaft"\ninertia = 0.1\n',
             "weft.shaft_torque -> shaft.torque_1 closes a loop",
         ),
-        (
-            '[shaft]\ncomponent = "DrivenShaft"\n[wires]\n"shaft.torque_1" = false\n',
-            "shaft integrates",
-        ),
+        ('[shaft]\ncomponent = "DrivenShaft"\n[wires]\n"shaft.torque_1" = false\n', "shaft integrates"),
     ],
 )
 def test_what_integrates_takes_the_scenes_own_steps(rest: str, why: str) -> None:
