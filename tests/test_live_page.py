@@ -121,26 +121,20 @@ def verdicts_agree(page: Any, expected: Any) -> None:
             assert mine["time"] == pytest.approx(its.time, abs=1e-8), its
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("speed", [600.0, 685.5])
+@pytest.mark.parametrize(
+    ("fixture", "scene", "speed"),
+    [
+        ("written", DEMO, 600.0),
+        pytest.param("written", DEMO, 685.5, marks=pytest.mark.slow),
+        pytest.param("written_whole", WHOLE, 470.0, marks=pytest.mark.slow),
+    ],
+)
 def test_its_values_and_verdicts_are_those_of_a_native_run(
-    written: Path, opened: Open, tmp_path: Path, speed: float
+    request: pytest.FixtureRequest, opened: Open, tmp_path: Path, fixture: str, scene: Path, speed: float
 ) -> None:
-    page = running(opened(written))
+    page = running(opened(request.getfixturevalue(fixture)))
     turned(page, speed)
-    result = loomfmu.run(DEMO, set={"shaft.speed": f"{speed} rpm"}, output=tmp_path / "run.h5")
-    values_agree(page, result.trace)
-    verdicts_agree(page, result.claims)
-    assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))
-
-
-@pytest.mark.slow
-def test_so_are_those_of_a_loom_with_every_mechanism(
-    written_whole: Path, opened: Open, tmp_path: Path
-) -> None:
-    page = running(opened(written_whole))
-    turned(page, 470.0)
-    result = loomfmu.run(WHOLE, set={"shaft.speed": "470 rpm"}, output=tmp_path / "run.h5")
+    result = loomfmu.run(scene, set={"shaft.speed": f"{speed} rpm"}, output=tmp_path / "run.h5")
     values_agree(page, result.trace)
     verdicts_agree(page, result.claims)
     assert all(each["holds"] is not None for each in page.evaluate("loomfmu.live.verdicts"))

@@ -1,6 +1,7 @@
-"""Damaged scenes, and scenes written to do harm."""
+"""Damaged scenes and weaves, and scenes written to do harm."""
 
 import random
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,10 @@ from loomfmu import LoomfmuError
 from loomfmu.cosim.planning.requested import checked_claims
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
+from loomfmu.loom import weave
 
-FILES = sorted((Path(__file__).parents[2] / "sims").glob("*.toml"))
+SIMS = Path(__file__).parents[2] / "sims"
+Reader = Callable[[Path], object]
 LOOM = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "10/01/10/01"\n'
 MANY = 3000
 
@@ -24,16 +27,24 @@ def read(path: Path) -> None:
 
 
 @pytest.mark.parametrize("count", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)])
-def test_damaged_scenes_are_read_or_refused_in_one_line(tmp_path: Path, count: int) -> None:
+@pytest.mark.parametrize(
+    ("name", "files", "read", "revalues", "damages"),
+    [("scenes", "*.toml", read, 0.7, 0.5), ("weaves", "weaves/*.wif", weave.read_wif, 0.5, 0.7)],
+)
+def test_damaged_files_are_read_or_refused_in_one_line(
+    tmp_path: Path, name: str, files: str, read: Reader, revalues: float, damages: float, count: int
+) -> None:
+    found = sorted(SIMS.glob(files))
+
     def make(chance: random.Random, number: int) -> Path:
-        content = chance.choice(FILES).read_bytes()
-        if chance.random() < 0.7:
+        content = chance.choice(found).read_bytes()
+        if chance.random() < revalues:
             content = revalued(content.decode(), chance).encode()
-        path = tmp_path / f"{number % 4}.toml"
-        path.write_bytes(damaged(content, chance) if chance.random() < 0.5 else content)
+        path = tmp_path / f"{number % 4}{found[0].suffix}"
+        path.write_bytes(damaged(content, chance) if chance.random() < damages else content)
         return path
 
-    attacked("scenes", make, read, count)
+    attacked(name, make, read, count)
 
 
 DEEP = "its tables or lists are nested more than 50 deep"

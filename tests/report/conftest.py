@@ -1,5 +1,6 @@
 """Traces that reports are written of, and their reports."""
 
+import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -47,3 +48,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
         return report.write(list(traces), tmp_path_factory.mktemp("written") / "report.html")
 
     return write
+
+
+@pytest.fixture
+def copied(demo: Trace, tmp_path: Path) -> Path:
+    os.link(demo.path, tmp_path / "demo.h5")
+    return tmp_path / "demo.h5"

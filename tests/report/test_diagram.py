@@ -1,6 +1,5 @@
 """The timing diagram: in the report it follows the cursor, as a file it is a picture."""
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,12 +20,6 @@ SIMS = Path(__file__).parents[2] / "sims"
 Open = Callable[..., Any]
 Written = Callable[..., Path]
 BEGINNINGS = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-
-
-@pytest.fixture
-def copied(demo: Trace, tmp_path: Path) -> Path:
-    os.link(demo.path, tmp_path / "demo.h5")
-    return tmp_path / "demo.h5"
 
 
 def test_a_click_moves_the_cursor_to_its_angle(demo: Trace, written: Written, opened: Open) -> None:

@@ -28,12 +28,6 @@ Written = Callable[..., Path]
 SIMS = Path(__file__).parents[2] / "sims"
 
 
-@pytest.fixture
-def copied(demo: Trace, tmp_path: Path) -> Path:
-    os.link(demo.path, tmp_path / "demo.h5")
-    return tmp_path / "demo.h5"
-
-
 def recorded(path: Path, reals: np.ndarray, counts: np.ndarray) -> Trace:
     """A trace of reals r0, r1, ... [mm] and a count, over time alone."""
     channels = [Channel("a", f"r{k}", "m", "mm", "", k) for k in range(reals.shape[1])]

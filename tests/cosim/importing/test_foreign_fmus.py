@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_motors import description2, library, motor2, motor3, packed
+from foreign_motors import description2, library, motor2, packed
 from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact, ran, refused
 
 from loomfmu import LoomfmuError, Trace, evaluate, run
@@ -20,16 +20,6 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import drive
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.machines import parameters
-
-
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A directory with the motors."""
-    directory = tmp_path_factory.mktemp("motors")
-    motor2(directory)
-    motor3(directory)
-    return directory
-
 
 # ---- they drive our mechanisms
 

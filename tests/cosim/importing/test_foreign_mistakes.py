@@ -5,7 +5,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from foreign_motors import FIXED, FMI3, description2, library, motor2, motor3, packed
+from foreign_motors import FIXED, FMI3, description2, library, packed
 from motor_scenes import LENGTH, MOTOR, SHAFT3, ran, refused
 
 from loomfmu import LoomfmuError
@@ -38,15 +38,6 @@ FILES |= {
     NO_IDENTIFIER.format(name): description2().replace('modelIdentifier="Motor"', f'modelIdentifier="{name}"')
     for name in ("../../outside/Motor", "", "7up", "Mötor")
 }
-
-
-@pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A directory with the motors."""
-    directory = tmp_path_factory.mktemp("motors")
-    motor2(directory)
-    motor3(directory)
-    return directory
 
 
 def bad(tmp_path: Path, description: str, binary: bytes | None = None) -> None:
