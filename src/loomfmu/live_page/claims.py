@@ -13,6 +13,7 @@ from ..cosim.estimates import coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, Requested
 from ..cosim.scenes.scene import Scene
 from ..fmi.native.libraries import module_of
+from ..fmi.native.sources import code_of
 from ..traces import Trace, Verdict
 
 
@@ -39,7 +40,7 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     signals = [
         {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table
     ]
-    wasm = b64encode(module_of(SOURCE)).decode()
+    wasm = b64encode(module_of(SOURCE.name, code_of(SOURCE))).decode()
     about = {"fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
     return {"wasm": wasm, **about, "claims": rows}
 

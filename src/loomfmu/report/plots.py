@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..traces import Trace
+from ..traces import Trace, Verdict
 from ..traces.excerpt import READ
 from .section import Section, Subject, labels
 from .templates import template
@@ -84,14 +84,13 @@ def section(subject: Subject) -> Section | None:
     names = list(dict.fromkeys(name for trace in subject.traces for name in trace))
     if not names:
         return None
-    claimed = [
-        name for name in dict.fromkeys(each.signal for each in subject.trace.verdicts) if name in names
-    ]
+    verdicts = subject.trace.verdicts
+    claimed = [name for name in dict.fromkeys(verdict.signal for verdict in verdicts) if name in names]
     finer = _points(subject, claimed)
     coarser = _points(subject, [name for name in names if name not in claimed])
     rows, signals = [], {}
     for name in names:
-        row, signals[name] = _signal(subject, name, finer if name in claimed else coarser)
+        row, signals[name] = _signal(subject, name, verdicts, finer if name in claimed else coarser)
         rows.append(row | {"chosen": name in claimed})
     names_of_curves = LIVE if subject.live else labels(subject.traces)
     along = [_along(subject, trace) for trace in subject.traces]
@@ -118,7 +117,9 @@ def _points(subject: Subject, names: list[str]) -> int:
     return min(MOST_POINTS, max(FEWEST_POINTS, SHARE // max(1, curves)))
 
 
-def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], dict[str, Any]]:
+def _signal(
+    subject: Subject, name: str, verdicts: list[Verdict], points: int
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """A signal as a row of the table, and what the page draws of it."""
     source = next(trace for trace in subject.traces if name in trace)
     factor, unit = source.displayed(name)
@@ -148,7 +149,7 @@ def _signal(subject: Subject, name: str, points: int) -> tuple[dict[str, Any], d
     }
     bounds = [
         {"value": each.bound / factor, "text": f"bound {each.shown(each.bound)}", "holds": each.holds}
-        for each in subject.trace.verdicts
+        for each in verdicts
         if each.signal == name and each.unit == source.unit(name) and math.isfinite(each.bound)
     ]
     return row, {

@@ -57,13 +57,13 @@ def mingw_licence() -> bytes:
     return (_required() / "lib" / "libc" / "mingw" / "COPYING").read_bytes()
 
 
-def library_identity(source: Path, target: str = "") -> str:
-    """Return a name for a library of this source in a cache: it depends on all that the library does.
+def library_identity(code: dict[str, str], target: str = "") -> str:
+    """Return a name for a library of this code in a cache: it depends on all that the library does.
 
     Raises as `library`.
     """
     _required()
-    return hashlib.sha256((target + repr(code_of(source)) + stamp(COMPILER)).encode()).hexdigest()
+    return hashlib.sha256((target + repr(code) + stamp(COMPILER)).encode()).hexdigest()
 
 
 def library(source: Path, platform: str) -> bytes:

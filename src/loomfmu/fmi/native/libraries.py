@@ -33,17 +33,17 @@ def needed_library(source: Path) -> Path:
         return shipped
     from . import compiler  # a package that brings its libraries needs none
 
-    identity = compiler.library_identity(source)
+    identity = compiler.library_identity(code_of(source))
     return made_file(STEPPER, identity, shipped.name, lambda: compiler.library(source, platform))
 
 
-def module_of(source: Path) -> bytes:
-    """A C file as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
+def module_of(source: str, code: dict[str, str]) -> bytes:
+    """A file of some C code as a module of WebAssembly. Raises LoomfmuError if it cannot be built."""
     from . import compiler
 
-    name, identity = f"{source.stem}.wasm", compiler.library_identity(source, "wasm")
-    make = partial(compiler.web_assembly, source.name, code_of(source))
-    return made_file(STEPPER, identity, name, make).read_bytes()
+    make = partial(compiler.web_assembly, source, code)
+    name = Path(source).with_suffix(".wasm").name
+    return made_file(STEPPER, compiler.library_identity(code, source), name, make).read_bytes()
 
 
 def _shipped(source: Path, platform: str) -> Path:

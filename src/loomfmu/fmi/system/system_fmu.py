@@ -11,7 +11,7 @@ from ..description.model_description import model_description
 from ..description.terminals import terminal_files
 from ..fmu_files import NAMESPACE
 from ..native import native_fmu as native
-from ..native.compiler import web_assembly
+from ..native.libraries import module_of
 from ..native.tables import tables
 from .code import inner_step, stepped, translated
 from .system import STEP, STEPS, System, component_of
@@ -69,7 +69,7 @@ def module(system: System) -> bytes:
     """The system as a module of WebAssembly for a page, see `shell/page.c`. Raises as `build_native`."""
     translation = translated(system)
     model = tables(component_of(system), "", stepped(system), inner_step(system))
-    return web_assembly("page.c", native.with_shell(translation, model, native.PAGE))
+    return module_of("page.c", native.with_shell(translation, model, native.PAGE))
 
 
 def _token(component: type[Component], code: str) -> str:
