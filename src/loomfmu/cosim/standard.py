@@ -20,6 +20,10 @@ class Standard(Protocol):
         # is the number of the instance that follows it.
         """
 
+    @property
+    def RULES(self) -> Path:
+        """The C file with all rules by which claims are judged, those of `claims/native` included."""
+
     def instances_of(self, table: dict[str, Any], directory: Path) -> dict[str, dict[str, Any]]:
         """Return the instances of the machine that a table describes, each with the keys of its own table."""
 

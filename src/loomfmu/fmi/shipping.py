@@ -25,6 +25,6 @@ def build_all(platforms: tuple[str, ...] = tuple(PLATFORMS)) -> None:
             build = partial(build_native, directory=SHIPPED / f"fmi{fmi}", platforms=platforms, fmi=fmi)
             built = pool.map(build, COMPONENTS)
             list(built)
-    libraries.build_all(sorted(identities.PACKAGE.glob("cosim/*/native/*.c")), platforms)
+    libraries.build_all(sorted(identities.PACKAGE.glob("**/native/*.c")), platforms)
     replace_file(SHIPPED / MINGW, mingw_licence())
     identities.write(SHIPPED)

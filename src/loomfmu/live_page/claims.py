@@ -7,11 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 from ..cosim.claims.claim import Claim
-from ..cosim.claims.judging import FIELDS, SOURCE, Form, Table, beside, number_of
+from ..cosim.claims.judging import FIELDS, Form, Table, beside, number_of
 from ..cosim.dependence import Dependence, Method
 from ..cosim.estimates import coarseness, counts
 from ..cosim.planning.requested import SHAFT_ANGLE, Requested
 from ..cosim.scenes.scene import Scene
+from ..cosim.standard import standard
 from ..fmi.native.libraries import module_of
 from ..fmi.native.sources import code_of
 from ..traces import Trace, Verdict
@@ -40,7 +41,8 @@ def claims(scene: Scene, ends: Iterable[Scene], trace: Trace, verdicts: Sequence
     signals = [
         {"name": name, "about": trace.description(name), "beside": beside(table, name)} for name in table
     ]
-    wasm = b64encode(module_of(SOURCE.name, code_of(SOURCE))).decode()
+    rules = standard().RULES
+    wasm = b64encode(module_of(rules.name, code_of(rules))).decode()
     about = {"fields": FIELDS, "signals": signals, "coarseness": coarseness(scene)}
     return {"wasm": wasm, **about, "claims": rows}
 

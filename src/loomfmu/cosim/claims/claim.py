@@ -56,7 +56,7 @@ class Claim(ABC):
     argument being one that names an instance, and in `reads` the instances of which it needs parameters
     alone; whether what it judges is to be `AT_LEAST` or `AT_MOST` its bound, and the `unit` of both; and what
     it needs of the window `grid`, which is every step unless it says otherwise. `noise` is what its number
-    may be off by with any steps, in its unit. `judge.c` holds the rule by which it is judged.
+    may be off by with any steps, in its unit. the machine's rules in C hold that by which it is judged.
     """
 
     name: str = argument(Name(), "")

@@ -1,4 +1,4 @@
-"""Recorded runs as the rules in C have them: `native/judge.c` judges for a run and for a page alike."""
+"""Recorded runs as the rules in C have them: `native/judge.h` judges for a run and for a page alike."""
 
 import ctypes
 import math
@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import chain
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +17,6 @@ from ...traces import Signals, Verdict
 from ..standard import standard
 from .movers import Mover, movers_of
 
-SOURCE = Path(__file__).with_name("native") / "judge.c"
 ROOM = 16  # for the times that a function finds, at first
 BESIDE = ("valid_if", "error", "lowest", "highest")  # in the order of `run_beside`
 FIELDS = (  # of `struct verdict`
@@ -73,7 +71,7 @@ class Question(NamedTuple):
     words: str = ""
 
     def written(self, trace: Signals, number: Callable[[str], int]) -> list[float | str]:
-        """Return the list of numbers that `judge.c` takes, with parameters by their names.
+        """Return the list of numbers that `judge.h` takes, with parameters by their names.
 
         Args:
             trace: the run that says which units its signals have
@@ -153,7 +151,7 @@ class Run:
         )
 
     def settled(self, trace: Signals, question: Question, verdict: Verdict, *changes: float) -> Verdict:
-        """Return a verdict with its error; `changes` are what `settle` of judge.c takes after the verdict."""
+        """Return a verdict with its error; `changes` are what `settle` of judge.h takes after the verdict."""
         found = _numbers_of(verdict, question)
         _check(self._library.settle(self._run, self._list(trace, question), found, *changes))
         holds, decided, *_others, error, spread, _distance = found
@@ -263,7 +261,7 @@ def _all(function: Callable[..., int], *arguments: Any) -> list[float]:
 def library() -> Any:
     """Return the library with the types of its functions. Raises LoomfmuError if there is none."""
     try:
-        loaded = ctypes.PyDLL(str(needed_library(SOURCE)))
+        loaded = ctypes.PyDLL(str(needed_library(standard().RULES)))
     except LoomfmuError as error:
         raise LoomfmuError(f"claims cannot be judged: {error}") from None
     for name, (result, arguments) in _FUNCTIONS.items():

@@ -148,7 +148,8 @@ def _call(arguments: list[str], directory: Path, name: str) -> None:
             check=False,
         )
     if run.returncode != 0:
-        reason = (run.stderr.strip().splitlines() or ["no reason given"])[0]
+        lines = run.stderr.strip().splitlines() or ["no reason given"]
+        reason = next((line for line in lines if "error:" in line), lines[0])
         raise LoomfmuError(f"{name} cannot be compiled for {arguments[0]}: {reason}")
 
 

@@ -1,20 +1,39 @@
-/* The rules of all claims, on a recorded run: one text for the command, in a library, and for a page, as WebAssembly.
+/* The functions of the library, by the machine's RULES: one text for the command, in a library, and for a page, as
+ * WebAssembly.
  *
  * Signals go by the numbers in which they are added. A question is a list of numbers: its rule, then the forms of its
  * verdict, its signals and its numbers, each list after its length, see judging.py. */
 
-/* in this order: each builds on those above it */
-#include "run.h"
-#include "bernstein.h"
-#include "curves.h"
-#include "extremes.h"
-#include "shaft.h"
-#include "verdicts.h"
-#include "signal_rules.h"
-#include "heald_rules.h"
-#include "loom_rules.h"
-#include "energy_rule.h"
-#include "rules.h"
+static bool is_by(const struct call *call, judge_by *judge)
+{
+    return RULES[call->rule].judge == judge;
+}
+
+/* ---- beside the verdict */
+
+/* What the number of a verdict may be off by whatever the steps, as a signal beside it says. */
+static double left_by_model(struct run *run, const struct call *call, const struct verdict *verdict)
+{
+    const struct form form = form_of(call, (int)verdict->form);
+    struct judged judged = {.always = true};
+    if (form.signal < 0 || !form.as_it_is)
+        return 0.0;
+    if (is_by(call, judge_bounded))
+        judged = when_judged(run, call);
+    return off_by(run, form.signal, verdict->worst, verdict->time, judged.always ? NULL : &judged.within);
+}
+
+/* What its curve may be off by between the samples, which runs on other steps may not show. */
+static double unresolved(struct run *run, const struct call *call)
+{
+    if (!is_by(call, judge_bounded))
+        return 0.0;
+    struct answer unused = {0};
+    const struct judged judged = when_judged(run, call);
+    const struct extreme found = worst_of(run, call, &judged, &unused);
+    const double sure = isfinite(found.sure) ? found.sure : found.value;
+    return larger(fabs(found.value - found.possible), fabs(found.value - sure));
+}
 
 #if defined(_WIN32)
 #define EXPORT(name) __declspec(dllexport)
@@ -181,7 +200,10 @@ EXPORT(landings) ptrdiff_t landings(struct run *run, const double *question, dou
 {
     const struct call call = call_of(run, question, "");
     BEGIN(run, -1);
-    return handed(looks(run, &call), times, room);
+    struct times found = {0, 0, NULL};
+    if (RULES[call.rule].looks != NULL)
+        RULES[call.rule].looks(run, &call, &found);
+    return handed(found, times, room);
 }
 
 /* Times at which the shaft stands at an angle of its revolution. */
