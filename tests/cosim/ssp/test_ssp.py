@@ -227,6 +227,19 @@ def test_values_of_a_package_can_be_changed(demo: Path, tmp_path: Path) -> None:
     assert (again.trace.rows, again.scene.speed) == (16, scenes.load(DEMO).speed)
 
 
+def test_what_instances_take_from_one_another_they_take_in_a_package_too(tmp_path: Path) -> None:
+    text = (
+        '[loom]\nmachine = "WL680-3600"\nweave = "10/01"\nwarps = true\ndampers = true\nbelt_motion = true\n'
+    )
+    (tmp_path / "whole.toml").write_text(text)
+    package = tmp_path / "whole.ssp"
+    ssp.export(scenes.load(tmp_path / "whole.toml"), package, "live")
+    for changed in ({"warp.thread_count": 600}, {"heald.stroke": "90 mm"}, {"machine": "WL450-3600"}):
+        before = scenes.load(tmp_path / "whole.toml", changed).instances
+        after = ssp_read.load(package, changed).instances
+        assert all(after[name].effective() == each.effective() for name, each in before.items())
+
+
 def test_the_machine_of_a_package_can_be_changed_and_a_mixed_one_is_named(demo: Path) -> None:
     changed = ssp_read.load(demo, {"belt.idle_travel": "0.2 m", "machine": "WL450-3600"})
     wanted = scenes.load(DEMO, {"belt.idle_travel": "0.2 m", "machine": "WL450-3600"})

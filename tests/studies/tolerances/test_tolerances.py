@@ -1,15 +1,18 @@
 """Worst cases: closed forms, extremes inside the box, what each tolerance costs, what is refused."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from loomfmu import LoomfmuError, prepare, tolerances
+from loomfmu import LoomfmuError, limit, prepare, tolerances
 from loomfmu.cli import main
+from loomfmu.cosim.scenes.scene import parse
 from loomfmu.design import loom as design
 from loomfmu.studies.tolerances import tolerances as worst_cases
+from loomfmu.studies.tolerances.worst_cases import show
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 FAST = {"revolutions": 2, "steps_per_revolution": 90}
@@ -35,6 +38,37 @@ def test_the_worst_case_is_that_of_the_closed_form() -> None:
     assert [each.distance for each in margin.costs] == pytest.approx(given_back, abs=1e-5)
     (dwell,) = (each for each in found.claims if each.claim == "the frames dwell long enough")
     assert dwell.costs == () and dwell.worst.worst == dwell.own.worst
+
+
+SETTLING = """
+revolutions = 2
+steps_per_revolution = 180
+[loom]
+machine = "WL680-3600"
+head = "G6300 left"
+weave = "10/01"
+dampers = true
+[shaft]
+speed = "600 rev/min"
+[[claims]]
+kind = "peak_load"
+damper = "damper_1"
+at_most = "5.4 kN"
+"""
+
+
+def test_studies_say_what_a_longer_run_would_change(capsys: pytest.CaptureFixture[str]) -> None:
+    """From rest the carrier takes more than the two revolutions of the weave to its highest load."""
+    scene = parse(SETTLING)
+    show(tolerances(scene, vary="shaft.speed=590rpm..602rpm"))
+    said = " ".join(capsys.readouterr().out.split())
+    assert re.search(
+        r"In its worst case '[^']*' is not settled: about \d+ N in a run of 4 revolutions\.", said
+    )
+    found = str(limit(scene, vary="shaft.speed=590rpm..602rpm", points=3))
+    assert (
+        "is not settled: about 5597 N in a run of 4 revolutions; its limits are of the shorter one" in found
+    )
 
 
 def test_a_worst_case_that_no_one_tolerance_lifts_names_all_of_them() -> None:

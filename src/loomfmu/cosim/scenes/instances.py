@@ -113,6 +113,18 @@ class Instance:
                 self.inherited[name] = (owner, parameter)
                 self.take(name, others)
 
+    def inherit_equals(self, others: Mapping[str, "Instance"], fed: Collection[tuple[str, str]]) -> None:
+        """Inherit what has the very value that it would inherit: packages say no more than values."""
+        given = dict(self.values)
+        for name, variable in self._declared().items():
+            if variable.source:
+                self.values.pop(name, None)
+        self.inherit(others, fed)
+        for name, value in given.items():
+            if self.values.get(name) != value:
+                self.values[name] = value
+                self.inherited.pop(name, None)
+
     def take(self, name: str, others: Mapping[str, "Instance"]) -> None:
         """Give an inherited parameter the value of the instance that it is taken from."""
         owner, parameter = self.inherited[name]

@@ -87,6 +87,9 @@ class _Reader:
         }
         wires = wires_of(system, instances, names)
         tables = self._foreign_tables() if annotation is None else _our_tables(text or {}, annotation)
+        if text is not None:
+            for instance in instances.values():
+                instance.inherit_equals(instances, {wire.sink for wire in wires})
         changed = _override(tables, instances, overrides)
         written = self.package.text(SSD_FILE) if annotation is None else annotation.text
         path = self.package.path
@@ -253,4 +256,9 @@ def _override(
             instances[name].set(variable, value)
         else:
             tables[variable] = value
-    return [(name, variable) for name, variable, _value in changed if name]
+    found = [(name, variable) for name, variable, _value in changed if name]
+    for name, instance in instances.items():
+        for parameter in instance.inherited:
+            if (name, parameter) not in found:
+                instance.take(parameter, instances)
+    return found

@@ -213,9 +213,12 @@ def conclusion(found: Limits) -> Iterator[str]:
 def _unsettled(found: Limits) -> Iterator[str]:
     """Yield a sentence for each claim whose limits are those of a run that is too short."""
     for each in found.claims:
-        if limit := next((limit for limit in each.limits if limit.unsettled), None):
-            place = found.span.show(limit.value)
-            yield f"At {place} '{each.claim}' is {limit.unsettled}; its limits are of the shorter one."
+        known = [
+            *((limit.value, limit.unsettled) for limit in each.limits),
+            (found.span.value, each.verdict.unsettled),
+        ]
+        if told := next(((found.span.show(value), why) for value, why in known if why), None):
+            yield f"At {told[0]} '{each.claim}' is {told[1]}; its limits are of the shorter one."
 
 
 def _sentence(stretch: Stretch, found: Limits) -> str:

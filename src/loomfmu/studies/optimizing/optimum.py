@@ -262,6 +262,8 @@ def conclusion(found: Optimum) -> Iterator[str]:
         )
     for name in found.constant:
         yield f"The goal '{name}' is the same in all designs: nothing that varies changes it."
+    longer = {each.claim: each.unsettled for best in found.front for each in best.verdicts if each.unsettled}
+    yield from (f"'{claim}' is {unsettled}." for claim, unsettled in longer.items())
     undecided = _undecided(found)
     near = {name: each for name, each in undecided.items() if math.isfinite(each.error)}
     yield from (f"Undecided: '{name}' ({undecided[name].note})." for name in undecided if name not in near)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -82,7 +82,8 @@ class Tolerances:
         )
 
     def _repr_html_(self) -> str:
-        return notebook.block(self.title, notebook.table(HEADINGS, rows(self)))
+        table = notebook.table(HEADINGS, rows(self))
+        return notebook.block(self.title, table, *map(notebook.line, unsettled(self)))
 
 
 def rows(found: Tolerances) -> list[tuple[str, ...]]:
@@ -98,6 +99,13 @@ def rows(found: Tolerances) -> list[tuple[str, ...]]:
         )
         for each in found.claims
     ]
+
+
+def unsettled(found: Tolerances) -> Iterator[str]:
+    """Yield a sentence for each claim whose worst case a longer run would make worse."""
+    for each in found.claims:
+        if each.worst.unsettled:
+            yield f"In its worst case '{each.claim}' is {each.worst.unsettled}."
 
 
 def _where(each: WorstCase, found: Tolerances) -> str:
