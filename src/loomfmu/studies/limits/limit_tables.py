@@ -19,6 +19,7 @@ from .results import (
     boundary_rows,
     conclusion,
     rows,
+    unsettled,
 )
 
 CSV_LIMITS = ("claim", "begins", "value", "low", "high", "error", "unit", "jumps")
@@ -120,6 +121,10 @@ def show_boundary(found: Boundary) -> None:
         say(
             f"No claim depends on {first.key} between {first.number(first.low)} and {first.show(first.high)}."
         )
+    for place, row in zip(found.values, found.rows, strict=True):
+        if told := next(unsettled(row), ""):
+            say(f"With {second.key} = {second.show(place)}: {told[0].lower()}{told[1:]}")
+            break  # the others are alike
     say(_effort(sum(each.runs for each in found.rows), found.rows))
 
 

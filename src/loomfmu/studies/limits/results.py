@@ -194,7 +194,7 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield f"There is no value from {span.text} at which all claims hold{why}."
     if any(limit.jumps for each in found.claims for limit in each.limits):
         yield 'Where a claim "jumps", it counts something, or is undecided or without a value on one side.'
-    yield from _unsettled(found)
+    yield from unsettled(found)
     for each in found.claims:
         yield from (
             f"At {span.show(value)} '{each.claim}' is undecided: {why}." for value, why in each.doubts
@@ -210,7 +210,7 @@ def conclusion(found: Limits) -> Iterator[str]:
         yield f"The scene's own value, {span.show(span.value)}, is outside the range that was searched."
 
 
-def _unsettled(found: Limits) -> Iterator[str]:
+def unsettled(found: Limits) -> Iterator[str]:
     """Yield a sentence for each claim whose limits are those of a run that is too short."""
     for each in found.claims:
         known = [
