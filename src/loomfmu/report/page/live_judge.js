@@ -61,7 +61,8 @@ loomfmu.judge = ({ fields, signals, coarseness }, length, wasm) => {
     const place = asked(run, claim), { native, unshown } = claim, spread = native.spread ?? Infinity;
     wasm.judge(judged, place, claim.said ??= text(claim.words), verdict);
     const first = found(), known = Number.isFinite(first.worst);
-    const notes = [read(wasm.run_note(judged)), native.remark, own && native.unsettled];
+    const unsettled = native.unsettled && (own ? native.unsettled : `with the scene's own values ${native.unsettled}`);
+    const notes = [read(wasm.run_note(judged)), native.remark, unsettled];
     const settled = known && native.estimated ? settle(place, claim, first, spread, 0) : first;
     let far = settled;
     if (known && settled.decided && !own) {
