@@ -15,8 +15,8 @@ from loomfmu.components import COMPONENTS
 from loomfmu.cosim.claims.arguments import Argument, argument_of
 from loomfmu.cosim.claims.claim import AT_LEAST
 from loomfmu.cosim.claims.claims import kinds
-from loomfmu.cosim.scenes.keys import COUPLINGS, GRIDS, KEYS
 from loomfmu.cosim.scenes.scene import Scene
+from loomfmu.cosim.scenes.settings import COUPLINGS, GRIDS, KEYS
 from loomfmu.declaring.variables import variables_of
 from loomfmu.fmi.description.documentation import limits_text, start_text
 from loomfmu.loom.standard_loom import LOOM_KEYS

@@ -8,7 +8,7 @@ import pytest
 from hostile import LONG, SHORT, attacked, damaged, guarded, revalued
 
 from loomfmu import LoomfmuError
-from loomfmu.cosim.planning.requested import checked_claims
+from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.ssp import export as ssp
 from loomfmu.loom import weave

@@ -21,7 +21,7 @@ from driving import (
 from loomfmu import units
 from loomfmu.components import COMPONENTS, BeltDynamics
 from loomfmu.cosim.importing.facts import facts_of
-from loomfmu.cosim.scenes.keys import stem
+from loomfmu.cosim.scenes.instances import stem
 from loomfmu.cosim.scenes.wiring import usual_wires
 from loomfmu.declaring.variables import EXTREMES, MIXED, MOTION, NOTHING, OWN, PUBLISHED
 from loomfmu.errors import numbered

@@ -18,7 +18,7 @@ import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.cli import main
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.keys import KEYS
+from loomfmu.cosim.scenes.settings import KEYS
 from loomfmu.loom.standard_loom import COMPONENT_OF
 from loomfmu.own import checks, load
 from loomfmu.own.new import new

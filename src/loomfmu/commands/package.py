@@ -130,7 +130,8 @@ def add_new(commands: Any) -> None:
 
 def new(options: argparse.Namespace) -> int:
     """Write a folder for a mechanism of the user's own."""
-    from ..cosim.scenes.keys import KEYS, TAKEN
+    from ..cosim.scenes.instances import TAKEN
+    from ..cosim.scenes.settings import KEYS
     from ..loom.standard_loom import COMPONENT_OF
     from ..own.new import new as write
 

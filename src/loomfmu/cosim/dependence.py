@@ -18,11 +18,10 @@ from ..traces.signals import Floats, Integers
 from .claims.claim import Claim
 from .claims.movers import movers_of
 from .master.grid import SAME, contradicted, passed_by, period
-from .planning.movements import Movements
-from .planning.requested import Requested
+from .planning.requested import Movements, Requested
 from .scenes.graph import Wire, step_order
-from .scenes.keys import ITERATED
 from .scenes.scene import Scene
+from .scenes.settings import ITERATED
 
 # of the longest step that shows how a mechanism moves: a shaft's ripple takes 16 steps; of 8, three are left
 # to the coarsest run

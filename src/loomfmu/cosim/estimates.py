@@ -23,8 +23,8 @@ from .importing.process import AVAILABLE
 from .master.grid import Grid, uniform
 from .planning.requested import Requested
 from .scenes.instances import altered
-from .scenes.keys import WINDOWS
 from .scenes.scene import Scene
+from .scenes.settings import WINDOWS
 
 MOST_VALUES = 50_000_000  # that half of a run may have: it is kept in memory
 

@@ -23,15 +23,15 @@ from .importing.fmus import Flavour
 from .master.grid import Grid, uniform
 from .master.master import Interrupted, Master
 from .planning.plan import InMemory, Plan, Stepping, build_needed, early_end, explained, record
-from .planning.requested import Requested, check_bounds
+from .planning.requested import Requested
 from .planning.windows import window_grid
 from .provenance import attributes
-from .reading import check_set, requested
+from .reading import check_bounds, check_set, requested
 from .recorded import finish, kept_readable, own_path, progress_of, target_of, writer_of, written_at
 from .results import Evaluation, Result
 from .scenes.instances import altered
-from .scenes.keys import WINDOWS
 from .scenes.scene import Scene
+from .scenes.settings import WINDOWS
 from .scenes.values import Values
 
 Errors = Literal["all", "near", "none"]  # which verdicts get an estimate of their numerical error

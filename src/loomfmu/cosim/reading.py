@@ -1,16 +1,22 @@
 """A scene as a run takes it: read, in the flavour of its FMUs, with claims that can be judged."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..errors import LoomfmuError, listed, path_of, shown
+from ..errors import LoomfmuError, listed, path_of, shown, suggestion
+from .claims.claim import Claim
+from .claims.claims import Bounded, angles_in, check_speed, doubts, place_of
 from .importing.built import check_flavour
 from .importing.process import AVAILABLE
-from .planning.requested import Requested, checked_claims
+from .planning.requested import Requested, output_port, parameter_of
 from .scenes import scene as scenes
 from .scenes.scene import Scene
+from .scenes.wiring import left_out
+
+MOST = 5  # names that a warning lists
 
 
 def checked(scene: str | Path | Scene, overrides: dict[str, Any] | None, flavour: str) -> Scene:
@@ -95,3 +101,69 @@ def check_set(overrides: Any) -> None:
         raise LoomfmuError(
             f'set = {shown(overrides)} is not a dictionary such as {{"shaft.speed": "685 rpm"}}'
         )
+
+
+# ---- claims
+
+
+def checked_claims(scene: Scene) -> Requested:
+    """A scene with a note on each number of a claim that was probably meant in another unit.
+
+    Refuses, before the run, a claim that could not be judged after it.
+    """
+    notes = [*scene.notes, *_unrecorded(scene)]
+    requested = Requested(scene)
+    wired = {".".join(wire.sink) for wire in scene.wires}
+    known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
+    for table, claim in zip(scene.claims, requested.claims, strict=True):
+        where = place_of(table)
+        for angle in angles_in(table) if "shaft" not in scene.instances else ():
+            raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
+        for signal in claim.signals(requested):
+            port = output_port(scene, signal, where)
+            notes += [
+                f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
+                f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
+                for sink, source in left_out(known, wired, signal).items()
+            ]
+            if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
+                notes.append(port.doubt(table["bound"], f"{where} of {signal}: bound"))
+        check_bounds(scene, [claim])
+        notes += doubts(table)
+    requested.scene = replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
+    return requested
+
+
+def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
+    """Refuse parameters that cannot bound the signal of a claim, or that rule it out."""
+    for claim in claims:
+        claim.check_parameters(partial(parameter_of, scene))
+        if isinstance(claim, Bounded) and isinstance(claim.bound, str):
+            _check_parameter(scene, claim.bound, claim.signal)
+
+
+def _unrecorded(scene: Scene) -> Iterator[str]:
+    """A warning for each FMU that has outputs, but none that can be recorded."""
+    for name, instance in scene.instances.items():
+        fmu = instance.fmu
+        if fmu.unsupported and not any(port.causality == "output" for port in fmu.ports.values()):
+            listed = ", ".join([*fmu.unsupported[:MOST], *["..."] * (len(fmu.unsupported) > MOST)])
+            yield f"{name}: nothing recorded; none of its outputs is a scalar number or a Boolean: {listed}"
+
+
+def _check_parameter(scene: Scene, name: str, signal: str) -> None:
+    """A parameter that bounds a signal is one of the scene, in the signal's unit."""
+    instance, _, variable = name.partition(".")
+    ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
+    if variable not in ports or ports[variable].causality != "parameter":
+        known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
+        raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
+    value = scene.instances[instance].effect(variable)
+    if value is None:
+        raise LoomfmuError(
+            f"claim: bound = {name!r} has no effect in this scene, as {instance} does not use it"
+        )
+    wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
+    if given != wanted:
+        raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
+    check_speed(name, float(value), wanted)

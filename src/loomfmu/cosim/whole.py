@@ -12,12 +12,13 @@ from ..fmi.native.platforms import PLATFORMS
 from ..fmi.system.system import Drive, Part, System
 from ..fmi.system.system_fmu import contents
 from .planning.pruning import prune
-from .planning.requested import Requested, checked_claims
+from .planning.requested import Requested
+from .reading import checked_claims
 from .scenes.graph import step_order
 from .scenes.headings import heading
 from .scenes.instances import Instance
-from .scenes.keys import UNIFORM
 from .scenes.scene import Scene, files_of
+from .scenes.settings import UNIFORM
 
 
 def export(

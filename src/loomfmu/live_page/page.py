@@ -15,8 +15,8 @@ from ..cosim.reading import checked
 from ..cosim.recorded import usual_path
 from ..cosim.run import run
 from ..cosim.scenes.headings import heading
-from ..cosim.scenes.keys import UNIFORM
 from ..cosim.scenes.scene import Scene, files_of
+from ..cosim.scenes.settings import UNIFORM
 from ..cosim.whole import system
 from ..declaring.upstream import sources_of, upstream
 from ..declaring.variables import Variable, variables_of

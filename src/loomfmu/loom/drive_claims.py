@@ -5,8 +5,9 @@ from itertools import chain
 from typing import NamedTuple
 
 from ..cosim.claims.arguments import Name, Quantity, argument
-from ..cosim.claims.claim import AT_MOST, ONE, PERCENT, POWER, Claim, Wired
+from ..cosim.claims.claim import AT_MOST, ONE, PERCENT, POWER, Claim
 from ..cosim.claims.judging import Question, needs_shaft
+from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..physics.rotor_laws.shed_cam import SPLINE_CAM
 from ..traces import Signals

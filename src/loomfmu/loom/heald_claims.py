@@ -6,8 +6,9 @@ What lifts the warp is judged: the carrier where a frame has a damper. The note 
 from collections.abc import Callable, Sequence
 
 from ..cosim.claims.arguments import Angles, Name, Quantity, angles_text, argument
-from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim, Wired
+from ..cosim.claims.claim import ANGLE, AT_MOST, LANDINGS, PERCENT, Claim
 from ..cosim.claims.judging import Question, needs_shaft
+from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..traces import Signals
 from .lifted import check_lifted_by, dampers_of, lift_of, lifts
@@ -65,7 +66,7 @@ class ClearShed(_Span):
 
     needs = ("heald.lift", "heald.warp_height")
 
-    def check(self, parameter: Callable[[str], float]) -> None:
+    def check_parameters(self, parameter: Callable[[str], float]) -> None:
         reach = 0.5 * parameter(f"{self.heald}.stroke") * parameter(f"{self.heald}.warp_ratio")
         if self.clearance <= 0.0 or self.clearance >= reach:
             raise LoomfmuError(
@@ -74,7 +75,7 @@ class ClearShed(_Span):
             )
 
     def question(self, trace: Signals) -> Question:
-        self.check(trace.parameter)
+        self.check_parameters(trace.parameter)
         text, ratio = f"warp beyond {1e3 * self.clearance:g} mm", f"{self.heald}.warp_ratio"
         return self.asked(trace, "clear_shed", text, "warp_height", self.clearance, ratio)
 

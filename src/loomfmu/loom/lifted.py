@@ -6,7 +6,7 @@ from contextlib import suppress
 from itertools import chain
 from typing import Any
 
-from ..cosim.claims.claim import Wired
+from ..cosim.claims.movers import Wired
 from ..declaring.upstream import sources_of, upstream
 from ..errors import LoomfmuError, listed, shown
 from ..traces import Signals

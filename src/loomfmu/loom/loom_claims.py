@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 from ..cosim.claims.arguments import Edges, Flag, Name, Names, Quantity, Window, argument
-from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim, Wired
+from ..cosim.claims.claim import AT_LEAST, AT_MOST, LANDINGS, LENGTH, ONE, SPEED, VELOCITY, Claim
 from ..cosim.claims.judging import Form, Question, needs_shaft
+from ..cosim.claims.movers import Wired
 from ..errors import LoomfmuError
 from ..traces import Signals
 from ..traces.verdict import SHED_OPENING

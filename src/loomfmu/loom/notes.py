@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..cosim.scenes.graph import Wire
-from ..cosim.scenes.instances import Instance
-from ..cosim.scenes.keys import members, stem
+from ..cosim.scenes.instances import Instance, members, stem
 from ..errors import listed
 from . import standard_loom
 

@@ -9,8 +9,8 @@ from typing import Any
 from .. import units
 from ..cosim.scenes import scene as scenes
 from ..cosim.scenes.instance_tables import overridden
-from ..cosim.scenes.keys import replaced
 from ..cosim.scenes.scene import Scene
+from ..cosim.scenes.settings import replaced
 from ..errors import LoomfmuError
 from ..extras import need
 from ..files import Kind, check_target, digest, write_file

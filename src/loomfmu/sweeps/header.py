@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..cosim.importing.built import Flavour, check_flavour
-from ..cosim.planning.requested import checked_claims
+from ..cosim.reading import checked_claims
 from ..cosim.scenes import scene as scenes
-from ..cosim.scenes.keys import toml
 from ..cosim.scenes.notes import check_effect
 from ..cosim.scenes.scene import Scene
 from ..cosim.scenes.settings import text as text_in
+from ..cosim.scenes.settings import toml
 from ..cosim.ssp import read as ssp_read
 from ..errors import LoomfmuError, suggestion
 from ..files import text_of

@@ -9,9 +9,8 @@ from .. import units
 from ..cosim.importing.fmus import Port
 from ..cosim.scenes.instance_tables import overridden, unit_of
 from ..cosim.scenes.instances import Instance
-from ..cosim.scenes.keys import COARSE, TIMES
 from ..cosim.scenes.scene import Scene, check_free
-from ..cosim.scenes.settings import truth
+from ..cosim.scenes.settings import COARSE, TIMES, truth
 from ..errors import LoomfmuError, listed
 from ..machines import TAKERS, named
 from ..own.declared import FILES, ISOLATED, PARAMETER_SETS

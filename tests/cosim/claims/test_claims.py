@@ -19,7 +19,7 @@ from loomfmu.cosim.claims.arguments import Name, Quantity, argument
 from loomfmu.cosim.claims.claim import AT_MOST, Claim
 from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.claims.judging import Form, Question, Run
-from loomfmu.cosim.planning.requested import checked_claims
+from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures

@@ -9,7 +9,7 @@ import pytest
 from direct_loom import small, traced
 
 from loomfmu import LoomfmuError, units
-from loomfmu.cosim.planning.requested import checked_claims
+from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.run import run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.graph import Wire

@@ -1,6 +1,6 @@
 """What instances of a standard loom share is set once, and the warp hangs on the carrier."""
 
-from loomfmu.cosim.planning.requested import checked_claims
+from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.values import Values
 

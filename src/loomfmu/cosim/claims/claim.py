@@ -2,13 +2,14 @@
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple, Protocol, dataclass_transform
+from typing import ClassVar, NamedTuple, dataclass_transform
 
 from ...traces import Signals, Verdict
 from .arguments import Argument, Name, argument, argument_of
 from .judging import Form, Question, run_of
+from .movers import Wired
 
 AT_LEAST, AT_MOST = 1, -1
 
@@ -20,20 +21,6 @@ VELOCITY = ("m/s", "m/s")
 # What a claim needs of the window grid: all equal steps, steps that land where `landings` says, or nothing,
 # since its component finds what is judged on its own continuous curve.
 EVERY_STEP, LANDINGS, NOTHING = "every step", "landings", "nothing"
-
-
-class Wired(Protocol):
-    """The signals of a run, its wires, from input to output, and its FMUs; those of a scene, too."""
-
-    @property
-    def wires(self) -> Mapping[str, str]: ...
-
-    @property
-    def fmus(self) -> Mapping[str, str]: ...
-
-    def __contains__(self, signal: object) -> bool: ...
-
-    def __iter__(self) -> Iterator[str]: ...
 
 
 class Landings(NamedTuple):
@@ -88,7 +75,7 @@ class Claim(ABC):
         """The instances whose parameters it needs, beside those of its signals."""
         return [getattr(self, owner) for owner in self.reads]
 
-    def check(self, parameter: Callable[[str], float]) -> None:  # noqa: B027 - most kinds have no such limits
+    def check_parameters(self, parameter: Callable[[str], float]) -> None:  # noqa: B027 - most kinds have no such limits
         """Refuse what the parameters of its instances, NaN where unknown, rule out before the run."""
 
     @abstractmethod

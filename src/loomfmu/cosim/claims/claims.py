@@ -11,15 +11,81 @@ bound, and by no more than it may be off there; the note says so.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields
-from typing import Any
+from typing import Any, ClassVar
 
+from ... import units
 from ...errors import LoomfmuError, shown, suggestion
-from ...traces import Verdict
+from ...traces import Signals, Verdict
 from ..standard import standard
-from . import signal_claims
-from .claim import Claim
+from .arguments import Bound, Edges, Flag, Name, Window, argument
+from .claim import AT_LEAST, AT_MOST, LANDINGS, Claim
+from .judging import Form, Question, needs_shaft
+from .movers import Wired
 
-FILES = (signal_claims,)  # each kind of claim in them adds itself to the kinds
+# ---- claims on any signal: it stays on one side of a bound
+
+
+class Bounded(Claim, kind=False):
+    """A signal stays on one side of a bound: over the whole run, or in a window of shaft angles.
+
+    The bound is a quantity, or the name of a parameter of the run, such as "shaft.speed". With `at_samples`
+    the samples alone are judged; otherwise a claim that holds at all samples of a signal whose values between
+    them are not known is undecided.
+    """
+
+    signal: str = argument(Name())
+    bound: float | str = argument(Bound())
+    window: Window | None = argument(Edges("rad", "deg", usual=1.5), None)
+    at_samples: bool = argument(Flag(), False)
+
+    grid = LANDINGS
+    text: ClassVar[str]
+
+    def signals(self, scene: Wired) -> list[str]:
+        return [self.signal]
+
+    def parameter_owners(self) -> list[str]:
+        return [self.bound.partition(".")[0]] if isinstance(self.bound, str) else []
+
+    def question(self, trace: Signals) -> Question:
+        text, window = self.text + " at the samples" * self.at_samples, [0.0, 0.0, 0.0, 0.0]
+        if self.window:
+            needs_shaft(trace)
+            text += f" {self.window.words}"
+            window = [1.0, self.window.start, self.window.width, self.window.end]
+        a_speed = isinstance(self.bound, str) and trace.unit(self.signal) == "rad/s"
+        if isinstance(self.bound, str):
+            check_speed(self.bound, trace.parameter(self.bound), trace.unit(self.signal))
+        form = Form(text, self.signal, (trace.unit(self.signal), trace.display(self.signal)), self.sense)
+        numbers = [self.bound, float(self.at_samples), *window, float(a_speed)]
+        return Question("bounded", [form], [self.signal], numbers)
+
+    def extremes(self) -> list[tuple[str, float]]:
+        return [(self.signal, self.sense)]
+
+
+class Above(Bounded):
+    """A signal stays at or above a bound."""
+
+    text, sense = "lowest value", AT_LEAST
+
+
+class Below(Bounded):
+    """A signal stays at or below a bound."""
+
+    text, sense = "highest value", AT_MOST
+
+
+def check_speed(parameter: str, value: float, unit: str) -> None:
+    """Refuse a negative speed as a bound: signals that are limits of speed are never negative."""
+    if unit == "rad/s" and value < 0.0:
+        raise LoomfmuError(
+            f"claim: bound {parameter} = {units.show(value, 'rev/min')} is negative, but a limit of speed"
+            f' is positive; write the speed itself, such as bound = "{units.show(-value, "rev/min")}"'
+        )
+
+
+# ---- claims of a scene
 
 
 def kinds() -> Mapping[str, type[Claim]]:
@@ -72,6 +138,6 @@ def angles_in(table: Mapping[str, Any]) -> list[str]:
 
 def doubts(table: Mapping[str, Any]) -> Iterator[str]:
     """Numbers of a claim's table that were probably meant in another unit."""
-    for name, argument in kinds()[table["kind"]].declared().items():
+    for name, declared in kinds()[table["kind"]].declared().items():
         if name in table:
-            yield from argument.doubts(table[name], f"{place_of(table)}: {name}")
+            yield from declared.doubts(table[name], f"{place_of(table)}: {name}")

@@ -13,9 +13,10 @@ from ... import units
 from ...errors import LoomfmuError
 from ...traces import Signals, Verdict
 from .arguments import Name, Quantity, argument
-from .claim import Claim, Wired
+from .claim import Claim
+from .claims import Above, Below
 from .judging import Form, Question, needs_shaft, run_of
-from .signal_claims import Above, Below
+from .movers import Wired
 
 FORMS = "'highest {0}', 'lowest {0}', 'mean {0}' or '{0} at 90 deg'"
 _FORM = re.compile(r"(?:(highest|lowest|mean)\s+)?([^\s]+)(?:\s+at\s+(.+))?")

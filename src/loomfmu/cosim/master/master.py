@@ -21,8 +21,8 @@ from ..importing.pool import borrow, give_back
 from ..importing.process import Limits
 from ..importing.slave import NEEDS_TOOL, Ended, Slave
 from ..scenes.graph import step_order
-from ..scenes.keys import ITERATED
 from ..scenes.scene import Scene
+from ..scenes.settings import ITERATED
 from .constant_shaft import ConstantShaft
 from .endless import interruptible
 from .grid import Grid, Span, uniform

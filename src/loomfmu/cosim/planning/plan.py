@@ -15,8 +15,8 @@ from ..importing import fmus
 from ..importing.slave import Ended
 from ..master.grid import Grid, uniform
 from ..master.master import Integers, Interrupted, Master, Reals
-from ..scenes.keys import MAY_END
 from ..scenes.scene import Scene
+from ..scenes.settings import MAY_END
 from .pruning import Effective, Pruned, prune
 from .requested import Requested, beside_of, effective_wires, output_port, own_speeds
 

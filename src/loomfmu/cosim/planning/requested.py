@@ -1,22 +1,21 @@
-"""The signals that a run must give: those recorded and those that claims need, checked first."""
+"""What is asked of a scene: the signals that a run must give, and steps that show how instances move."""
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import cached_property, partial
 
-from ...declaring.variables import MOTION, TIME, Beside
+from ...components import COMPONENTS
+from ...declaring.variables import MOTION, TIME, Beside, Component
 from ...errors import LoomfmuError, suggestion
 from ..claims.claim import Claim
-from ..claims.claims import angles_in, doubts, place_of, read
-from ..claims.movers import movers_of
-from ..claims.signal_claims import Bounded, check_speed
+from ..claims.claims import place_of, read
+from ..claims.movers import movers_of, whole_turn
 from ..importing.fmus import Port
 from ..scenes.scene import Scene
-from ..scenes.wiring import left_out
 
 SHAFT_ANGLE = "shaft.angle"
-MOST = 5  # names that a warning lists
+EVENT = 4.0  # steps that show an event of a mechanism
+SHOWN = 9.0  # deg: the turn that shows any of them; with twice as much, claims on a shaft are undecided, too
 
 
 def output_port(scene: Scene, signal: str, where: str) -> Port:
@@ -70,6 +69,13 @@ def own_speeds(scene: Scene) -> frozenset[str]:
     return frozenset(name for name, each in scene.instances.items() if each.own_speed is not None)
 
 
+def parameter_of(scene: Scene, name: str) -> float:
+    """The value of a parameter, NaN where the scene does not know it."""
+    instance, _, variable = name.partition(".")
+    value = scene.instances[instance].effect(variable)
+    return math.nan if value is None else float(value)
+
+
 class Requested:
     """A scene and what is asked of it: its claims, read once, and the signals that a run must give for them.
 
@@ -105,7 +111,7 @@ class Requested:
 
     def parameter(self, signal: str) -> float:
         """The value of a parameter. Raises LoomfmuError where it has no effect."""
-        value = _parameter(self.scene, signal)
+        value = parameter_of(self.scene, signal)
         if math.isnan(value):
             raise LoomfmuError(f"{signal} has no effect")
         return value
@@ -192,72 +198,96 @@ def _unit(scene: Scene, where: str, signal: str) -> str:
     return output_port(scene, signal, where).unit
 
 
-def checked_claims(scene: Scene) -> Requested:
-    """A scene with a note on each number of a claim that was probably meant in another unit.
+class Movements:
+    """The movements of the instances of a scene, as far as its wires tell."""
 
-    Refuses, before the run, a claim that could not be judged after it.
-    """
-    requested = Requested(scene)
-    notes = [*scene.notes, *_unrecorded(scene)]
-    wired = {".".join(wire.sink) for wire in scene.wires}
-    known = {name: each.fmu.facts for name, each in scene.instances.items() if each.fmu.facts}
-    for table, claim in zip(scene.claims, requested.claims, strict=True):
-        where = place_of(table)
-        for angle in angles_in(table) if "shaft" not in scene.instances else ():
-            raise LoomfmuError(f"{where}: {angle} is a shaft angle, but the scene has no shaft")
-        for signal in claim.signals(requested):
-            output_port(scene, signal, where)
-            notes += [
-                f"{where}: {signal} leaves out {source}, because {sink} is not wired;"
-                f' set "{sink}" = "{source}" in [wires] and coupling = "iterated"'
-                for sink, source in left_out(known, wired, signal).items()
-            ]
-        if isinstance(claim, Bounded) and not isinstance(claim.bound, str):
-            port = output_port(scene, claim.signal, where)
-            notes.append(port.doubt(table["bound"], f"{where} of {claim.signal}: bound"))
-        check_bounds(scene, [claim])
-        notes += doubts(table)
-    requested.scene = replace(scene, notes=tuple(dict.fromkeys(note for note in notes if note)))
-    return requested
+    def __init__(self, requested: Requested):
+        self._instances, self._requested = requested.scene.instances, requested
+        self._angles: dict[str, tuple[str, ...]] = {}
 
+    def angles(self, name: str) -> tuple[str, ...]:
+        """The signals of the angles by which an instance moves; none if it turns by itself.
 
-def check_bounds(scene: Scene, claims: Iterable[Claim]) -> None:
-    """Refuse parameters that cannot bound the signal of a claim, or that rule it out."""
-    for claim in claims:
-        claim.check(partial(_parameter, scene))
-        if isinstance(claim, Bounded) and isinstance(claim.bound, str):
-            _check_parameter(scene, claim.bound, claim.signal)
+        What follows no shaft moves with the shafts that move what it follows, a mechanism of one's own with
+        all angles that it takes, too.
+        """
+        if name not in self._angles:
+            self._angles[name] = self._found(name)
+        return self._angles[name]
 
+    def _found(self, name: str) -> tuple[str, ...]:
+        instance, wires = self._instances[name], self._requested.wires
+        component, ports = instance.fmu.component, instance.fmu.ports.values()
+        given = [*instance.fmu.shaft_inputs[:1]]
+        if not given and component not in COMPONENTS.values():
+            given = [each.name for each in ports if each.causality == "input" and whole_turn(each.unit)]
+        if given:
+            taken = [wires[each] for each in (f"{name}.{variable}" for variable in given) if each in wires]
+        else:
+            others = [each.angle for each in movers_of([name], self._requested) if each.angle]
+            alone = instance.own_speed is not None
+            taken = others or [*(() if alone else self._main)]
+            taken = [each for each in taken if each.partition(".")[0] != name]
+        return tuple(dict.fromkeys(taken))
 
-def _parameter(scene: Scene, name: str) -> float:
-    """The value of a parameter, NaN where the scene does not know it."""
-    instance, _, variable = name.partition(".")
-    value = scene.instances[instance].effect(variable)
-    return math.nan if value is None else float(value)
+    @cached_property
+    def _main(self) -> tuple[str, ...]:
+        """The main shaft, if there is one."""
+        return (SHAFT_ANGLE,) if SHAFT_ANGLE in self._requested else ()
 
+    def may_pass_by(self, name: str) -> bool:
+        """Return whether steps may be too long to show how an instance moves, whatever the values."""
+        component = self._instances[name].fmu.component
+        if component is None:
+            return False
+        own = component.shortest_event.__func__, component.longest_step.__func__  # type: ignore[attr-defined]
+        usual = Component.shortest_event.__func__, Component.longest_step.__func__  # type: ignore[attr-defined]
+        return own != usual or component.longest_turn < math.inf or self._apart(name)[0] < math.inf
 
-def _unrecorded(scene: Scene) -> Iterator[str]:
-    """A warning for each FMU that has outputs, but none that can be recorded."""
-    for name, instance in scene.instances.items():
-        fmu = instance.fmu
-        if fmu.unsupported and not any(port.causality == "output" for port in fmu.ports.values()):
-            listed = ", ".join([*fmu.unsupported[:MOST], *["..."] * (len(fmu.unsupported) > MOST)])
-            yield f"{name}: nothing recorded; none of its outputs is a scalar number or a Boolean: {listed}"
+    def longest_step(self, scene: Scene, name: str, speed: float | None = None) -> tuple[float, str]:
+        """The longest step that shows how an instance moves [s], and why; 0 where none is known.
 
-
-def _check_parameter(scene: Scene, name: str, signal: str) -> None:
-    """A parameter that bounds a signal is one of the scene, in the signal's unit."""
-    instance, _, variable = name.partition(".")
-    ports = scene.instances[instance].fmu.ports if instance in scene.instances else {}
-    if variable not in ports or ports[variable].causality != "parameter":
-        known = [f"{instance}.{port.name}" for port in ports.values() if port.causality == "parameter"]
-        raise LoomfmuError(f"claim: bound = {name!r} is not a parameter{suggestion(name, known)}")
-    value = scene.instances[instance].effect(variable)
-    if value is None:
-        raise LoomfmuError(
-            f"claim: bound = {name!r} has no effect in this scene, as {instance} does not use it"
+        `scene` has the values; `speed` is the highest one of the angles by which it moves [rad/s], where a
+        run has shown that.
+        """
+        instance = scene.instances[name]
+        component = instance.fmu.component
+        if component is None:
+            return math.inf, ""
+        turn, event = component.shortest_event(instance.effect)
+        by_event = turn / EVENT, f"{event} of {name} takes {math.degrees(turn):.4g} deg"
+        limit = f"allows steps of at most {math.degrees(component.longest_turn):.4g} deg"
+        declared = (
+            component.longest_turn,
+            f"{name} {limit if component.longest_turn else 'declares no longest_turn'}",
         )
-    wanted, given = output_port(scene, signal, "claim").unit, ports[variable].unit
-    if given != wanted:
-        raise LoomfmuError(f"claim: bound {name} is in {given}, but {signal} is in {wanted}")
-    check_speed(name, float(value), wanted)
+        speeds = [each for each in (speed, self._mean_speed(scene, name)) if each is not None]
+        fastest = max(speeds, default=None)
+        turns = [by_event, declared] if fastest is None else [by_event, declared, self._apart(name)]
+        return min(component.longest_step(instance.effect), _taking(*min(turns), fastest))
+
+    def _apart(self, name: str) -> tuple[float, str]:
+        """The turn of a shaft that is not the main one, whose angle claims look at themselves."""
+        other = self._instances[name].fmu.shaft_inputs and self.angles(name) != (SHAFT_ANGLE,)
+        why = f"a sample of {name} is needed every {2.0 * SHOWN:g} deg"
+        return math.radians(SHOWN) if other else math.inf, why
+
+    def _mean_speed(self, scene: Scene, name: str, passed: tuple[str, ...] = ()) -> float | None:
+        """The mean speed of the shafts by which an instance moves [rad/s]; None where it is not known."""
+        angles = self.angles(name)
+        if not angles:
+            return scene.instances[name].own_speed
+        turning = {angle.partition(".")[0] for angle in angles} - {name, *passed}
+        speeds = [self._mean_speed(scene, each, (*passed, name)) for each in sorted(turning)]
+        if not scene.instances[name].fmu.shaft_inputs:  # it may turn by itself as well
+            speeds.append(scene.instances[name].own_speed)
+        return max((each for each in speeds if each is not None), default=None)
+
+
+def _taking(turn: float, why: str, speed: float | None) -> tuple[float, str]:
+    """The time that a turn of the shaft takes [s], 0 where its speed is not known, and why it matters."""
+    if math.isinf(turn) or speed == 0.0:  # it stands
+        return math.inf, why
+    if speed is None:
+        return 0.0, f"{why}, and the speed of the shaft is not known"
+    return turn / speed, why

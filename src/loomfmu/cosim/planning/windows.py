@@ -23,10 +23,9 @@ from ..claims.claim import EVERY_STEP, LANDINGS, Claim
 from ..master.grid import Grid, chosen, kinks, period, uniform
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
-from .movements import Movements
 from .plan import InMemory
 from .pruning import prune
-from .requested import Requested
+from .requested import Movements, Requested
 
 Floats = NDArray[np.float64]
 Scout = Callable[[Scene, Sequence[str], Grid], InMemory]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...errors import LoomfmuError, shown
 from ..importing.fmus import Port, Value
-from .keys import ITERATED, LAGGED
+from .settings import ITERATED, LAGGED
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-14  # of a number of revolutions

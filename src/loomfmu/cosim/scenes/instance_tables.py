@@ -14,8 +14,8 @@ from ..importing import fmus
 from ..importing.facts import facts_of
 from ..importing.fmus import Fmu
 from ..standard import standard
-from .instances import Instance
-from .keys import KEYS, TIMES, WHOLE, check_name, is_numbered, members, stem
+from .instances import Instance, check_name, is_numbered, members, stem
+from .settings import KEYS, TIMES, WHOLE
 
 WEAVE = "loom.weave"  # the frames depend on it, so it is set before there are instances
 

@@ -1,20 +1,22 @@
-"""An instance of a scene: its FMU, and the values it starts with."""
+"""An instance of a scene: its FMU, the values it starts with, and its name."""
 
-from collections.abc import Callable, Collection, Mapping
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from ... import machines
 from ...components.shaft_driven import ShaftDriven
 from ...declaring.variables import AT_STEP_END, Variable
-from ...errors import LoomfmuError, shown, suggestion
+from ...errors import LONGEST_NAME, LoomfmuError, shown, suggestion
 from ...own.declared import FILES, ISOLATED, PARAMETER_SETS
 from ..importing.facts import facts_of
 from ..importing.fmus import Fmu, Port, Value
 from ..standard import standard
-from .keys import KEYS, stem
-from .settings import truth
+from .settings import KEYS, truth
 
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+TAKEN = ("time", "shaft_angle")  # what a trace has beside its instances
 TYPES: dict[str, Callable[[Value], Value]] = {"Real": float, "Integer": int, "Boolean": bool}
 
 Copied = TypeVar("Copied")
@@ -199,3 +201,33 @@ def altered(original: Copied, **others: Any) -> Copied:
 
 def _can_be_set(port: Port) -> bool:
     return port.causality in ("parameter", "input")
+
+
+# ---- names
+
+
+def check_name(name: str) -> None:
+    """Refuse what cannot be the name of an instance."""
+    if not NAME.fullmatch(name):
+        raise LoomfmuError(f"instance name {shown(name)} must be letters, digits and _, with a letter first")
+    if len(name) > LONGEST_NAME:
+        raise LoomfmuError(f"instance name {shown(name)} has {len(name)} characters; at most {LONGEST_NAME}")
+    if name in TAKEN:
+        raise LoomfmuError(f"instance name {name!r} is taken: every trace has a {name} of its own")
+
+
+def stem(instance: str) -> str:
+    """An instance's name without its number: `heald_3` is a `heald`."""
+    return re.sub(r"_\d+$", "", instance)
+
+
+def is_numbered(instance: str) -> bool:
+    """Return whether an instance's name ends with a number, as `heald_3` does."""
+    return stem(instance) != instance
+
+
+def members(key: str, given: Iterable[str]) -> list[str]:
+    """The numbered instances that a name without number stands for."""
+    if key in given:
+        return []
+    return [name for name in given if stem(name) == key]

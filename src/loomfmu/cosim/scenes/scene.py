@@ -14,8 +14,7 @@ from . import notes
 from .graph import Drive, Wire, usual_coupling
 from .instance_tables import overridden, read
 from .instances import Instance
-from .keys import KEYS, LAGGED, UNIFORM, replaced, texts_in, toml
-from .settings import Times, settings_of
+from .settings import KEYS, LAGGED, UNIFORM, Times, replaced, settings_of, texts_in, toml
 from .wiring import drives_of, wires_of
 
 

@@ -11,8 +11,7 @@ from ..importing.facts import ALL, Facts, facts_of
 from ..importing.ports import mismatch
 from ..standard import standard
 from .graph import Drive, Wire, drive
-from .instances import Instance
-from .keys import is_numbered, members, stem
+from .instances import Instance, is_numbered, members, stem
 
 Known = Mapping[str, Facts]  # of the instances whose component is known, by their names
 

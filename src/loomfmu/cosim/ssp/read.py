@@ -19,9 +19,9 @@ from ..importing import fmus
 from ..importing.descriptions import plain_names
 from ..importing.fmus import Fmu
 from ..scenes.instance_tables import overridden, override, prevailing, unit_of
-from ..scenes.instances import Instance
-from ..scenes.keys import DEEPEST, TIMES, check_name, toml
+from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
+from ..scenes.settings import DEEPEST, TIMES, toml
 from .connections import wires_of
 from .package import Package
 from .values import Given, apply, bound
