@@ -6,7 +6,7 @@ import threading
 from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, get_args
@@ -56,12 +56,8 @@ class Pattern:
         self._measured = slice(len(self.claims), first)
         self._estimates = Estimates(requested, self._all, self._on, len(needed), places)
         self.judged = tuple(dict.fromkeys([*needed, *self._estimates.shown]))
+        self.values = Values(self.scene)
         self._steps = 0  # in a revolution, as they were chosen last
-
-    @cached_property
-    def values(self) -> Values:
-        """Other values for the scene."""
-        return Values(self.scene)
 
     def stepping(self, signals: Sequence[str]) -> Stepping:
         """Return the stepping of the scene with only the parts that these signals need."""

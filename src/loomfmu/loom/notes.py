@@ -32,15 +32,11 @@ def mirrored(instances: Mapping[str, Instance], wires: Iterable[Wire]) -> Iterab
 
 def _unlike(one: Instance, other: Instance) -> list[str]:
     """The parameters by which two rapiers move differently."""
-
-    def value(each: Instance, name: str) -> float | None:
-        return each.values.get(name, each.fmu.ports[name].start)
-
     shared = [name for name, port in one.fmu.ports.items() if port.causality == "parameter"]
     return [
         name
         for name in shared
-        if name in other.fmu.ports and name not in LOADS_OF_RAPIER and value(one, name) != value(other, name)
+        if name in other.fmu.ports and name not in LOADS_OF_RAPIER and one.start(name) != other.start(name)
     ]
 
 

@@ -48,16 +48,6 @@ class Plan:
         wires, kept = effective_wires(self.scene), self.pruned.scene.instances
         return {sink: source for sink, source in wires.items() if sink.partition(".")[0] in kept}
 
-    @property
-    def fmus(self) -> dict[str, str]:
-        """The name of each instance's FMU."""
-        return {name: instance.fmu.name for name, instance in self.pruned.scene.instances.items()}
-
-    @property
-    def own_speeds(self) -> frozenset[str]:
-        """The instances that have a speed at which they turn by themselves."""
-        return own_speeds(self.pruned.scene)
-
 
 class Stepping:
     """Runs a scene with only what some signals need, as often as wanted.
@@ -94,8 +84,10 @@ class Stepping:
         """Run a scene, which differs in values alone, and keep the signals in memory."""
         plan = self.plan(scene, grid)
         with self.stepped(plan) as master:
+            running = plan.pruned.scene
+            kinds = {name: instance.fmu.name for name, instance in running.instances.items()}
             recording = Recording(
-                scene.name, self.channels, plan.effective.value, plan.wires, plan.fmus, plan.own_speeds
+                scene.name, self.channels, plan.effective.value, plan.wires, kinds, own_speeds(running)
             )
             try:
                 record(master, recording, lambda _step: None, grid.steps + 1)

@@ -142,8 +142,7 @@ def _follows(scene: Scene, name: str, shaft: str) -> bool:
 
 
 def _constant(shaft: Instance) -> ConstantShaft:
-    values = {name: shaft.values.get(name, shaft.fmu.ports[name].start) for name in ("speed", "start_angle")}
-    return ConstantShaft(**{name: float(value or 0.0) for name, value in values.items()})
+    return ConstantShaft(*(float(shaft.start(name) or 0.0) for name in ("speed", "start_angle")))
 
 
 def _turning(instance: Instance, shaft: ConstantShaft | None) -> Instance:

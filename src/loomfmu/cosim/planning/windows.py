@@ -82,8 +82,9 @@ def window_grid(requested: Requested, scene: Scene, signals: Sequence[str], in_m
             longest, why = fine, f"{name} integrates"
     places, scouted = _scouted(requested, scene, signals, coarse, longest, in_memory)
     points = _merged(_equal(scene, places.most), places)
+    because = f" ({why})" if why else ""
     notes = (
-        f"steps: {period(scene) / places.most:.0f} per revolution{_because(why)}, plus steps that land"
+        f"steps: {period(scene) / places.most:.0f} per revolution{because}, plus steps that land"
         f" where the claims look; it took {scouted} FMU steps to find these",
     )
     return chosen(scene, points, notes, scouted)
@@ -111,10 +112,6 @@ def _scouted(
         for output in _latched(scene, signals):
             _extremes(places, recording, scene, output)
     return places, scouted
-
-
-def _because(why: str) -> str:
-    return f" ({why})" if why else ""
 
 
 def _unequal(needed: Scene) -> str:
@@ -243,7 +240,7 @@ def _land(places: Places, trace: Recording, scene: Scene, claim: Claim) -> None:
         elif trace.rate(signal) is None:  # it is judged at the samples
             everywhere = True
         else:
-            _turns(places, trace, signal, sign)
+            _minima(places, trace, signal, sign)
     if everywhere:
         places.most = min(places.most, period(scene) / scene.steps_per_period)
 
@@ -254,7 +251,7 @@ def _extremes(places: Places, trace: Recording, scene: Scene, signal: str) -> No
     followed, sign = _extremes_of(scene, instance)[variable]
     facts = scene.instances[instance].fmu.facts
     if facts is None or not facts.component.windows:
-        _deepest(places, trace, f"{instance}.{followed}", sign)
+        _minima(places, trace, f"{instance}.{followed}", sign, lowest_alone=True)
         return
     for low, high in _windows(trace, scene, instance):
         places.points += [low, high]
@@ -295,19 +292,18 @@ def _lowest_points(time: Floats, values: Floats) -> list[float]:
     return [float(turn) for turn in turns[curve(turns, 2) > 0.0]]
 
 
-def _deepest(places: Places, trace: Recording, signal: str, sign: float) -> None:
-    """The minima of `sign` times a signal that may be its lowest, and no ripple of a rounding."""
+def _minima(
+    places: Places, trace: Recording, signal: str, sign: float, *, lowest_alone: bool = False
+) -> None:
+    """Land on the minima of `sign` times a signal, each known to a share of the samples' distance there.
+
+    With `lowest_alone` on those that may be its lowest, and are no ripple of a rounding.
+    """
     values = sign * np.asarray(trace[signal], dtype=float)
     lowest, reach = float(values.min()), float(np.ptp(values))
     for time in _lowest_points(trace.time, values):
         place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
         here, about = values[place - 1 : place + 1], values[max(place - 2, 0) : place + 2]
-        if here.min() <= lowest + DEEP * reach and np.ptp(about) > RIPPLE * reach:
+        may_be_lowest = here.min() <= lowest + DEEP * reach and np.ptp(about) > RIPPLE * reach
+        if may_be_lowest or not lowest_alone:
             places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))
-
-
-def _turns(places: Places, trace: Recording, signal: str, sign: float) -> None:
-    """Add the minima of `sign` times a signal, each known to a share of the samples' distance there."""
-    for time in _lowest_points(trace.time, sign * trace[signal]):
-        place = int(np.clip(np.searchsorted(trace.time, time), 1, len(trace.time) - 1))
-        places.bracket(time, REACH * float(trace.time[place] - trace.time[place - 1]))

@@ -41,14 +41,9 @@ def _published(scene: Scene) -> Iterator[str]:
 
 def _default(instance: Instance, kind: str) -> str:
     """The one machine or head whose values an instance has that was given none; "" if there is none."""
-    fmu, values = instance.fmu, instance.values
-    if not fmu.ours or fmu.name not in machines.TAKERS[kind]:
+    if not instance.fmu.ours or instance.fmu.name not in machines.TAKERS[kind]:
         return ""
-    same = []
-    for name in machines.PUBLISHED[kind]:
-        published = machines.parameters(fmu.name, **{kind: name})
-        if all(value == values.get(key, fmu.ports[key].start) for key, value in published.items()):
-            same.append(name)
+    same = [name for name in machines.PUBLISHED[kind] if instance.has_published(kind, name)]
     return same[0] if len(same) == 1 else ""
 
 
@@ -71,8 +66,7 @@ def _weave(instances: Iterable[Instance]) -> str:
     ]
     if not frames:
         return ""
-    starts = [{name: port.start for name, port in frame.fmu.ports.items()} for frame in frames]
-    pegs = [standard().pegs(start | frame.values) for start, frame in zip(starts, frames, strict=True)]
+    pegs = [standard().pegs({name: frame.start(name) for name in frame.fmu.ports}) for frame in frames]
     text = "/".join(pegs)
     if len(text) > LONGEST_WEAVE:
         text = f"of {len(pegs)} frames and {max(map(len, pegs))} picks"
@@ -103,7 +97,7 @@ def _shown(scene: Scene, key: str, value: Any) -> str:
 def _quantity(instance: Instance, variable: str) -> str:
     """A value of an instance in the unit that people read it in."""
     port = instance.fmu.ports[variable]
-    value = instance.values.get(variable, port.start)
+    value = instance.start(variable)
     if port.kind == "Real" and port.display in units.UNITS:
         return units.show(float(value or 0.0), port.display)
     return str(value)

@@ -130,7 +130,16 @@ class Instance:
     def take(self, name: str, others: Mapping[str, "Instance"]) -> None:
         """Give an inherited parameter the value of the instance that it is taken from."""
         owner, parameter = self.inherited[name]
-        self.values[name] = others[owner].values.get(parameter, others[owner].fmu.ports[parameter].start or 0)
+        self.values[name] = others[owner].start(parameter) or 0
+
+    def start(self, name: str) -> Value | None:
+        """The value that one of its variables starts with, as it is set or by default."""
+        return self.values.get(name, self.fmu.ports[name].start)
+
+    def has_published(self, kind: str, name: str) -> bool:
+        """Return whether it has all values of a published machine or head, by this name."""
+        wanted = machines.parameters(self.fmu.name, **{kind: name})
+        return all(self.start(key) == value for key, value in wanted.items())
 
     def _declared(self) -> Mapping[str, Variable]:
         """The variables of our component; one that is not known here has those of its kind."""
@@ -147,12 +156,12 @@ class Instance:
         port = self.fmu.ports.get("speed")
         if port is None or port.causality == "output" or port.unit != "rad/s":
             return None
-        return abs(float(self.values.get("speed", port.start or 0.0)))
+        return abs(float(self.start("speed") or 0.0))
 
     def effect(self, name: str, fed: Collection[str] = ()) -> Value | None:
         """A parameter or an input at the start; None if it is fed, or has no effect."""
         switch, _wanted = self.switched_off(name, fed)
-        return None if switch else self._start(name, fed)
+        return None if switch else self._fed_start(name, fed)
 
     def switched_off(self, name: str, fed: Collection[str] = ()) -> tuple[str, str]:
         """The parameter because of whose value another one has no effect, and the value that it needs; no
@@ -166,7 +175,7 @@ class Instance:
 
     def _is_on(self, switch: str, fed: Collection[str], otherwise: bool) -> bool:
         """Return whether a switch is true, or not the first of its choices; `otherwise` if unknown."""
-        value = self._start(switch, fed)
+        value = self._fed_start(switch, fed)
         if value is None:
             return otherwise
         return value != 1 if self._declared()[switch].choices else bool(value)
@@ -181,11 +190,11 @@ class Instance:
         declared = self._declared().values()
         return [(v.when, v.name) for v in declared if v.causality == "input" and v.when and v.source]
 
-    def _start(self, name: str, fed: Collection[str]) -> Value | None:
+    def _fed_start(self, name: str, fed: Collection[str]) -> Value | None:
         port = self.fmu.ports.get(name)
         if port is None or not _can_be_set(port) or name in fed:
             return None
-        start = self.values.get(name, port.start)
+        start = self.start(name)
         return None if start is None else TYPES[port.kind](start)
 
 

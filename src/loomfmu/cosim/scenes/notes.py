@@ -63,19 +63,15 @@ def _mixture(kind: str, fitted: list[Instance]) -> str:
     """A warning where some instances do not have the same machine or head; none where they do."""
     names = dict.fromkeys(each.published[kind] for each in fitted if kind in each.published)
     differing = [
-        each for each in fitted if kind not in each.published and not all(_is(each, kind, n) for n in names)
+        each
+        for each in fitted
+        if kind not in each.published and not all(each.has_published(kind, name) for name in names)
     ]
     if len(names) < 2 and not differing:
         return ""
     shown = [f"{each.name} has {each.published[kind]}" for each in fitted if kind in each.published]
     shown += [f"{each.name} has its own values" for each in differing]
     return f"the loom mixes {kind}s: {listed(shown)}; {kind} = NAME sets all of them"
-
-
-def _is(each: Instance, kind: str, name: str) -> bool:
-    """Return whether an instance has a published machine's or head's values without naming it."""
-    wanted = machines.parameters(each.fmu.name, **{kind: name})
-    return all(each.values.get(key, each.fmu.ports[key].start) == value for key, value in wanted.items())
 
 
 def _loads(instances: dict[str, Instance], wires: list[Wire]) -> Iterable[str]:

@@ -232,7 +232,7 @@ def _speed(instances: Mapping[str, Instance]) -> float | None:
     shaft = instances.get("shaft")
     if shaft is None or "speed" not in shaft.fmu.ports:
         return None
-    return float(shaft.values.get("speed", shaft.fmu.ports["speed"].start or 0.0))
+    return float(shaft.start("speed") or 0.0)
 
 
 def _check_single(scene: Scene) -> None:

@@ -202,9 +202,7 @@ def _fed_back(known: Known, taken: Collection[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for name, v in _caused(known):
         if f"{name}.{v.source_for}" in taken:
-            usual = _usual_sources(name, v)
-            there = [source for source in usual if source.partition(".")[0] in known]
-            found |= {f"{name}.{v.name}": source for source in there[:1]}
+            found |= _usual_wire(name, v, known)
     return found
 
 
@@ -221,8 +219,7 @@ def _fed_along(known: Known, sources: Mapping[str, Any]) -> dict[str, str]:
         outputs = known[name].outputs.values()
         reached = [f"{name}.{o.name}" for o in outputs if o.depends is None or v.name in o.depends]
         if owner in known and not taken.isdisjoint(reached):
-            there = [source for source in _usual_sources(name, v) if source.partition(".")[0] == owner]
-            found |= {f"{name}.{v.name}": source for source in there[:1]}
+            found |= _usual_wire(name, v, [owner])
     return found
 
 
@@ -235,11 +232,12 @@ def left_out(known: Known, wired: Collection[str], signal: str) -> dict[str, str
     depends = variable.depends if variable else ()
     found: dict[str, str] = {}
     for v in known[owner].caused:
-        sink = f"{owner}.{v.name}"
-        if sink not in wired and v.source_for in outputs and (depends is None or v.name in depends):
-            there = [source for source in _usual_sources(owner, v) if source.partition(".")[0] in known]
-            if there:
-                found[sink] = there[0]
+        if (
+            f"{owner}.{v.name}" not in wired
+            and v.source_for in outputs
+            and (depends is None or v.name in depends)
+        ):
+            found |= _usual_wire(owner, v, known)
     return found
 
 
@@ -248,9 +246,11 @@ def _caused(known: Known) -> list[tuple[str, Variable]]:
     return [(name, v) for name, facts in known.items() for v in facts.caused]
 
 
-def _usual_sources(name: str, variable: Variable) -> list[str]:
-    """Return the outputs that an input is usually wired to, in order of preference."""
-    return (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
+def _usual_wire(name: str, variable: Variable, owners: Container[str]) -> dict[str, str]:
+    """Return the wire to an input from the first of its usual sources that one of these instances has."""
+    usual = (variable.source or "").replace("_#", name.removeprefix(stem(name))).split("|")
+    there = [source for source in usual if source.partition(".")[0] in owners]
+    return {f"{name}.{variable.name}": source for source in there[:1]}
 
 
 def gathered(name: str, known: Known, given: Mapping[str, Any]) -> dict[str, str]:
