@@ -1,15 +1,14 @@
 """Claims on signals that are known only at the samples, whose extremes their component holds."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from drawn_runs import drawn, turning
+from scene_texts import LOOM, claim, verdicts
 
-from loomfmu import Trace, evaluate, judge
+from loomfmu import judge
 from loomfmu.cosim.claims.claims import read
-from loomfmu.cosim.scenes.scene import parse
 from loomfmu.declaring.variables import Beside
-from loomfmu.traces import Channel, TraceWriter
+from loomfmu.traces import Recording
 
 TIME = np.linspace(0.0, 1.0, 21)  # one turn in 1 s, a sample at every 18 deg
 TURN = 2.0 * np.pi
@@ -20,42 +19,34 @@ def wave(time: np.ndarray, peak: float, depth: float) -> np.ndarray:
     return 1.0 - depth * np.exp(-(((time - peak) / 0.01) ** 2))
 
 
-def recorded(directory: Path, *dips: tuple[float, float], latch: bool = True, error: float = 0.0) -> Trace:
-    """A trace of `a.x`, which is 1 but for dips; what `a.low` holds is exact."""
+def recorded(*dips: tuple[float, float], latch: bool = True, error: float = 0.0) -> Recording:
+    """A run of `a.x`, which is 1 but for dips; what `a.low` holds is exact."""
     fine = np.linspace(0.0, 1.0, 20001)
     curve = np.min([np.ones(len(fine)), *(wave(fine, *dip) for dip in dips)], axis=0)
-    x, low = curve[::1000], np.minimum.accumulate(curve)[::1000]
-    beside = Beside(lowest="low" if latch else None, error="off" if error else None)
-    channels = [
-        Channel("a", "x", "m", "mm", "X", 0, beside=beside),
-        Channel("a", "low", "m", "mm", "Lowest", 1),
-        Channel("a", "off", "m", "mm", "Error", 2),
-        Channel("shaft", "angle", "rad", "deg", "Angle", 3, rate="velocity"),
-        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 4),
-    ]
-    off = np.where(TIME < 0.5, 0.1 * error, error)
-    reals = np.stack([x, low, off, TURN * TIME, np.full(len(TIME), TURN)], axis=1)
-    writer = TraceWriter(directory / "held.h5", {"title": "held", "software": "test"}, channels, {})
-    writer.append(TIME, TURN * TIME, reals, np.empty((len(TIME), 0), dtype="i4"))
-    writer.complete([])
-    return Trace(directory / "held.h5")
+    beside = {"beside": Beside(lowest="low" if latch else None, error="off" if error else None)}
+    signals = {
+        "a.x": ("m", curve[::1000], beside),
+        "a.low": ("m", np.minimum.accumulate(curve)[::1000]),
+        "a.off": ("m", np.where(TIME < 0.5, 0.1 * error, error)),
+    }
+    return drawn(TIME, {**signals, **turning(TURN * TIME, TURN)})
 
 
-def judged(trace: Trace, window: list[str] | None = None, bound: float = 0.2) -> tuple[float, str, str]:
+def judged(trace: Recording, window: list[str] | None = None, bound: float = 0.2) -> tuple[float, str, str]:
     """Worst value of `a.x`, whether that is above a bound, and the note."""
     verdict = judge(trace, kind="above", signal="a.x", bound=bound, window=window)
     return verdict.worst, verdict.word, verdict.note
 
 
-def left(trace: Trace, window: list[str] | None = None) -> float:
+def left(trace: Recording, window: list[str] | None = None) -> float:
     """How far `a.x` may be off whatever the steps."""
     table = {"kind": "above", "signal": "a.x", "bound": 0.2} | ({"window": window} if window else {})
     claim = read(table, trace.unit)
     return claim.left_by_model(trace, claim.judge(trace))
 
 
-def test_what_is_held_decides_between_the_samples(tmp_path: Path) -> None:
-    trace = recorded(tmp_path, (0.375, 0.9))
+def test_what_is_held_decides_between_the_samples() -> None:
+    trace = recorded((0.375, 0.9))
     worst, word, note = judged(trace)
     assert worst == pytest.approx(0.1, abs=1e-6)  # the finest samples miss the bottom by that
     assert word == "FAILS"
@@ -64,8 +55,8 @@ def test_what_is_held_decides_between_the_samples(tmp_path: Path) -> None:
     assert 0.35 <= judge(trace, kind="above", signal="a.x", bound=0.2).time <= 0.4
 
 
-def test_without_it_only_the_samples_are_known(tmp_path: Path) -> None:
-    worst, word, note = judged(recorded(tmp_path, (0.375, 0.9), latch=False))
+def test_without_it_only_the_samples_are_known() -> None:
+    worst, word, note = judged(recorded((0.375, 0.9), latch=False))
     assert worst > 0.99
     assert word == "undecided"  # it held, with an error of 1e-9
     assert note.startswith("a.x is known only at the samples; set at_samples = true")
@@ -82,10 +73,8 @@ def test_without_it_only_the_samples_are_known(tmp_path: Path) -> None:
         (["300 deg", "360 deg"], 1.0, 0.1),
     ],
 )
-def test_in_a_window_what_is_held_bounds_the_signal(
-    tmp_path: Path, window: list[str], worst: float, possible: float
-) -> None:
-    trace = recorded(tmp_path, (0.375, 0.5), (0.825, 0.9))
+def test_in_a_window_what_is_held_bounds_the_signal(window: list[str], worst: float, possible: float) -> None:
+    trace = recorded((0.375, 0.5), (0.825, 0.9))
     near = 2e-3  # 0.9 exp(-2.5^2) of a dip reaches the samples about it
     assert judged(trace, window)[0] == pytest.approx(worst, abs=near)
     assert judged(trace, window, possible - near)[1] == "holds"
@@ -96,8 +85,8 @@ def test_in_a_window_what_is_held_bounds_the_signal(
         assert ("a.low was reached elsewhere" in note) == (worst == 1.0)
 
 
-def test_what_a_signal_may_be_off_by_is_stated_beside_it(tmp_path: Path) -> None:
-    trace = recorded(tmp_path, (0.3, 0.5), error=0.01)
+def test_what_a_signal_may_be_off_by_is_stated_beside_it() -> None:
+    trace = recorded((0.3, 0.5), error=0.01)
     assert trace.error("a.x") == "a.off"
     assert trace.error("a.low") is None
     assert left(trace, ["0 deg", "140 deg"]) == pytest.approx(0.001)
@@ -105,20 +94,16 @@ def test_what_a_signal_may_be_off_by_is_stated_beside_it(tmp_path: Path) -> None
     assert left(trace) == pytest.approx(0.001)
 
 
-def test_where_it_is_as_near_to_the_worst_value_the_larger_error_counts(tmp_path: Path) -> None:
-    trace = recorded(tmp_path, (0.3, 0.5), (0.8, 0.495), error=0.01)
+def test_where_it_is_as_near_to_the_worst_value_the_larger_error_counts() -> None:
+    trace = recorded((0.3, 0.5), (0.8, 0.495), error=0.01)
     assert judged(trace)[0] == pytest.approx(0.5)
     assert left(trace) == pytest.approx(0.01)
 
 
 def test_an_extreme_that_equal_samples_pass_is_the_one_that_is_held():
     """All samples of the margin were 1, and it held with an error of 1e-9 while the belt was at 0.2256."""
-    text = (
-        "[loom]\nmachine = 'WL680-3600'\nhead = 'G6300 left'\n[shaft]\nspeed = '600 rpm'\n"
-        "start_angle = '241 deg'\n[[claims]]\nkind = 'above'\nsignal = 'belt.margin'\nbound = 0.5\n"
-        "[[claims]]\nkind = 'lowest_margin'\nbound = 0.5\n"
-    )
-    values = {"revolutions": 0.5, "steps_per_revolution": 26}
-    sampled, held = evaluate(parse(text, "part of a stroke", values)).claims
+    both = claim("above", signal="belt.margin", bound=0.5), claim("lowest_margin", bound=0.5)
+    part = {"shaft__start_angle": "241 deg", "revolutions": 0.5, "steps_per_revolution": 26}
+    sampled, held = verdicts(LOOM, *both, shaft__speed="600 rpm", **part)
     assert sampled.worst == held.worst == pytest.approx(0.2254, abs=1e-3)
     assert not sampled.holds

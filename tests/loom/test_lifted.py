@@ -4,47 +4,28 @@ import re
 
 import numpy as np
 import pytest
+from drawn_runs import drawn
+from scene_texts import LOOM, claim, loom, parsed, table, verdicts, wires
 
 from loomfmu import LoomfmuError, evaluate, judge, prepare
-from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.loom.lifted import lift_of
 from loomfmu.loom.standard_loom import pattern
-from loomfmu.traces import Channel, Recording
 
-LOOM = """
-revolutions = 4
-steps_per_revolution = 360
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10"
-dampers = true
-warps = true
-[shaft]
-speed = "250 rev/min"
-"""
-ROOM = '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "1 mm"\n'
-DWELL = '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "40 deg"\n'
-AT = '[[claims]]\nkind = "dwell_contains"\nheald = "heald_1"\nangles = ["180 deg"]\n'
+DAMPED = loom('weave = "10"\ndampers = true\nwarps = true\n', '[shaft]\nspeed = "250 rev/min"\n')
+DAMPED = "revolutions = 4\nsteps_per_revolution = 360\n" + DAMPED
+ROOM = claim("rapier_in_open_shed", head_height="1 mm")
+DWELL = claim("dwell", heald="heald_1", at_least="40 deg")
+AT = claim("dwell_contains", heald="heald_1", angles=["180 deg"])
 
 
-NAMED = """
-revolutions = 2
-steps_per_revolution = 90
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-[dobby]
-[{0}]
-component = "HealdFrame"
-pattern = "10"
-[{1}]
-component = "HealdDamper"
-[wires]
-"{1}.lift" = "{0}.lift"
-"{1}.velocity" = "{0}.velocity"
-"{1}.acceleration" = "{0}.acceleration"
-"""
+def named(frame: str, damper: str, *claims: str) -> Scene:
+    """A loom with a frame and its damper under these names."""
+    instances = table(frame, component="HealdFrame", pattern="10") + table(damper, component="HealdDamper")
+    lift = wires(**{f"{damper}__{each}": f"{frame}.{each}" for each in ("lift", "velocity", "acceleration")})
+    return parsed(
+        LOOM, "[dobby]\n", instances, "[wires]\n", lift, *claims, revolutions=2, steps_per_revolution=90
+    )
 
 
 class Run(list[str]):
@@ -72,8 +53,8 @@ def test_verdicts_do_not_hang_on_names(names: tuple[str, str]) -> None:
     """A frame was judged by its own lift unless its damper had its number."""
 
     def judged(*called: str) -> list[tuple[str, str, float, str]]:
-        claims = NAMED.format(*called) + (ROOM + DWELL + AT).replace("heald_1", called[0])
-        found = evaluate(scenes.parse(claims), errors="none").claims
+        claims = (ROOM + DWELL + AT).replace("heald_1", called[0])
+        found = evaluate(named(*called, claims), errors="none").claims
         plain = [each.signal.replace(called[1], "damper_1") for each in found]
         return [(each.word, signal, each.worst, each.note) for each, signal in zip(found, plain, strict=True)]
 
@@ -84,8 +65,8 @@ def test_verdicts_do_not_hang_on_names(names: tuple[str, str]) -> None:
 
 @pytest.mark.usefixtures("fmu_cache")
 def test_a_carrier_that_is_not_recorded_is_not_left_out() -> None:
-    peak = '[[claims]]\nkind = "peak_load"\ndamper = "swing"\nat_most = "1000 kN"\n'
-    trace = evaluate(scenes.parse(NAMED.format("left", "swing") + peak), errors="none").trace
+    peak = claim("peak_load", damper="swing", at_most="1000 kN")
+    trace = evaluate(named("left", "swing", peak), errors="none").trace
     with pytest.raises(LoomfmuError, match=r"signal .swing\.carrier_lift. is not recorded"):
         judge(trace, kind="dwell", heald="left", at_least="1 deg")
 
@@ -93,7 +74,7 @@ def test_a_carrier_that_is_not_recorded_is_not_left_out() -> None:
 @pytest.mark.usefixtures("fmu_cache")
 def test_a_run_that_does_not_say_which_damper_is_in_a_frame_is_not_judged() -> None:
     """Traces of older versions have no wires."""
-    trace = evaluate(scenes.parse(NAMED.format("left", "swing") + ROOM), errors="none").trace
+    trace = evaluate(named("left", "swing", ROOM), errors="none").trace
     dwell = {"kind": "dwell", "heald": "left", "at_least": "1 deg"}
     trace._wires = {}
     with pytest.raises(LoomfmuError, match=r"^the run does not say which damper is in left; set lifted_by$"):
@@ -102,11 +83,9 @@ def test_a_run_that_does_not_say_which_damper_is_in_a_frame_is_not_judged() -> N
 
 
 @pytest.mark.usefixtures("fmu_cache")
-def test_both_are_judged_and_the_carrier_decides(tmp_path) -> None:
-    path = tmp_path / "loom.toml"
+def test_both_are_judged_and_the_carrier_decides() -> None:
     frame = 'lifted_by = "frame"\n'
-    path.write_text(LOOM + ROOM + ROOM + frame + DWELL + DWELL + frame + AT + AT + frame)
-    result = evaluate(path)
+    result = evaluate(parsed(DAMPED, *(part for each in (ROOM, DWELL, AT) for part in (each, each + frame))))
     for carrier, alone in zip(result.claims[::2], result.claims[1::2], strict=True):
         assert "damper_1.carrier_lift" in carrier.signal
         assert "heald_1" in alone.signal
@@ -129,60 +108,43 @@ def test_both_are_judged_and_the_carrier_decides(tmp_path) -> None:
 
 @pytest.mark.usefixtures("fmu_cache")
 @pytest.mark.parametrize(("clearance", "reached"), [("6.65 mm", True), ("6.7 mm", False), ("7.4 mm", False)])
-def test_an_end_that_the_carrier_never_reaches_is_missed_there(tmp_path, clearance, reached) -> None:
+def test_an_end_that_the_carrier_never_reaches_is_missed_there(clearance, reached) -> None:
     """An unequal shed holds the carrier 8.94 mm below the upper end, where 8.80 mm are asked for, or less."""
-    path = tmp_path / "loom.toml"
-    path.write_text(f"""
-revolutions = 6
-steps_per_revolution = 360
-[loom]
-machine = "WL680-3600"
-weave = "10/01"
-dampers = true
-warps = true
-[shaft]
-speed = "150 rev/min"
-[warp]
-shed_offset = "15.4 mm"
-[[claims]]
-kind = "clear_shed"
-heald = "heald_1"
-clearance = "{clearance}"
-at_least = "5 deg"
-""")
-    (shed,) = evaluate(path).claims
+    (shed,) = verdicts(
+        '[loom]\nmachine = "WL680-3600"\nweave = "10/01"\ndampers = true\nwarps = true\n',
+        claim("clear_shed", heald="heald_1", clearance=clearance, at_least="5 deg"),
+        revolutions=6,
+        steps_per_revolution=360,
+        shaft__speed="150 rev/min",
+        warp__shed_offset="15.4 mm",
+    )
     assert bool(shed) == reached == (shed.worst > 0.0)
     if not reached:
         assert shed.note.startswith("springs and warp keep the carrier 8.94 mm or more from the upper end")
 
 
 @pytest.mark.usefixtures("fmu_cache")
-def test_no_energy_is_lost_where_carriers_and_warp_load_a_driven_shaft(tmp_path) -> None:
-    path = tmp_path / "driven.toml"
-    loom = LOOM.replace("revolutions = 4", 'revolutions = 1\ncoupling = "iterated"')
-    loom = loom.replace("[shaft]", '[shaft]\ncomponent = "DrivenShaft"\ninertia = "5 kg.m2"')
-    path.write_text(loom + '[[claims]]\nkind = "energy_balance"\n')
-    (balance,) = evaluate(path).claims
+def test_no_energy_is_lost_where_carriers_and_warp_load_a_driven_shaft() -> None:
+    driven = DAMPED + 'component = "DrivenShaft"\ninertia = "5 kg.m2"\n' + claim("energy_balance")
+    (balance,) = verdicts(driven, revolutions=1, coupling="iterated")
     assert balance, balance
 
 
 @pytest.mark.usefixtures("fmu_cache")
 @pytest.mark.parametrize(
-    ("claim", "named"),
+    ("claim", "said"),
     [
         (ROOM + 'lifted_by = "carrier"\n', "lifted_by = 'carrier' must be \"frame\" or be left out; then"),
         (ROOM + 'lifted_by = "damper_1"\n', "lifted_by = 'damper_1' must be \"frame\" or be left out; then"),
         (
-            '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "80 deg"\nlifted_by = "carrier"\n',
+            DWELL + 'lifted_by = "carrier"\n',
             "lifted_by = 'carrier' must be \"frame\", the name of a damper such as damper_1, or be left out;",
         ),
     ],
 )
-def test_an_unknown_choice_is_rejected_before_the_run(claim: str, named: str, tmp_path) -> None:
-    path = tmp_path / "loom.toml"
-    path.write_text(LOOM + claim)
-    with pytest.raises(LoomfmuError, match=re.escape(named)):
-        prepare(path)
+def test_an_unknown_choice_is_rejected_before_the_run(claim: str, said: str) -> None:
+    with pytest.raises(LoomfmuError, match=re.escape(said)):
+        prepare(parsed(DAMPED, claim))
 
 
 @pytest.mark.parametrize(
@@ -198,11 +160,10 @@ def test_an_unknown_choice_is_rejected_before_the_run(claim: str, named: str, tm
 )
 def test_the_weave_repeats_where_all_frames_that_a_claim_depends_on_do(weave: list[str], repeat: int) -> None:
     frames = {f"h_{number}": pattern(pegs, "") for number, pegs in enumerate(weave)}
-    channels = [Channel("a", "x", "m", "m", "", 0), Channel("shaft", "angle", "rad", "deg", "", 1)]
     wires = {f"a.u_{number}": f"h_{number}.lift" for number in range(len(weave))}
-    trace = Recording("one", channels, lambda frame, name: frames.get(frame, {}).get(name), wires)
     angle = np.linspace(0.0, 3.0 * np.pi, 50)
-    trace.append(angle, angle, np.stack([0.0 * angle, angle], axis=1), np.zeros((50, 0), np.int32))
+    signals = {"a.x": ("m", 0.0 * angle), "shaft.angle": ("rad", angle)}
+    trace = drawn(angle, signals, lambda frame, name: frames.get(frame, {}).get(name), wires)
     found = judge(trace, kind="above", signal="a.x", bound=-1.0, at_samples=True)
     why = f"and the weave repeats after {repeat}; set revolutions = {repeat} or more"
     assert found.note == f"the shaft turns by only 1.5 revolutions, {why}"

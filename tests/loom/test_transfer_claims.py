@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from drawn_runs import drawn, turning
 
 import loomfmu
 from loomfmu import LoomfmuError, Verdict
@@ -11,35 +12,27 @@ from loomfmu.components.weft_insertion import WeftInsertion
 from loomfmu.components.weft_transfer import WeftTransfer
 from loomfmu.cosim.claims.claims import read
 from loomfmu.cosim.claims.judging import Run
-from loomfmu.traces import Channel, Recording
+from loomfmu.traces import Recording
 
 TURN = 2.0 * math.pi
 SPEED, STROKE, DEEPEST, NEEDED = 60.0, 2.1, 0.1, 0.04
 WINDOW = ["170 deg", "190 deg"]
-UNITS = {"overlap": "m", "closing_velocity": "m/s", "closing_acceleration": "m/s2"}
 
 
 def met(late: float = 0.0, turns: float = 2.0, start: float = 0.0, steps: int = 360) -> Recording:
     """Overlap of two equal harmonic heads of that stroke, greatest `late` after half a turn."""
-    rates = dict(zip(UNITS, [*list(UNITS)[1:], None], strict=True))
-    channels = [
-        Channel("transfer", name, unit, unit, name, place, rate=rates[name])
-        for place, (name, unit) in enumerate(UNITS.items())
-    ]
-    channels += [
-        Channel("shaft", "angle", "rad", "deg", "Angle", 3, rate="velocity"),
-        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 4),
-    ]
-    trace = Recording("met", channels, lambda owner, name: NEEDED if name == "needed_overlap" else None)
     angle = start + np.linspace(0.0, TURN * turns, round(steps * turns) + 1)
     phase = angle - late
-    motion = [-np.cos(phase), SPEED * np.sin(phase), SPEED**2 * np.cos(phase)]
-    reals = [STROKE * each for each in motion]
-    reals[0] += DEEPEST - STROKE
-    turning = [angle, np.full(len(angle), SPEED)]
-    rows = np.stack([*reals, *turning], axis=1)
-    trace.append((angle - start) / SPEED, angle, rows, np.zeros((len(angle), 0), dtype="i4"))
-    return trace
+    motion = {
+        "overlap": ("m", DEEPEST - STROKE * (1.0 + np.cos(phase)), {"rate": "closing_velocity"}),
+        "closing_velocity": ("m/s", STROKE * SPEED * np.sin(phase), {"rate": "closing_acceleration"}),
+        "closing_acceleration": ("m/s2", STROKE * SPEED**2 * np.cos(phase)),
+    }
+    signals = {f"transfer.{name}": each for name, each in motion.items()}
+    needed = {"needed_overlap": NEEDED}
+    return drawn(
+        (angle - start) / SPEED, {**signals, **turning(angle, SPEED)}, lambda _, name: needed.get(name)
+    )
 
 
 def judged(trace: Recording, kind: str, **arguments: object) -> Verdict:
@@ -119,14 +112,9 @@ def test_the_ends_of_the_run_on_an_edge_of_the_window_are_counted_once(begin: fl
 
 
 def test_a_shaft_that_comes_back_to_an_angle_is_there_twice() -> None:
-    channels = [
-        Channel("shaft", "angle", "rad", "deg", "Angle", 0, rate="velocity"),
-        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 1),
-    ]
-    trace = Recording("back", channels, lambda owner, name: None)
     time = np.linspace(0.0, 1.0, 101)
-    rows = np.stack([np.sin(1.5 * math.pi * time), 1.5 * math.pi * np.cos(1.5 * math.pi * time)], axis=1)
-    trace.append(time, rows[:, 0], rows, np.zeros((101, 0), dtype="i4"))
+    swing = 1.5 * math.pi * time
+    trace = drawn(time, turning(np.sin(swing), 1.5 * math.pi * np.cos(swing)))
     # from 0 to 1 rad, back to 0 and on to -1; begins at 0
     assert Run(trace).stands_at(0.0) == pytest.approx([0.0, 2.0 / 3.0], abs=1e-9)
 

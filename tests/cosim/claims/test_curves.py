@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from drawn_runs import drawn, turning
 from numpy.polynomial import polynomial
 
 from loomfmu import judge
 from loomfmu.cosim.claims.judging import ROOM, Question, Run
-from loomfmu.traces import Channel, Recording
+from loomfmu.traces import Recording
 
 RANDOM = np.random.default_rng(5)
 TURN = 2.0 * np.pi
@@ -14,20 +15,12 @@ TURN = 2.0 * np.pi
 
 def recorded(time: np.ndarray, samples: np.ndarray, rates: int = 2) -> Recording:
     """A recording of `a.x`, of so many of its rates, and of a shaft that turns once in 1 s."""
-    named = ("v", "w", None)[:rates] + (None,) * (3 - rates)
-    channels = [
-        Channel("a", name, "m", "m", "", column, rate=rate)
-        for column, (name, rate) in enumerate(zip("xvw", named, strict=True))
-    ]
-    channels += [
-        Channel("shaft", "angle", "rad", "deg", "", 3, rate="velocity"),
-        Channel("shaft", "velocity", "rad/s", "rev/min", "", 4),
-    ]
-    recording = Recording("samples", channels, lambda _instance, _name: None)
-    turning = np.stack([TURN * time, np.full(len(time), TURN)], axis=1)
-    none = np.zeros((len(time), 0), np.int32)
-    recording.append(time, TURN * time, np.concatenate([samples, turning], axis=1), none)
-    return recording
+    named = dict(zip("xvw", [*("v", "w")[:rates], *[None] * 3], strict=False))
+    motion = {
+        f"a.{name}": ("m", samples[:, column], {"rate": rate})
+        for column, (name, rate) in enumerate(named.items())
+    }
+    return drawn(time, {**motion, **turning(TURN * time, TURN)})
 
 
 def noise(size: int, rates: int) -> Recording:

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from drawn_runs import drawn
 
 from loomfmu import LoomfmuError
 from loomfmu.cosim.claims.measures import measure, signal_in
-from loomfmu.traces.signals import Channel, Recording
+from loomfmu.traces import Recording
 
 TURN = 2.0 * math.pi
 
@@ -17,15 +18,13 @@ def swing() -> Recording:
     time = np.linspace(0.0, 2.0, 81)
     angle = TURN * time
     value, rate = 3.0 * np.sin(angle) + time, 3.0 * TURN * np.cos(angle) + 1.0
-    names = {"shaft.angle": "rad", "a.value": "m", "a.rate": "m/s", "a.count": "1"}
-    channels = [
-        Channel(*name.split("."), unit, unit, "", place, rate="rate" if name == "a.value" else None)
-        for place, (name, unit) in enumerate(names.items())
-    ]
-    found = Recording("swing", channels, lambda _instance, _name: None)
-    reals = np.stack([angle, value, rate, np.floor(time)], axis=1)
-    found.append(time, angle, reals, np.zeros((len(time), 0), np.int32))
-    return found
+    signals = {
+        "shaft.angle": ("rad", angle),
+        "a.value": ("m", value, {"rate": "rate"}),
+        "a.rate": ("m/s", rate),
+        "a.count": ("1", np.floor(time)),
+    }
+    return drawn(time, signals)
 
 
 @pytest.mark.parametrize(

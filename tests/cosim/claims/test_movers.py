@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from drawn_runs import drawn
 
 from loomfmu import LoomfmuError, evaluate, judge
 from loomfmu.cosim.claims.movers import Mover, movers_of
 from loomfmu.cosim.scenes.scene import parse
-from loomfmu.traces.signals import Channel, Recording
 
 MAIN = {"weft": "WeftInsertion", "belt": "BeltMonitor", "shaft": "MainShaft"}
 
@@ -97,13 +97,10 @@ def test_angles_of_any_unit_that_an_fmu_takes_by_wire_or_table_count() -> None:
 @pytest.mark.parametrize(("unit", "turn"), [("rad", math.tau), ("deg", 360.0)])
 def test_a_whole_turn_is_one_in_the_unit_of_the_angle(unit: str, turn: float) -> None:
     """Without a main shaft; the angle turns by 0.9 or by 1.1 turns."""
-    names = {"bump.lift": "m", "bump.turned": unit}
-    channels = [Channel(*name.split("."), each, each, "", n) for n, (name, each) in enumerate(names.items())]
     time = np.linspace(0.0, 1.0, 51)
     for turns, word in ((0.9, "undecided"), (1.1, "holds")):
-        run = Recording("bump", channels, lambda *_: None, {"bump.turned": "bump.turned"}, {"bump": "Bump"})
-        values = np.stack([0.0 * time, turns * turn * time], axis=1)
-        run.append(time, 0.0 * time, values, np.zeros((51, 0), np.int32))
+        turned = {"bump.lift": ("m", 0.0 * time), "bump.turned": (unit, turns * turn * time)}
+        run = drawn(time, turned, lambda *_: None, {"bump.turned": "bump.turned"}, {"bump": "Bump"})
         assert judge(run, kind="below", signal="bump.lift", bound=1, at_samples=True).word == word
 
 
