@@ -17,12 +17,12 @@ def loom(*parts: str) -> str:
     return LOOM + "".join(sorted(parts, key=lambda part: part.startswith("[")))
 
 
-def table(name: str, **values: Any) -> str:
+def table(name: str, /, **values: Any) -> str:
     """A table of a scene; texts, numbers, truth values and lists are written in TOML as in JSON."""
     return f"[{name}]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in values.items())
 
 
-def claim(kind: str, **arguments: Any) -> str:
+def claim(kind: str, /, **arguments: Any) -> str:
     return table("[claims]", kind=kind, **arguments)
 
 

@@ -3,16 +3,19 @@
 import json
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
 import pytest
+import scene_texts as texts
+from drawn_runs import drawn, turning
+from scene_texts import claim, parsed, table, verdicts, wires
 from scipy.optimize import brentq
 
-from loomfmu import LoomfmuError, Trace, Verdict, evaluate, judge
+from loomfmu import Evaluation, LoomfmuError, Trace, Verdict, evaluate, judge
 from loomfmu.components import DobbyDrive
 from loomfmu.cosim.claims import judging
 from loomfmu.cosim.claims.arguments import Name, Quantity, argument
@@ -21,19 +24,20 @@ from loomfmu.cosim.claims.claims import kinds
 from loomfmu.cosim.claims.judging import Form, Question, Run
 from loomfmu.cosim.reading import checked_claims
 from loomfmu.cosim.run import run
-from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.design import loom as loom_figures
 from loomfmu.fmi.native import compiler, platforms
 from loomfmu.loom.judged import Kind
 from loomfmu.physics.heald import lift_fraction
 from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
-from loomfmu.traces import Channel, Signals, TraceWriter
+from loomfmu.traces import Recording, Signals
 
 TURN = 2 * math.pi
-LOOM = 'revolutions = 3\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nweave = "{weave}"\n{rest}'
+LOOM = "revolutions = 3\n" + texts.LOOM + 'weave = "{weave}"\n{rest}'
+DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 
-BOUNDED = '[[claims]]\nkind = "below"\nsignal = "heald_1.lift"\nbound = 1.0\n'
-BOUNDED += '[[claims]]\nkind = "below"\nsignal = "shaft.velocity"\nbound = 1e3\n'
+BOUNDED = claim("below", signal="heald_1.lift", bound=1.0) + claim(
+    "below", signal="shaft.velocity", bound=1e3
+)
 
 
 @pytest.fixture(scope="module")
@@ -45,47 +49,32 @@ def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Callable[
     def open_(steps: int = 360, weave: str = "10/01", rest: str = "", **values: Any) -> Trace:
         key = (steps, weave, rest, *values.items())
         if key not in known:
-            changed = {name.replace("__", "."): value for name, value in values.items()}
-            scene = scenes.parse(
-                LOOM.format(weave=weave, rest=rest),
-                f"loom_{len(known)}",
-                changed | {"steps_per_revolution": steps},
-            )
+            text = LOOM.format(weave=weave, rest=rest)
+            scene = replace(parsed(text, steps_per_revolution=steps, **values), name=f"loom_{len(known)}")
             known[key] = run(scene, output=directory / f"{scene.name}.h5").trace
         return known[key]
 
     return open_
 
 
-def drawn(
-    directory: Path,
-    angle: Callable[[np.ndarray], np.ndarray],
+def curve(
+    time: np.ndarray,
     value: Callable[[np.ndarray], np.ndarray],
     rate: Callable[[np.ndarray], np.ndarray] | None,
-    time: np.ndarray,
-) -> Trace:
-    """A trace of one signal `a.x`, perhaps with its rate, over the angle of a shaft of constant speed."""
-    channels = [
-        Channel("a", "x", "m", "mm", "X", 0, rate="v" if rate else None),
-        *([Channel("a", "v", "m/s", "m/s", "V", 1)] if rate else []),
-        Channel("shaft", "angle", "rad", "deg", "Angle", 2, rate="velocity"),
-        Channel("shaft", "velocity", "rad/s", "rev/min", "Velocity", 3, rate="acceleration"),
-        Channel("shaft", "acceleration", "rad/s2", "rad/s2", "Acceleration", 4),
-    ]
-    turning = [angle(time), np.gradient(angle(time), time), np.zeros(len(time))]
-    reals = np.stack([value(time), rate(time) if rate else time, *turning], axis=1)
-    writer = TraceWriter(directory / "drawn.h5", {"title": "drawn", "software": "test"}, channels, {})
-    writer.append(time, angle(time), reals, np.zeros((len(time), 1), dtype="i4"))
-    writer.complete([])
-    return Trace(directory / "drawn.h5")
+    angle: Callable[[np.ndarray], np.ndarray] = lambda t: t,
+) -> Recording:
+    """A run of one signal `a.x`, perhaps with its rate, over the angle of a shaft."""
+    signals = {"a.x": ("m", value(time), {"rate": "v"}), "a.v": ("m/s", rate(time))} if rate else {}
+    signals = signals or {"a.x": ("m", value(time))}
+    return drawn(time, {**signals, **turning(angle(time), np.gradient(angle(time), time), 0.0)})
 
 
 # ---- above and below
 
 
-def test_above_and_below_tell_the_worst_value_and_its_place(tmp_path: Path) -> None:
+def test_above_and_below_tell_the_worst_value_and_its_place() -> None:
     # x = cos(t), one turn of the shaft in 2 s, 2.5 turns
-    trace = drawn(tmp_path, lambda t: math.pi * t, np.cos, lambda t: -np.sin(t), np.linspace(0, 5, 51))
+    trace = curve(np.linspace(0, 5, 51), np.cos, lambda t: -np.sin(t), lambda t: math.pi * t)
     holds = judge(trace, kind="above", signal="a.x", bound=-1.001)
     assert isinstance(holds, Verdict)
     assert holds
@@ -125,9 +114,9 @@ def test_extremes_between_the_samples_count(loom: Callable[..., Trace]) -> None:
     assert not math.isclose(np.max(coarse["weft.travel"]), stroke, rel_tol=1e-5)
 
 
-def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so(tmp_path: Path) -> None:
+def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so() -> None:
     time = np.linspace(0, 7, 71)
-    wavy = drawn(tmp_path, lambda t: t, np.cos, None, time)
+    wavy = curve(time, np.cos, None)
     found = judge(wavy, kind="above", signal="a.x", bound=-2.0)
     assert found.note == (
         "a.x is known only at the samples; set at_samples = true in the claim to judge these alone"
@@ -144,7 +133,7 @@ def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so(tmp_path
     between = judge(wavy, kind="above", signal="a.x", bound=-2.0, at_samples=True, window=window)
     assert (between.word, "no sample lies in that window" in between.note) == ("undecided", True)
     # samples that only fall do not show that nothing lies between them
-    falling = drawn(tmp_path, lambda t: t, lambda t: -t, None, time)
+    falling = curve(time, lambda t: -t, None)
     assert judge(falling, kind="above", signal="a.x", bound=-8.0).word == "undecided"
 
 
@@ -161,14 +150,10 @@ def test_a_signal_without_its_rate_is_judged_at_the_samples_and_says_so(tmp_path
         (["400 deg", "60 deg"], math.sin(math.radians(40)), math.sin(math.radians(60))),
     ],
 )
-def test_windows_of_shaft_angle(
-    tmp_path: Path, sense: int, window: list[Any], low: float, high: float
-) -> None:
+def test_windows_of_shaft_angle(sense: int, window: list[Any], low: float, high: float) -> None:
     # x = sin(angle), 37 samples a turn: no edge lies on a sample, both ways of turning
     time = np.arange(3 * 37 + 1) * (TURN / 37)
-    trace = drawn(
-        tmp_path, lambda t: sense * t, lambda t: sense * np.sin(t), lambda t: sense * np.cos(t), time
-    )
+    trace = curve(time, lambda t: sense * np.sin(t), lambda t: sense * np.cos(t), lambda t: sense * t)
     lowest = judge(trace, kind="above", signal="a.x", bound=0.0, window=window)
     highest = judge(trace, kind="below", signal="a.x", bound=0.0, window=window)
     # the cubic between samples 0.17 apart is off by up to h^4 / 384 = 2.2e-6
@@ -201,10 +186,10 @@ def test_the_edges_of_a_window_follow_a_shaft_that_accelerates(
     assert math.isclose(found.worst, travel(place)[0], rel_tol=1e-6 if steps == 90 else 4e-9)
 
 
-def test_a_windows_edges_are_found_on_samples_thousands_of_turns_away(tmp_path: Path) -> None:
+def test_a_windows_edges_are_found_on_samples_thousands_of_turns_away() -> None:
     # at four samples in a degree all edges are samples, or off them by the last bit
     time = np.arange(200_000) * (TURN / 1440) + 3000 * TURN
-    trace = drawn(tmp_path, lambda t: t, np.sin, np.cos, time)
+    trace = curve(time, np.sin, np.cos)
     found = judge(trace, kind="below", signal="a.x", bound=0.0, window=["10 deg", "60 deg"])
     # sin(t) at t = 19000, which is rounded to 2e-12
     assert math.isclose(found.worst, math.sin(math.radians(60)), abs_tol=4e-12)
@@ -212,7 +197,7 @@ def test_a_windows_edges_are_found_on_samples_thousands_of_turns_away(tmp_path: 
 
 def test_of_equal_extremes_the_first_is_named(loom: Callable[..., Trace]) -> None:
     trace = loom(shaft__speed="600 rpm", rest="reed = true\nlocks = true\n")
-    for claim in (
+    for given in (
         {"kind": "below", "signal": "weft.travel", "bound": 0.0},
         {"kind": "below", "signal": "weft.acceleration", "bound": 0.0},
         {"kind": "lowest_margin", "bound": 0.0},
@@ -221,42 +206,44 @@ def test_of_equal_extremes_the_first_is_named(loom: Callable[..., Trace]) -> Non
         {"kind": "rapier_in_open_shed", "head_height": 0.0},
         {"kind": "reed_clear_of_rapier", "clearance": 0.0},
     ):
-        assert judge(trace, **claim).revolution == 1, claim
+        assert judge(trace, **given).revolution == 1, given
 
 
-def test_samples_that_do_not_tell_an_oscillation_do_not_make_a_claim_hold(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("samples", "word", "note"),
+    [(8, "holds", ""), (2, "undecided", "the samples are too far apart to be sure; take more steps")],
+)
+def test_samples_that_do_not_tell_an_oscillation_do_not_make_a_claim_hold(
+    samples: int, word: str, note: str
+) -> None:
     # cos(8 t + 1) seen twice and eight times in an oscillation
-    def judged(samples: int) -> Verdict:
-        time = np.linspace(0.0, TURN, 8 * samples + 1)
-        wave = drawn(
-            tmp_path, lambda t: t, lambda t: np.cos(8 * t + 1), lambda t: -8 * np.sin(8 * t + 1), time
-        )
-        return judge(wave, kind="below", signal="a.x", bound=1.5)
-
-    assert judged(8)
-    assert judged(8).note == ""
-    assert not judged(2)
-    assert judged(2).note == "the samples are too far apart to be sure; take more steps"
+    time = np.linspace(0.0, TURN, 8 * samples + 1)
+    wave = curve(time, lambda t: np.cos(8 * t + 1), lambda t: -8 * np.sin(8 * t + 1))
+    found = judge(wave, kind="below", signal="a.x", bound=1.5)
+    assert (found.word, found.note) == (word, note)
 
 
-def test_what_is_not_a_number_does_not_hold(tmp_path: Path) -> None:
-    def judged(value: float, **claim: Any) -> Verdict:
-        trace = drawn(
-            tmp_path,
-            lambda t: t,
-            lambda t: np.where(np.abs(t - 1.0) < 1e-9, value, 0.0),
-            lambda t: 0 * t,
-            np.linspace(0, 7, 71),
-        )
-        return judge(trace, signal="a.x", **claim)
-
-    for kind, window in (("below", None), ("above", None), ("below", ["10 deg", "90 deg"])):
-        found = judged(math.nan, kind=kind, bound=0.0, window=window)
-        assert found.word == "undecided"
+@pytest.mark.parametrize(
+    ("value", "kind", "window", "word"),
+    [
+        (math.nan, "below", None, "undecided"),
+        (math.nan, "above", None, "undecided"),
+        (math.nan, "below", ["10 deg", "90 deg"], "undecided"),
+        (math.inf, "above", None, "undecided"),
+        (math.inf, "below", None, "FAILS"),
+    ],
+)
+def test_what_is_not_a_number_does_not_hold(
+    value: float, kind: str, window: list[str] | None, word: str
+) -> None:
+    trace = curve(
+        np.linspace(0, 7, 71), lambda t: np.where(np.abs(t - 1.0) < 1e-9, value, 0.0), lambda t: 0 * t
+    )
+    found = judge(trace, kind=kind, signal="a.x", bound=0.0, window=window)
+    assert found.word == word
+    if math.isnan(value):
         assert math.isclose(found.time, 1.0)
         assert found.note == "a.x or its rate is not finite everywhere"
-    assert judged(math.inf, kind="above", bound=0.0).word == "undecided"
-    assert not judged(math.inf, kind="below", bound=1e300)
 
 
 def test_claims_on_the_loom_say_where_rates_are_missing(
@@ -282,18 +269,17 @@ def test_claims_on_the_loom_say_where_rates_are_missing(
 @pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 13))
 @pytest.mark.parametrize("power", [2, 3, 4, 5])
 def test_a_smooth_stop_does_not_fail_at_its_bound_wherever_it_lies_between_samples(
-    tmp_path: Path, share: float, power: int
+    share: float, power: int
 ) -> None:
     # the curve may pass the bound, by no more than it may be off: it neither fails nor holds
     def left(t: np.ndarray) -> np.ndarray:
         return np.maximum(20.0 + share - t, 0.0)
 
-    trace = drawn(
-        tmp_path,
-        lambda t: 0.16 * t,
+    trace = curve(
+        np.arange(41.0),
         lambda t: -(left(t) ** power),
         lambda t: power * left(t) ** (power - 1),
-        np.arange(41.0),
+        lambda t: 0.16 * t,
     )
     found = judge(trace, kind="below", signal="a.x", bound=0.0)
     assert found.word == "undecided"
@@ -303,18 +289,18 @@ def test_a_smooth_stop_does_not_fail_at_its_bound_wherever_it_lies_between_sampl
     assert judge(trace, kind="below", signal="a.x", bound=-1e-5).word == "FAILS"
 
 
-def test_a_failing_sample_fails_however_far_the_curve_may_be_off(tmp_path: Path) -> None:
+def test_a_failing_sample_fails_however_far_the_curve_may_be_off() -> None:
     # six samples in a wave, of which one passes the bound
     time = np.linspace(0.0, TURN, 61)
-    trace = drawn(tmp_path, lambda t: 0.01 * t, lambda t: np.sin(10 * t), lambda t: 10 * np.cos(10 * t), time)
+    trace = curve(time, lambda t: np.sin(10 * t), lambda t: 10 * np.cos(10 * t), lambda t: 0.01 * t)
     passed = float(np.max(trace["a.x"])) - 1e-3
     assert judge(trace, kind="below", signal="a.x", bound=passed).word == "FAILS"
 
 
 @pytest.mark.parametrize("samples", [20, 63, 200])
-def test_a_bound_that_the_motion_passes_between_samples_fails(tmp_path: Path, samples: int) -> None:
+def test_a_bound_that_the_motion_passes_between_samples_fails(samples: int) -> None:
     time = np.linspace(0.0, TURN, samples + 1)
-    trace = drawn(tmp_path, lambda t: t, lambda t: np.sin(t - 0.3), lambda t: np.cos(t - 0.3), time)
+    trace = curve(time, lambda t: np.sin(t - 0.3), lambda t: np.cos(t - 0.3))
     # the cubic is off by h^4 / 384, and held to be off by h^4 / 16: beyond that nothing is hidden
     doubt = (TURN / samples) ** 4 / 16
     for kind, sign in (("below", 1.0), ("above", -1.0)):
@@ -322,7 +308,7 @@ def test_a_bound_that_the_motion_passes_between_samples_fails(tmp_path: Path, sa
         assert judge(trace, kind=kind, signal="a.x", bound=sign * (1.0 + 1.5 * doubt))
 
 
-def test_where_one_extreme_is_in_doubt_another_one_still_counts(tmp_path: Path) -> None:
+def test_where_one_extreme_is_in_doubt_another_one_still_counts() -> None:
     # a stop at 1 within an interval, which the cubic passes by some percent, then a clear excess of 0.001
     def x(t: np.ndarray) -> np.ndarray:
         return np.where(t < 10.4, 1.0 - np.maximum(10.4 - t, 0.0) ** 2, 1.0) + 1e-3 * np.where(
@@ -333,7 +319,7 @@ def test_where_one_extreme_is_in_doubt_another_one_still_counts(tmp_path: Path) 
         wave = 4e-4 * np.sin(0.1 * (t - 20.0)) ** 3 * np.cos(0.1 * (t - 20.0))
         return 2.0 * np.maximum(10.4 - t, 0.0) + np.where(t > 20.0, wave, 0.0)
 
-    trace = drawn(tmp_path, lambda t: t, x, rate, np.arange(41.0))
+    trace = curve(np.arange(41.0), x, rate)
     found = judge(trace, kind="below", signal="a.x", bound=1.0011)
     assert (found.word, found.worst > 1.02) == ("undecided", True)
     assert not judge(trace, kind="below", signal="a.x", bound=1.0009)
@@ -358,8 +344,8 @@ def test_a_start_up_stays_below_its_speed_and_frames_within_their_stroke(
     assert not judge(held, kind="above", signal="heald_1.lift", bound="1e-3 mm")
 
 
-def test_a_window_that_the_run_never_enters_is_not_judged(tmp_path: Path) -> None:
-    trace = drawn(tmp_path, lambda t: t, np.cos, lambda t: -np.sin(t), np.linspace(0, 1, 11))
+def test_a_window_that_the_run_never_enters_is_not_judged() -> None:
+    trace = curve(np.linspace(0, 1, 11), np.cos, lambda t: -np.sin(t))
     found = judge(trace, kind="above", signal="a.x", bound=-9.0, window=["180 deg", "200 deg"])
     assert found.word == "undecided"
     assert found.note == "the run never passes through the whole window"
@@ -521,9 +507,9 @@ def crossings(trace: Signals, level: float) -> list[float]:
     return Run(trace).landings(trace, Question("transfer_speed", [], ["a.x"], [0.0, level]))
 
 
-def test_a_level_that_is_passed_twice_between_two_samples_is_passed_twice(tmp_path: Path) -> None:
+def test_a_level_that_is_passed_twice_between_two_samples_is_passed_twice() -> None:
     # h (u - 3 u^2 + 2 u^3), which goes as far as h sqrt(3) / 18 to either side
-    trace = drawn(tmp_path, lambda t: t, lambda t: 0 * t, np.cos, np.array([0.0, TURN]))
+    trace = curve(np.array([0.0, TURN]), lambda t: 0 * t, np.cos)
     for level in (0.5, -0.5):
         times = crossings(trace, level)
         assert len(times) == 2
@@ -549,12 +535,12 @@ def test_clear_shed_is_the_dwell_at_another_height(loom: Callable[..., Trace]) -
     )
 
 
-@pytest.mark.parametrize("given", [{}, {"heald_1.warp_ratio": 0.1}])
+@pytest.mark.parametrize("given", [{}, {"heald_1__warp_ratio": 0.1}])
 def test_a_clearance_beyond_the_warp_is_rejected_before_the_run(given: dict[str, float]) -> None:
-    reach = 98.0 / 2 * given.get("heald_1.warp_ratio", 1 / 6)
-    scene = 'revolutions = 1\n[loom]\nweave = "10"\n[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\n'
+    reach = 98.0 / 2 * given.get("heald_1__warp_ratio", 1 / 6)
+    shed = claim("clear_shed", heald="heald_1", at_least=0, clearance="9 mm")
     with pytest.raises(LoomfmuError, match=rf"clearance = 9 mm is outside \(0, {reach:.7g}\) mm"):
-        checked_claims(scenes.parse(f'{scene}at_least = 0\nclearance = "9 mm"', overrides=given))
+        checked_claims(parsed('[loom]\nweave = "10"\n', shed, **given))
 
 
 def test_dwell_contains(loom: Callable[..., Trace]) -> None:
@@ -663,13 +649,13 @@ def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Callable[..., Tra
     assert dwelling.as_dict()["display"]["bound"] == 1.5
 
 
-def test_a_verdict_comes_back_from_its_file(loom: Callable[..., Trace], tmp_path: Path) -> None:
-    for claim in (
+def test_a_verdict_comes_back_from_its_file(loom: Callable[..., Trace]) -> None:
+    for given in (
         {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "600 rpm"},
         {"kind": "dwell_contains", "heald": "heald_1", "angles": ["180 deg"], "tolerance": "0.1 %"},
         {"kind": "stop_contacts", "damper": "damper_1", "at_most": 9},
     ):
-        found = judge(loom(**DAMPED), **claim)
+        found = judge(loom(**DAMPED), **given)
         stored = json.loads(json.dumps(found.as_dict()))
         assert str(Verdict.of(stored)) == str(found)
         assert Verdict.of(stored).as_dict() == stored
@@ -678,10 +664,9 @@ def test_a_verdict_comes_back_from_its_file(loom: Callable[..., Trace], tmp_path
         assert str(Verdict.of(old | {"unit": found.display_unit})) == str(found)
 
 
-def test_a_run_without_a_shaft_tells_the_time_alone(tmp_path: Path) -> None:
-    text = 'duration = "1 s"\nstep = "0.01 s"\n[shaft_2]\ncomponent = "MainShaft"\nspeed = "60 rpm"\n'
-    claim = '[[claims]]\nkind = "below"\nsignal = "shaft_2.angle"\nbound = "90 deg"\n'
-    found = run(scenes.parse(text + claim, "seconds"), output=tmp_path / "seconds.h5")
+def test_a_run_without_a_shaft_tells_the_time_alone() -> None:
+    text = 'duration = "1 s"\nstep = "0.01 s"\n' + table("shaft_2", component="MainShaft", speed="60 rpm")
+    found = evaluate(parsed(text, claim("below", signal="shaft_2.angle", bound="90 deg")))
     assert str(found.claims[0]) == "FAILS: highest value (shaft_2.angle), 360 deg at 1 s, bound 90 deg"
     stored = found.claims[0].as_dict()
     assert stored["angle"] is stored["revolution"] is None
@@ -690,24 +675,14 @@ def test_a_run_without_a_shaft_tells_the_time_alone(tmp_path: Path) -> None:
 
 
 def test_claims_of_a_scene_are_judged_stored_and_the_signals_they_need_recorded(tmp_path: Path) -> None:
-    rest = """
-[[claims]]
-name = "fast enough"
-kind = "above"
-signal = "weft.velocity"
-bound = "0 m/s"
-window = ["20 deg", "160 deg"]
-[[claims]]
-kind = "dwell"
-heald = "heald_2"
-at_least = "90 deg"
-[[claims]]
-kind = "peak_load"
-damper = "damper_1"
-at_most = "1 N"
-"""
+    rest = claim(
+        "above", name="fast enough", signal="weft.velocity", bound="0 m/s", window=["20 deg", "160 deg"]
+    )
+    rest += claim("dwell", heald="heald_2", at_least="90 deg") + claim(
+        "peak_load", damper="damper_1", at_most="1 N"
+    )
     text = "record = []\n" + LOOM.format(weave="10/01", rest="dampers = true\n" + rest)
-    result = run(scenes.parse(text, "claims"), output=tmp_path / "claims.h5")
+    result = run(parsed(text), output=tmp_path / "claims.h5")
     assert [bool(verdict) for verdict in result.claims] == [True, False, False]
     assert not result.holds
     with Trace(tmp_path / "claims.h5") as trace:
@@ -722,38 +697,30 @@ at_most = "1 N"
         assert again == replace(trace.verdicts[1], error=again.error)
 
 
+TRAVEL = {"kind": "above", "signal": "weft.travel", "bound": 0}
+ROOM = {"kind": "rapier_in_open_shed", "head_height": 0.0}
+WHOLE_TURN = "is empty; a whole revolution is [0 deg, 360 deg]"
+
+
 @pytest.mark.parametrize(
-    ("claim", "said"),
+    ("given", "said"),
     [
         ({"kind": "abov", "signal": "weft.travel"}, "claim kind = 'abov' is unknown; did you mean 'above'?"),
         ({"kind": "above", "signal": "weft.travel"}, "claim 'above' needs 'bound'"),
-        (
-            {"kind": "above", "signal": "weft.travel", "bond": 1},
-            "claim 'above' has no 'bond'; did you mean 'bound'?",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": "1 N"},
-            "claim 'above': bound: '1 N' is in N, which does not fit m",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": math.inf},
-            "claim 'above': bound = inf is not finite",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": 0, "window": ["1 deg"]},
-            "claim 'above': window = ['1 deg'] must be two shaft angles, such as [\"330 deg\", \"30 deg\"]",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": 0, "window": ["90 deg", "90 deg"]},
-            "claim 'above': window = [90 deg, 90 deg] is empty; a whole revolution is [0 deg, 360 deg]",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": 0, "window": ["360 deg", 0]},
-            "claim 'above': window = [360 deg, 0 deg] is empty; a whole revolution is [0 deg, 360 deg]",
-        ),
-        (
-            {"kind": "above", "signal": "weft.travel", "bound": 0, "window": [0, "400 deg"]},
-            "claim 'above': window = [0 deg, 400 deg] is longer than a revolution",
+        (TRAVEL | {"bond": 1}, "claim 'above' has no 'bond'; did you mean 'bound'?"),
+        (TRAVEL | {"bound": "1 N"}, "claim 'above': bound: '1 N' is in N, which does not fit m"),
+        (TRAVEL | {"bound": math.inf}, "claim 'above': bound = inf is not finite"),
+        *(
+            (TRAVEL | {"window": window}, f"claim 'above': window {said}")
+            for window, said in (
+                (["1 deg"], '= [\'1 deg\'] must be two shaft angles, such as ["330 deg", "30 deg"]'),
+                (["90 deg", "90 deg"], f"= [90 deg, 90 deg] {WHOLE_TURN}"),
+                (["360 deg", 0], f"= [360 deg, 0 deg] {WHOLE_TURN}"),
+                ([0, "400 deg"], "= [0 deg, 400 deg] is longer than a revolution"),
+                ([355, 5], 'has 355 rad, more than a revolution; did you mean "355 deg"?'),
+                (["350", "20"], 'has 350 rad, more than a revolution; did you mean "350 deg"?'),
+                ([350.0, 10.0], 'has 350.0 rad, more than a revolution; did you mean "350.0 deg"?'),
+            )
         ),
         (
             {"kind": "dwell_contains", "heald": "heald_1", "angles": []},
@@ -763,6 +730,7 @@ at_most = "1 N"
             {"kind": "dwell", "heald": "heald_1", "at_least": 1, "tolerance": 0.5},
             "claim 'dwell': tolerance = 0.5 is outside (0, 0.5) of the stroke",
         ),
+        ({"kind": "dwell", "heald": 5, "at_least": 1}, "claim 'dwell': heald = 5 is not a name in quotes"),
         (
             {"kind": "peak_load", "damper": "damper_1", "at_most": "1 mm"},
             "claim 'peak_load': at_most: '1 mm' is in mm, which does not fit N",
@@ -771,25 +739,24 @@ at_most = "1 N"
             {"kind": "dwell", "heald": "heald_9", "at_least": 1},
             "loom_0.h5: signal 'heald_9.lift' is not recorded; did you mean 'heald_2.lift'?",
         ),
+        *(
+            (ROOM | {"healds": healds}, f"claim 'rapier_in_open_shed': healds = {healds!r} {said}")
+            for healds, said in (
+                *((each, 'must be a list of names, such as ["heald_1"]') for each in (5, "heald_1", [1])),
+                ([], "names nothing; leave it out to judge all"),
+            )
+        ),
     ],
 )
 def test_a_claim_that_cannot_be_judged_is_refused_with_its_name(
-    loom: Callable[..., Trace], claim: dict[str, Any], said: str
+    loom: Callable[..., Trace], given: dict[str, Any], said: str
 ) -> None:
     with pytest.raises(LoomfmuError) as raised:
-        judge(loom(), **claim)
+        judge(loom(), **given)
     assert str(raised.value).replace(loom().path.name, "loom_0.h5") == said
 
 
-def test_names_that_are_not_are_refused(loom: Callable[..., Trace]) -> None:
-    for healds in (5, "heald_1", [1]):
-        with pytest.raises(LoomfmuError, match=r"healds = .* must be a list of names, such as"):
-            judge(loom(), kind="rapier_in_open_shed", head_height=0.0, healds=healds)
-    with pytest.raises(LoomfmuError, match=r"claim 'dwell': heald = 5 is not a name in quotes"):
-        judge(loom(), kind="dwell", heald=5, at_least=0.0)
-
-
-def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Trace], tmp_path: Path) -> None:
+def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Trace]) -> None:
     trace = loom(shaft__speed="600 rpm")
     for kind, way in (("above", 1.0), ("below", -1.0)):
         found = judge(trace, kind=kind, signal="weft.travel", bound="1 m")
@@ -873,42 +840,36 @@ def test_a_new_kind_of_claim_is_one_class() -> None:
             numbers = [self.height, worst, time, 0.0]
             return Question("given", [self.form("ends near", signal)], [signal], numbers)
 
-    claim = '[[claims]]\nkind = "ends_near"\nheald = "heald_1"\nheight = {}\n'
-    text = "record = []\n" + LOOM.format(weave="10/01", rest=claim)
-    found = evaluate(scenes.parse(text.format('"200 mm"')))
+    def evaluated(height: Any, **values: Any) -> Evaluation:
+        ends = claim("ends_near", heald="heald_1", height=height)
+        return evaluate(parsed("record = []\n", LOOM.format(weave="10/01", rest=ends), **values))
+
+    found = evaluated("200 mm")
     assert found and found.claims[0].claim == "ends near"
     assert "heald_1.lift" in found.trace and "heald_2.lift" not in found.trace
     # its usual value, its unit and its limit are known, and the window grid leaves no step out
-    assert "height = 50" in evaluate(scenes.parse(text.format(50))).warnings[0]
+    assert "height = 50" in evaluated(50).warnings[0]
     with pytest.raises(LoomfmuError, match=r"claim 'ends_near': height: '1 N' is in N, which does not fit m"):
-        evaluate(scenes.parse(text.format('"1 N"')))
-    assert evaluate(scenes.parse(text.format(1)), set={"grid": "windows"}).steps >= 3 * 1440
+        evaluated("1 N")
+    assert evaluated(1, grid="windows").steps >= 3 * 1440
 
 
-WHOLE_LOOM = """
-revolutions = 2
-steps_per_revolution = 180
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01"
-reed = true
-locks = true
-[shaft]
-speed = "600 rev/min"
-[heald]
-warp_ratio = 0.35
-"""
+WHOLE_LOOM = texts.loom('weave = "10/01"\nreed = true\nlocks = true\n')
 
 
-def judged(tmp_path, claim: str, **values):
+def judged(kind: str, given: Any = (), **values: Any) -> Verdict:
     """The one verdict of a claim on a small loom."""
-    scene = scenes.parse(WHOLE_LOOM + f"[[claims]]\n{claim}\n", "loom", values)
-    return run(scene, output=tmp_path / "loom.h5").claims[0]
+    usual = {"revolutions": 2, "steps_per_revolution": 180, "heald__warp_ratio": 0.35}
+    usual["shaft__speed"] = "600 rev/min"
+    (found,) = verdicts(WHOLE_LOOM, claim(kind, **dict(given)), **usual | values)
+    return found
 
 
-def test_a_bound_may_be_a_parameter_of_the_run(tmp_path):
-    verdict = judged(tmp_path, 'kind = "above"\nsignal = "belt.lowest_speed_limit"\nbound = "shaft.speed"')
+LIMIT = {"signal": "belt.lowest_speed_limit"}
+
+
+def test_a_bound_may_be_a_parameter_of_the_run() -> None:
+    verdict = judged("above", LIMIT | {"bound": "shaft.speed"})
     assert verdict.holds
     assert verdict.bound == pytest.approx(2 * math.pi * 10)  # 600 rev/min
 
@@ -920,14 +881,15 @@ def test_a_bound_may_be_a_parameter_of_the_run(tmp_path):
         ("belt.head_mass", "claim: bound belt.head_mass is in kg, but belt.lowest_speed_limit is in rad/s"),
     ],
 )
-def test_a_bound_that_does_not_fit_its_signal_is_refused(tmp_path, bound, message):
+def test_a_bound_that_does_not_fit_its_signal_is_refused(bound: str, message: str) -> None:
     with pytest.raises(LoomfmuError, match=re.escape(message)):
-        judged(tmp_path, f'kind = "above"\nsignal = "belt.lowest_speed_limit"\nbound = "{bound}"')
+        judged("above", LIMIT | {"bound": bound})
 
 
-def test_the_rapier_head_needs_its_height_in_the_shed(tmp_path):
-    open_enough = judged(tmp_path, 'kind = "rapier_in_open_shed"\nhead_height = "18 mm"')
-    too_high = judged(tmp_path, 'kind = "rapier_in_open_shed"\nhead_height = "20 mm"')
+def test_the_rapier_head_needs_its_height_in_the_shed() -> None:
+    open_enough, too_high = (
+        judged("rapier_in_open_shed", {"head_height": height}) for height in ("18 mm", "20 mm")
+    )
     assert open_enough.holds
     assert not too_high.holds
     assert re.fullmatch(r"2 \|heald_[12]\.warp_height\|", open_enough.signal)
@@ -942,59 +904,56 @@ def test_the_rapier_head_needs_its_height_in_the_shed(tmp_path):
     assert open_enough.worst == pytest.approx(opening, abs=1e-9)
 
 
-def test_the_reed_is_clear_of_the_rapier(tmp_path):
-    assert judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "40 mm"').holds
-    near = judged(tmp_path, 'kind = "reed_clear_of_rapier"\nclearance = "60 mm"')
+def test_the_reed_is_clear_of_the_rapier() -> None:
+    kind = "reed_clear_of_rapier"
+    assert judged(kind, {"clearance": "40 mm"}).holds
+    near = judged(kind, {"clearance": "60 mm"})
     assert not near.holds
     assert near.signal == "reed.front_limit - reed.position"
     # the head enters at about 60 deg, when the reed has gone back 53 mm
     assert 0.045 < near.worst < 0.060
     # as much in a run that never comes to the beat-up
-    part = 'kind = "reed_clear_of_rapier"\nclearance = "40 mm"'
-    short = judged(tmp_path, part, revolutions=0.75, **{"shaft.start_angle": "45 deg"})
+    short = judged(kind, {"clearance": "40 mm"}, revolutions=0.75, shaft__start_angle="45 deg")
     assert short.holds
     assert short.worst == pytest.approx(near.worst, abs=1e-9)  # the quintic, between samples 2 deg apart
 
 
-def test_the_pattern_locks_are_in_time_up_to_their_speed_limit(tmp_path):
+def test_the_pattern_locks_are_in_time_up_to_their_speed_limit() -> None:
     """By torque the limit is 825 rev/min: at 850 the claim fails, at 800 it holds."""
-    claim = 'kind = "locks_in_time"'
-    fails = judged(tmp_path, claim, **{"shaft.speed": "850 rev/min"})
-    assert not fails.holds
+    fails, holds, backwards = (
+        judged("locks_in_time", shaft__speed=f"{speed} rev/min") for speed in (850, 800, -850)
+    )
+    assert (fails.holds, holds.holds, backwards.holds) == (False, True, False)
     assert str(fails).startswith("FAILS: highest speed of the shaft (shaft.velocity), 850 rev/min at 0 s")
     assert str(fails).endswith(", bound 824.6588 rev/min")
-    assert judged(tmp_path, claim, **{"shaft.speed": "800 rev/min"}).holds
-    assert not judged(tmp_path, claim, **{"shaft.speed": "-850 rev/min"}).holds
 
 
-def test_the_locks_are_judged_by_the_shafts_speed_between_the_samples(tmp_path):
+def test_the_locks_are_judged_by_the_shafts_speed_between_the_samples() -> None:
     """A ripple of 5 % on 800 rev/min reaches 840, between the samples where these are as far apart as it."""
-    ripple = {"shaft.speed": "800 rev/min", "shaft.ripple_amplitude": 0.05, "shaft.ripple_order": 8}
-    coarse = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=8, **ripple)
+    ripple = {"shaft__speed": "800 rev/min", "shaft__ripple_amplitude": 0.05, "shaft__ripple_order": 8}
+    coarse, fine = (judged("locks_in_time", steps_per_revolution=steps, **ripple) for steps in (8, 360))
     assert not coarse.holds
-    assert coarse.note.startswith("the samples are too far apart to be sure; take more steps")
-    fine = judged(tmp_path, 'kind = "locks_in_time"', steps_per_revolution=360, **ripple)
+    assert coarse.note.startswith(FAR_APART)
     assert not fine.holds
     # the cubics through 45 samples of an oscillation: (2 pi / 45)^4 / 384 = 1e-6 of its amplitude
     assert math.isclose(fine.worst, 80 / 3 * math.pi * 1.05, rel_tol=1e-7)
     assert fine.note == ""
 
 
-def test_a_lock_that_turns_by_itself_is_judged_at_the_samples_and_says_so(tmp_path):
-    alone = 'kind = "locks_in_time"'
-    own = {"lock.follow_shaft": False, "lock.speed": "540 rev/min", "shaft.speed": "850 rev/min"}
-    found = judged(tmp_path, alone, **own)
+def test_a_lock_that_turns_by_itself_is_judged_at_the_samples_and_says_so() -> None:
+    own = {"lock__follow_shaft": False, "lock__speed": "540 rev/min", "shaft__speed": "850 rev/min"}
+    found = judged("locks_in_time", **own)
     assert found.word == "undecided"
     assert found.note == (
         "lock.in_time is known only at the samples: the lock does not follow shaft.velocity"
     )
 
 
-def test_a_frame_that_crosses_the_closed_shed_between_samples_leaves_no_opening(tmp_path):
+def test_a_frame_that_crosses_the_closed_shed_between_samples_leaves_no_opening() -> None:
     # the shed closes at 70 deg as the head comes in; at the nearest samples, 15 deg apart, 0.8 mm are open
-    claim = 'kind = "rapier_in_open_shed"\nhead_height = "0.5 mm"'
+    room = {"head_height": "0.5 mm"}
     fine, coarse = (
-        judged(tmp_path, claim, steps_per_revolution=steps, **{"dobby.slow_point": "250 deg"})
+        judged("rapier_in_open_shed", room, steps_per_revolution=steps, dobby__slow_point="250 deg")
         for steps in (720, 24)
     )
     assert coarse.worst == fine.worst == 0.0
@@ -1002,7 +961,6 @@ def test_a_frame_that_crosses_the_closed_shed_between_samples_leaves_no_opening(
     assert not coarse.holds
 
 
-DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 FAR_APART = "the samples are too far apart to be sure; take more steps"
 
 
@@ -1010,10 +968,8 @@ FAR_APART = "the samples are too far apart to be sure; take more steps"
 @pytest.mark.parametrize("rest", ["", 'grid = "windows"\ncoarse_steps_per_revolution = {steps}\n'])
 def test_no_claim_holds_on_samples_that_may_miss_the_belts_window_of_risk(steps: int, rest: str) -> None:
     """At 700 rev/min the belt buckles; its window of risk lies between any 6 samples in a revolution."""
-    text = rest.format(steps=steps) + DEMO.read_text(encoding="utf-8")
-    found = evaluate(
-        scenes.parse(text), set={"shaft.speed": "700 rpm", "steps_per_revolution": 24 if rest else steps}
-    )
+    fewest = {"steps_per_revolution": 24 if rest else steps}
+    found = evaluate(parsed(rest.format(steps=steps), DEMO.read_text(), shaft__speed="700 rpm", **fewest))
     if rest:  # a coarse grid may still land close enough
         assert found.claims[0].worst < 0.0 or FAR_APART in found.claims[0].note
     else:
@@ -1084,83 +1040,53 @@ def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
     assert [math.degrees(each.angle) for each in found] == pytest.approx(expected, abs=1e-9)
 
 
-ROLLER = """title = "Roller"
-revolutions = 1
-[shaft]
-speed = "300 rev/min"
-[roller]
-component = "DetachingRoller"
-[[claims]]
-kind = "nip_holds"
-at_samples = true
-"""
-
-
-def roller_verdict(tmp_path, more="", **values):
-    return run(scenes.parse(ROLLER + more, "roller", values), output=tmp_path / "roller.h5").claims[0]
+def roller_verdict(nip: Mapping[str, Any] = {"at_samples": True}, **values: Any) -> Verdict:
+    text = table("shaft", speed="300 rev/min") + table("roller", component="DetachingRoller")
+    (found,) = verdicts(
+        text, claim("nip_holds", **nip), **{f"roller__{key}": each for key, each in values.items()}
+    )
+    return found
 
 
 @pytest.mark.parametrize(
     ("force", "holds", "bound"),
     [(60.0, False, 2.0), (48.0, True, 2.0), (35.0, True, 3.0), (30.0, False, 3.0)],
 )
-def test_the_nip_holds_two_to_three_times_the_drafting_force(tmp_path, force, holds, bound):
-    steady = {"roller.use_table": False, "roller.acceleration": 1000.0, "roller.fibre_share": 1.0}
-    given = steady | {"roller.prescribe_drafting_force": True, "roller.largest_drafting_force": force}
-    verdict = roller_verdict(tmp_path, **given)
+def test_the_nip_holds_two_to_three_times_the_drafting_force(force: float, holds: bool, bound: float) -> None:
+    steady = {"use_table": False, "acceleration": 1000.0, "fibre_share": 1.0}
+    verdict = roller_verdict(**steady, prescribe_drafting_force=True, largest_drafting_force=force)
     # friction of 0.33 * 300 N less the top roller's inertia J2 r1 / r2^2 e, section 2 of the source
     expected = (99.0 - 33.98e-6 * 12.5e-3 / 12.25e-3**2 * 1000.0) / force
     assert (verdict.holds, verdict.bound) == (holds, bound)
     assert verdict.worst == pytest.approx(expected, rel=1e-14)  # rounding
 
 
-def test_by_its_own_drafting_force_the_nip_holds_twice_as_much(tmp_path):
-    assert 2.0 <= roller_verdict(tmp_path).worst < 2.1
-    steady = {"roller.use_table": False, "roller.acceleration": 0.0, "roller.fibre_share": 1.0}
-    assert roller_verdict(tmp_path, **steady).worst == 2.0
+def test_by_its_own_drafting_force_the_nip_holds_twice_as_much() -> None:
+    assert 2.0 <= roller_verdict().worst < 2.1
+    assert roller_verdict(use_table=False, acceleration=0.0, fibre_share=1.0).worst == 2.0
+    without = roller_verdict(use_table=False, fibre_share=0.0)
+    assert not without.holds and "no fibres are drafted in this run" in without.note
 
 
-def test_a_nip_is_undecided_unless_the_samples_alone_are_judged(tmp_path):
-    text = ROLLER.replace("at_samples = true", "at_least = {}")
-    for at_least in (1.0, 2.5):
-        found = run(scenes.parse(text.format(at_least), "roller"), output=tmp_path / "roller.h5").claims[0]
-        assert (found.word, "known only at the samples" in found.note) == ("undecided", True)
-
-
-def test_a_nip_without_fibres_is_not_judged(tmp_path):
-    verdict = roller_verdict(tmp_path, **{"roller.use_table": False, "roller.fibre_share": 0.0})
-    assert not verdict.holds
-    assert "no fibres are drafted in this run" in verdict.note
-
-
-@pytest.mark.parametrize("window", [[355, 5], ["350", "20"], [350.0, 10.0]])
-def test_a_window_in_plain_degrees_is_refused(loom: Any, window: list[Any]) -> None:
-    with pytest.raises(LoomfmuError, match=r"window has 35[05]\S* rad, more than a revolution"):
-        judge(loom(90), kind="above", signal="weft.travel", bound="0.01 m", window=window)
+@pytest.mark.parametrize("at_least", [1.0, 2.5])
+def test_a_nip_is_undecided_unless_the_samples_alone_are_judged(at_least: float) -> None:
+    found = roller_verdict({"at_least": at_least})
+    assert (found.word, "known only at the samples" in found.note) == ("undecided", True)
 
 
 def test_the_type_of_kinds_names_all_kinds() -> None:
     assert sorted(get_args(Kind)) == sorted(Claim.kinds)
 
 
-def test_an_empty_list_of_frames_is_refused(loom: Callable[..., Trace]) -> None:
-    with pytest.raises(LoomfmuError, match=r"healds = \[\] names nothing; leave it out to judge all"):
-        judge(loom(90), kind="rapier_in_open_shed", head_height="1 mm", healds=[])
-
-
 def test_a_frame_counts_whatever_it_is_called() -> None:
     """One that was not called heald_3 dropped out of the shed, and the claim held on the others."""
-    text = (
-        'revolutions = 2\n[loom]\nweave = "10/01"\n'
-        '[{0}]\ncomponent = "HealdFrame"\npattern = "10"\nstroke = "20 mm"\n'
-        '[[claims]]\nkind = "rapier_in_open_shed"\nhead_height = "1 mm"\n'
-        '[wires]\n"{0}.rotor_ratio" = "dobby.rotor_ratio"\n"{0}.lift_slope" = "dobby.lift_slope"\n'
-    )
-    named, other = (
-        evaluate(scenes.parse(text.format(name), name, {"steps_per_revolution": 180}), errors="none").claims[
-            0
-        ]
-        for name in ("heald_3", "extra_1")
-    )
+    found = []
+    for name in ("heald_3", "extra_1"):
+        frame = table(name, component="HealdFrame", pattern="10", stroke="20 mm")
+        fed = {f"{name}__{each}": f"dobby.{each}" for each in ("rotor_ratio", "lift_slope")}
+        room = claim("rapier_in_open_shed", head_height="1 mm")
+        loom = '[loom]\nweave = "10/01"\n', frame, room, "[wires]\n", wires(**fed)
+        found += evaluate(parsed(*loom, revolutions=2, steps_per_revolution=180), errors="none").claims
+    named, other = found
     assert other.worst == named.worst
     assert "extra_1" in other.signal and "heald_3" in named.signal
