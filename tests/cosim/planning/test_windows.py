@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scene_texts as texts
+from scene_texts import claim, parsed, verdicts, wires
 from scipy.optimize import minimize_scalar
 
 import loomfmu
-from loomfmu import LoomfmuError
+from loomfmu import Evaluation, LoomfmuError, evaluate
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.planning import windows
-from loomfmu.cosim.run import Evaluation
 from loomfmu.cosim.scenes import scene as scenes
 
 SIMS = Path(__file__).parents[3] / "sims"
@@ -20,10 +21,9 @@ DEGREE = math.pi / 180.0
 
 
 def judged(grid: str = "windows", **changed: object) -> Evaluation:
-    values = {key.replace("__", "."): value for key, value in changed.items()}
     # a shaft that turns backwards has no speed that could be a bound
     text = DEMO.read_text(encoding="utf-8").replace('bound = "shaft.speed"', 'bound = "600 rev/min"')
-    return loomfmu.evaluate(scenes.parse(text), set={"grid": grid, **values})
+    return evaluate(parsed(text, grid=grid, **changed))
 
 
 def lowest(output: str) -> float:
@@ -47,46 +47,23 @@ def lowest(output: str) -> float:
     return float(minimize_scalar(at, bracket=bracket, tol=1e-10).fun)
 
 
-RIGID_CLAIMS = """
-grid = "windows"
-revolutions = 3
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01/10/01"
-[shaft]
-speed = "600 rev/min"
-[heald]
-stroke = "98 mm"
-[[claims]]
-kind = "lowest_margin"
-bound = 0.1
-[[claims]]
-kind = "above"
-signal = "belt.lowest_speed_limit"
-bound = "shaft.speed"
-[[claims]]
-kind = "dwell"
-heald = "heald_1"
-at_least = "80 deg"
-"""
-TRANSFER = """
-[[claims]]
-kind = "dwell_contains"
-heald = "heald_1"
-angles = ["140 deg", "180 deg", "220 deg"]
-"""
+TIMES = {"grid": "windows", "revolutions": 3, "shaft__speed": "600 rev/min"}
+RIGID = texts.loom('weave = "10/01/10/01"\n')
+DWELL = claim("dwell", heald="heald_1", at_least="80 deg")
+CLAIMS = claim("lowest_margin", bound=0.1) + DWELL
+CLAIMS += claim("above", signal="belt.lowest_speed_limit", bound="shaft.speed")
+AT_ANGLES = claim("dwell_contains", heald="heald_1", angles=["140 deg", "180 deg", "220 deg"])
 
 
 def test_a_rigid_loom_is_exact_to_1e_9_with_a_tenth_of_the_steps() -> None:
     margin, limit = lowest("margin"), lowest("speed_limit")
-    found = loomfmu.evaluate(scenes.parse(RIGID_CLAIMS))
+    found = evaluate(parsed(RIGID, CLAIMS, **TIMES))
     steps = len(found.trace.time) - 1
     # 1e-9 is what is promised; it is the curve between samples at 0.2 degrees: 1e-12
     assert abs(found.claims[0].worst - margin) < 1e-9
-    assert abs(found.claims[1].worst - limit) < 1e-9 * limit
+    assert abs(found.claims[2].worst - limit) < 1e-9 * limit
     fine = judged("uniform", steps_per_revolution=5760)
-    assert abs(found.claims[2].worst - fine.claims[2].worst) < 1e-9  # the dwell, rad
+    assert abs(found.claims[1].worst - fine.claims[2].worst) < 1e-9  # the dwell, rad
     # equal steps that are as good: 720 in a revolution; half as many are not
     assert abs(judged("uniform", steps_per_revolution=360).claims[0].worst - margin) > 1e-9
     assert 10 * steps < 3 * 720
@@ -124,8 +101,7 @@ def test_a_damper_is_as_good_as_with_equal_steps(
     text = DEMO.read_text(encoding="utf-8").replace('"10/01/10/01"', f'"{weave}"')
     assert weave in text
     found, even = (
-        loomfmu.evaluate(scenes.parse(text), set={"grid": grid, "revolutions": 4, **changed}).claims[5]
-        for grid in ("windows", "uniform")
+        verdicts(text, **{"grid": grid, "revolutions": 4, **changed})[5] for grid in ("windows", "uniform")
     )
     assert found.signal == "damper_1.peak_load"
     assert found.worst == pytest.approx(even.worst, rel=reach)
@@ -141,7 +117,7 @@ def test_a_damper_is_as_good_as_with_equal_steps(
 def test_ripples_are_not_overlooked(order: int, amplitude: float) -> None:
     at = {"shaft.ripple_order": order, "shaft.ripple_amplitude": amplitude, "revolutions": 1}
     found, even, exact = (
-        loomfmu.evaluate(BELT, set={"grid": grid, "steps_per_revolution": steps, **at}, errors=errors)
+        evaluate(BELT, set={"grid": grid, "steps_per_revolution": steps, **at}, errors=errors)
         for grid, steps, errors in (
             *[("windows", 1440, "all"), ("uniform", 1440, "none")],
             ("uniform", 11520, "none"),
@@ -160,10 +136,8 @@ def test_ripples_are_not_overlooked(order: int, amplitude: float) -> None:
 def test_a_ripple_takes_more_steps_than_the_scene_has() -> None:
     at = {"shaft.ripple_order": 7, "shaft.ripple_amplitude": 0.3, "revolutions": 1}
     few = {"steps_per_revolution": 36, "coarse_steps_per_revolution": 24}
-    found = loomfmu.evaluate(BELT, set=few | at)
-    exact = loomfmu.evaluate(
-        BELT, set={"grid": "uniform", "steps_per_revolution": 11520, **at}, errors="none"
-    )
+    found = evaluate(BELT, set=few | at)
+    exact = evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 11520, **at}, errors="none")
     assert found.claims[0].worst == pytest.approx(exact.claims[0].worst, abs=1e-9)
     wanted = "steps: 112 per revolution (the shaft ripples 7 times in a revolution), plus steps that land"
     assert any(line.startswith(wanted) for line in found.skipped)
@@ -173,8 +147,7 @@ def test_a_ripple_takes_more_steps_than_the_scene_has() -> None:
 def test_steps_as_fine_as_points_are_kept_apart_stay(steps: int) -> None:
     at = {"steps_per_revolution": steps, "shaft.speed": "300 rpm", "revolutions": 4}
     found, even = (
-        loomfmu.evaluate(SIMS / "damper.toml", set={"grid": grid, **at}, flavour="native")
-        for grid in ("windows", "uniform")
+        evaluate(SIMS / "damper.toml", set={"grid": grid, **at}) for grid in ("windows", "uniform")
     )
     assert 0.9 * even.steps < found.steps < 1.1 * even.steps
     # steps of half that size change it by 1e-12 of it
@@ -183,39 +156,31 @@ def test_steps_as_fine_as_points_are_kept_apart_stay(steps: int) -> None:
 
 def test_a_quick_start_is_not_overlooked() -> None:
     at = {"shaft.ramp_duration": "5 ms", "revolutions": 2}  # a whole one after the ramp
-    found = loomfmu.evaluate(BELT, set={"grid": "windows", **at})
-    fine = loomfmu.evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 5760, **at})
+    found = evaluate(BELT, set={"grid": "windows", **at})
+    fine = evaluate(BELT, set={"grid": "uniform", "steps_per_revolution": 5760, **at})
     assert found.claims[0].worst == pytest.approx(fine.claims[0].worst, abs=1e-9)
     assert any("steps: 320 per revolution (the shaft starts up in 0.005 s)" in line for line in found.skipped)
 
 
 def test_a_pull_between_two_coarse_steps_is_not_overlooked() -> None:
-    text = BELT.read_text(encoding="utf-8") + (
-        '\n[inputs]\n"belt.yarn_tension" = [[0.265, "0 N"], [0.27, "4 N"], [0.275, "0 N"]]\n'
-    )
-    found = loomfmu.evaluate(scenes.parse(text, directory=SIMS), set={"grid": "windows", "revolutions": 1})
-    fine = loomfmu.evaluate(
-        scenes.parse(text, directory=SIMS),
-        set={"grid": "uniform", "steps_per_revolution": 72000, "revolutions": 1},
-        flavour="native",
-    )
-    assert found.claims[0].worst == pytest.approx(fine.claims[0].worst, abs=1e-8)
+    pull = wires(belt__yarn_tension=[[0.265, "0 N"], [0.27, "4 N"], [0.275, "0 N"]])
+    text = f"{BELT.read_text(encoding='utf-8')}\n[inputs]\n{pull}"
+    grids = {"grid": "windows"}, {"grid": "uniform", "steps_per_revolution": 72000}
+    found, fine = (verdicts(text, revolutions=1, **grid)[0] for grid in grids)
+    assert found.worst == pytest.approx(fine.worst, abs=1e-8)
 
 
 def test_values_that_no_claim_is_about_are_as_good() -> None:
-    text = (
-        RIGID_CLAIMS[: RIGID_CLAIMS.index("[[claims]]")] + RIGID_CLAIMS[RIGID_CLAIMS.rindex("[[claims]]") :]
-    )
     values = ["belt.lowest_margin", "belt.lowest_speed_limit"]
-    trace = loomfmu.evaluate(scenes.parse(text), values=values).trace
+    trace = evaluate(parsed(RIGID, DWELL, **TIMES), values=values).trace
     assert trace[values[0]][-1] == pytest.approx(lowest("margin"), abs=1e-9)
     assert trace[values[1]][-1] == pytest.approx(lowest("speed_limit"), rel=1e-9)
 
 
 def test_steps_land_on_the_edges_of_the_windows() -> None:
-    found = loomfmu.evaluate(scenes.parse(RIGID_CLAIMS + TRANSFER))
+    found = evaluate(parsed(RIGID, CLAIMS, AT_ANGLES, **TIMES))
     angles = found.trace.shaft_angle / DEGREE
-    for wanted in (140.0, 180.0, 220.0, 500.0):  # the claim on the transfer names these angles
+    for wanted in (140.0, 180.0, 220.0, 500.0):  # a claim names these angles
         assert np.min(np.abs(angles - wanted)) < 1e-9
     # the belt's window: the spline through the scout's samples tells its edges to a thousandth of a degree
     length = judged(**{"steps_per_revolution": 1440}).trace
@@ -253,42 +218,28 @@ def test_windows_are_found_wherever_they_are(changed: dict[str, object]) -> None
     ],
 )
 def test_what_integrates_takes_the_scenes_own_steps(rest: str, why: str) -> None:
-    text = 'grid = "windows"\ncoupling = "iterated"\nsteps_per_revolution = 360\n'
-    text += '[loom]\nmachine = "WL680-3600"\n'
-    text += f'{rest}[[claims]]\nkind = "lowest_margin"\nbound = -1.0\n'
-    found = loomfmu.evaluate(scenes.parse(text))
+    parts, at = (texts.LOOM, rest, claim("lowest_margin", bound=-1.0)), {"steps_per_revolution": 360}
+    found, even = (evaluate(parsed(*parts, **at, grid=grid)) for grid in ("windows", "uniform"))
     assert f'steps: all equal, as with grid = "uniform", because {why}' in found.skipped
-    even = loomfmu.evaluate(scenes.parse(text), set={"grid": "uniform"})
     assert found.claims == even.claims
     assert found.steps == even.steps == 360
 
 
 def test_a_claim_that_is_judged_at_every_sample_gets_them_all() -> None:
-    text = 'grid = "windows"\nsteps_per_revolution = 90\n[loom]\nmachine = "WL680-3600"\n' + (
-        '[[claims]]\nkind = "below"\nsignal = "weft.shaft_torque"\nbound = "1000 N.m"\n'
-    )
-    assert len(loomfmu.evaluate(scenes.parse(text)).trace.time) == 91
+    torque = claim("below", signal="weft.shaft_torque", bound="1000 N.m")
+    assert evaluate(parsed(texts.LOOM, torque, grid="windows", steps_per_revolution=90)).steps == 90
 
 
 def test_the_lowest_value_of_any_signal_with_a_rate_is_landed_on() -> None:
-    text = """
-grid = "windows"
-coarse_steps_per_revolution = 16
-[loom]
-machine = "WL680-3600"
-[[claims]]
-kind = "above"
-signal = "weft.velocity"
-bound = "-1 km/h"
-[[claims]]
-kind = "below"
-signal = "weft.travel"
-bound = "1 mm"
-window = ["300 deg", "30 deg"]
-"""
-    text = text.replace('"-1 km/h"', "-0.1")
-    few = loomfmu.evaluate(scenes.parse(text))
-    many = loomfmu.evaluate(scenes.parse(text), set={"grid": "uniform", "steps_per_revolution": 5760})
+    claims = claim("above", signal="weft.velocity", bound=-0.1)
+    claims += claim("below", signal="weft.travel", bound="1 mm", window=["300 deg", "30 deg"])
+    few, many = (
+        evaluate(parsed(texts.LOOM, claims, **grid))
+        for grid in (
+            {"grid": "windows", "coarse_steps_per_revolution": 16},
+            {"grid": "uniform", "steps_per_revolution": 5760},
+        )
+    )
     assert len(few.trace.time) < 40
     for verdict, exact in zip(few.claims, many.claims, strict=True):
         assert verdict.worst == pytest.approx(exact.worst, rel=1e-8)
@@ -309,21 +260,20 @@ def test_a_recorded_run_is_on_the_same_grid_and_says_so(tmp_path: Path) -> None:
     [
         ("[shaft]", 'grid = "windows": the scene has no claims, so there is nothing to look for'),
         (
-            "coarse_steps_per_revolution = 2000\n"
-            '[[claims]]\nkind = "below"\nsignal = "shaft.velocity"\nbound = 1\n',
+            "coarse_steps_per_revolution = 2000\n" + claim("below", signal="shaft.velocity", bound=1),
             "coarse_steps_per_revolution = 2000 is outside [1, 1440], its steps_per_revolution",
         ),
     ],
 )
 def test_mistakes_are_refused(text: str, message: str) -> None:
     with pytest.raises(LoomfmuError) as raised:
-        loomfmu.evaluate(scenes.parse(f'grid = "windows"\n{text}'))
+        verdicts('grid = "windows"\n', text)
     assert str(raised.value) == message
 
 
 def test_a_grid_of_another_name_is_refused() -> None:
     with pytest.raises(LoomfmuError, match=r"grid = 'window' is unknown; did you mean 'windows'"):
-        scenes.parse('grid = "window"')
+        parsed('grid = "window"')
 
 
 def test_points_are_merged_in_order_of_their_weight() -> None:
@@ -346,4 +296,4 @@ def test_more_steps_than_memory_holds_are_refused_before_any_is_taken() -> None:
         LoomfmuError,
         match=r"2400000000 steps are more than the 10000000 that fit into memory; .* fewer revolutions",
     ):
-        loomfmu.evaluate(scene)
+        evaluate(scene)

@@ -508,14 +508,6 @@ def test_a_file_is_named_in_what_is_said_of_it(tmp_path: Path) -> None:
         scenes.load(path)
 
 
-def test_a_scene_that_was_read_can_be_run_with_other_values(tmp_path: Path) -> None:
-    scene = small(90, 0.1)
-    result = run(scene, set={"shaft.speed": "700 rpm"}, output=tmp_path / "other.h5")
-    assert math.isclose(result.scene.speed, 700 * RPM)
-    assert math.isclose(scene.speed, 400 * RPM)
-    assert result.trace["shaft.velocity"][0] == result.scene.speed
-
-
 def test_a_mechanism_that_follows_no_shaft_beside_one_is_named() -> None:
     cut = wires(**{f"weft__shaft_{each}": False for each in MOTION})
     note = "weft runs at its own constant speed: its shaft inputs are not wired to the shaft"

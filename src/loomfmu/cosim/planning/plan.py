@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from ...display import printed
-from ...traces import ROWS, Channel, Early, Recording
+from ...traces import ROWS, Channel, Early, Recording, TraceWriter
 from ..importing import fmus
 from ..importing.slave import Ended
 from ..master.grid import Grid, uniform
@@ -19,13 +19,6 @@ from ..scenes.scene import Scene
 from ..scenes.settings import MAY_END
 from .pruning import Effective, Pruned, prune
 from .requested import Requested, beside_of, effective_wires, output_port, own_speeds
-
-
-class Keeper(Protocol):
-    """A receiver of the blocks of a run."""
-
-    def append(self, time: Reals, angle: Reals, reals: Reals, integers: Integers) -> None:
-        """Keep a block: values along the rows, signals along the columns."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +128,9 @@ def _channels(scene: Scene, signals: Sequence[str], master: Master) -> list[Chan
     return found
 
 
-def record(master: Master, keeper: Keeper, progress: Callable[[int], None], rows: int = ROWS) -> None:
+def record(
+    master: Master, keeper: Recording | TraceWriter, progress: Callable[[int], None], rows: int = ROWS
+) -> None:
     """Step an initialized master to the end, and hand over blocks of so many rows.
 
     A block that holds the whole run belongs to the keeper; of others the memory is used again.
