@@ -4,36 +4,24 @@ import pickle
 
 import numpy as np
 import pytest
+from scene_texts import LOOM, claim, parsed, verdicts
 
 import loomfmu
 from loomfmu import judge
-from loomfmu.cosim.scenes import scene as scenes
 
-SCENE = """
-revolutions = 3
-steps_per_revolution = 180
-coupling = "iterated"
-[loom]
-machine = "WL680-3600"
-[shaft]
-component = "DrivenShaft"
-start_at_speed = false
-[[claims]]
-kind = "motor_power"
-at_most = "17.55 kW"
-[[claims]]
-kind = "speed_fluctuation"
-at_most = "5 %"
-skip = 1
-"""
+STARTING = 'component = "DrivenShaft"\nstart_at_speed = false\n'
+POWER = claim("motor_power", at_most="17.55 kW")
 
 
-def claims(**given):
-    return loomfmu.evaluate(scenes.parse(SCENE, overrides=given)).claims
+def claims(shaft=STARTING, skip=1, inputs="", **given):
+    """Power and fluctuation of a motor, by default from rest."""
+    fluctuation = claim("speed_fluctuation", at_most="5 %", skip=skip)
+    usual = {"revolutions": 3, "steps_per_revolution": 180, "coupling": "iterated"}
+    return loomfmu.evaluate(parsed(LOOM, "[shaft]\n", shaft, POWER, fluctuation, inputs, **usual | given))
 
 
 def test_the_motors_peak_lies_at_half_its_speed():
-    power, _fluctuation = claims()
+    power, _fluctuation = claims().claims
     # the parabola k (w0 - w) w of the torque line: k w0^2 / 4, passed on the way up
     assert power.holds
     assert power.worst == pytest.approx(40.0 * (400.0 * np.pi / 30.0) ** 2 / 4.0, rel=1e-6)  # quintic
@@ -41,8 +29,7 @@ def test_the_motors_peak_lies_at_half_its_speed():
 
 
 def test_fluctuation_is_judged_in_each_revolution_after_those_that_are_skipped():
-    scene = scenes.parse(SCENE)
-    found = loomfmu.evaluate(scene)
+    found = claims()
     trace = found.trace
     turns = (trace["shaft.angle"] - trace["shaft.angle"][0]) / (2.0 * np.pi)
     second = (turns >= 1.0) & (turns <= 2.0)  # the last one is not whole: the shaft has started from rest
@@ -55,56 +42,36 @@ def test_fluctuation_is_judged_in_each_revolution_after_those_that_are_skipped()
 
 def test_an_unfinished_revolution_counts_by_what_the_run_shows_of_it():
     """A driven shaft turns by less than the nominal revolutions: a load in the last one was never judged."""
-    text = SCENE.replace("start_at_speed = false", "").replace("skip = 1", "")
+    text = 'component = "DrivenShaft"\n'
     load = '[inputs]\n"shaft.torque_32" = [[0, 0], [1.3, 0], [1.4, 800], [1.5, 0]]\n'
-    loaded, whole = (
-        loomfmu.evaluate(scenes.parse(text + load, overrides={"revolutions": each})).claims[1]
-        for each in (1.9, 2.5)
-    )
+    loaded, whole = (claims(text, 0, load, revolutions=each).claims[1] for each in (1.9, 2.5))
     assert (loaded.word, whole.word) == ("FAILS", "FAILS")
     # over the highest speed, not over the mean that the whole revolution will have: never too much
     assert loaded.revolution == 2 and 0.9 * whole.worst < loaded.worst < whole.worst
 
 
 def test_a_run_without_a_whole_revolution_is_not_judged():
-    claim = claims(revolutions=0.5)[1]
-    assert not claim.holds
-    assert claim.note == "the run has no whole revolution to judge"
+    found = claims(revolutions=0.5).claims[1]
+    assert not found.holds
+    assert found.note == "the run has no whole revolution to judge"
 
 
 def test_a_skip_that_leaves_no_revolution_is_named():
-    text = SCENE.replace("skip = 1", "skip = 5").replace("start_at_speed = false", "start_at_speed = true")
-    claim = loomfmu.evaluate(scenes.parse(text, overrides={"revolutions": 3})).claims[1]
-    assert claim.word == "undecided"
-    assert claim.note.startswith("skip = 5 leaves none of the whole revolutions of the run: it has ")
-    assert claim.note.endswith(" and needs 6; raise revolutions")
+    found = claims('component = "DrivenShaft"\n', 5).claims[1]
+    assert found.word == "undecided"
+    assert found.note.startswith("skip = 5 leaves none of the whole revolutions of the run: it has ")
+    assert found.note.endswith(" and needs 6; raise revolutions")
 
 
 def test_a_scene_without_a_motor_has_no_power_to_judge():
-    text = '[loom]\nmachine = "WL680-3600"\n[[claims]]\nkind = "motor_power"\nat_most = 1.0\n'
     with pytest.raises(loomfmu.LoomfmuError, match="shaft has no output 'motor_power'"):
-        loomfmu.evaluate(scenes.parse(text))
-
-
-ENERGY = """
-revolutions = 1
-steps_per_revolution = {steps}
-coupling = "iterated"
-[loom]
-machine = "WL680-3600"
-weave = "10/01"
-reed = true
-{fittings}
-[shaft]
-component = "DrivenShaft"
-{shaft}
-[[claims]]
-kind = "energy_balance"
-"""
+        verdicts(LOOM, POWER)
 
 
 def energy(steps=360, fittings="", shaft=""):
-    return loomfmu.evaluate(scenes.parse(ENERGY.format(steps=steps, fittings=fittings, shaft=shaft)))
+    keys = f'weave = "10/01"\nreed = true\n{fittings}\n[shaft]\ncomponent = "DrivenShaft"\n'
+    times = {"revolutions": 1, "steps_per_revolution": steps, "coupling": "iterated"}
+    return loomfmu.evaluate(parsed(LOOM, keys, shaft, "\n", claim("energy_balance"), **times))
 
 
 def altered(trace, signal, factor):
@@ -137,18 +104,17 @@ def test_a_torque_that_does_not_do_the_work_that_is_stated_fails(fittings, steps
 @pytest.mark.parametrize("shaft", ['[wires]\n"shaft.work_1" = false\n', "use_work_1 = false"])
 def test_a_load_whose_work_does_not_count_is_integrated_from_its_torque(shaft):
     found = energy(shaft=shaft)
-    (claim,) = found.claims
-    assert claim.holds
-    assert claim.worst < 1e-10  # what two ends of the loop differ by
-    assert claim.note == "work by the torque alone, of second order in the step: weft.shaft_torque"
+    (balance,) = found.claims
+    assert balance.holds
+    assert balance.worst < 1e-10  # what two ends of the loop differ by
+    assert balance.note == "work by the torque alone, of second order in the step: weft.shaft_torque"
     assert found.trace["shaft.other_work"][-1] != 0.0
 
 
 def test_a_torque_that_is_passed_on_is_integrated_from_it():
-    found = energy(fittings="dampers = true", shaft='[wires]\n"heald_2.load_work" = false\n')
-    (claim,) = found.claims
-    assert claim.holds
-    assert claim.note == "work by the torque alone, of second order in the step: heald_2.passed_torque"
+    (balance,) = energy(fittings="dampers = true", shaft='[wires]\n"heald_2.load_work" = false\n').claims
+    assert balance.holds
+    assert balance.note == "work by the torque alone, of second order in the step: heald_2.passed_torque"
 
 
 def test_a_trace_that_does_not_have_its_wires_is_judged_as_one_with_all():
@@ -168,13 +134,12 @@ def test_a_work_that_the_shaft_counts_but_that_is_not_wired_fails():
 
 
 def test_a_start_from_rest_that_fails_names_its_steps():
-    scene = ENERGY.format(steps=90, fittings="", shaft='start_at_speed = false\nspeed = "300 rev/min"')
-    (claim,) = loomfmu.evaluate(scenes.parse(scene)).claims
-    assert not claim
-    assert claim.note == "the steps may be too coarse for the start from rest: take more"
-    (claim,) = loomfmu.evaluate(scenes.parse(scene, overrides={"steps_per_revolution": 1440})).claims
-    assert claim
-    assert claim.note == ""
+    from_rest = 'start_at_speed = false\nspeed = "300 rev/min"'
+    (coarse,), (fine,) = (energy(steps, shaft=from_rest).claims for steps in (90, 1440))
+    assert not coarse
+    assert coarse.note == "the steps may be too coarse for the start from rest: take more"
+    assert fine
+    assert fine.note == ""
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,15 @@
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
 from drawn_runs import drawn
+from scene_texts import MOTION, claim, loom, table, verdicts, wires
 
-from loomfmu import LoomfmuError, evaluate, judge
+from loomfmu import LoomfmuError, Verdict, judge
 from loomfmu.cosim.claims.movers import Mover, movers_of
-from loomfmu.cosim.scenes.scene import parse
 
 MAIN = {"weft": "WeftInsertion", "belt": "BeltMonitor", "shaft": "MainShaft"}
 
@@ -104,31 +105,31 @@ def test_a_whole_turn_is_one_in_the_unit_of_the_angle(unit: str, turn: float) ->
         assert judge(run, kind="below", signal="bump.lift", bound=1, at_samples=True).word == word
 
 
-WEFT = '[weft]\nmachine = "WL680-3600"\nhead = "G6300 left"\n'
-BELT = '[belt]\ncomponent = "BeltMonitor"\nmachine = "WL680-3600"\nhead = "G6300 left"\n'
-BELOW = '[[claims]]\nkind = "below"\nsignal = "{}"\nbound = {}\n'
-TURNING_BACK = """
-revolutions = {}
-steps_per_revolution = 720
-[shaft]
-component = "DrivenShaft"
-speed = "60 rev/min"
-inertia = 3
-torque_slope = 50
-start_angle = "{} deg"
-[inputs]
-"shaft.torque_32" = [[0, 0], [0.02, 0], [0.03, {force}], [{end}, {force}], [{after}, 0], [5, 0]]
-"""
+PUBLISHED = {"machine": "WL680-3600", "head": "G6300 left"}
+WEFT, BELT = table("weft", **PUBLISHED), table("belt", component="BeltMonitor", **PUBLISHED)
+
+
+def below(signal: str, bound: Any) -> str:
+    return claim("below", signal=signal, bound=bound)
+
+
+def turned_back(
+    revolutions: float, start: float, force: float, end: float, *parts: str, steps: int = 720
+) -> tuple[Verdict, ...]:
+    """Verdicts on a shaft that a torque turns back, from 0.03 revolutions to `end`."""
+    shaft = table("shaft", component="DrivenShaft", speed="60 rev/min", inertia=3, torque_slope=50)
+    rows = [[0, 0], [0.02, 0], [0.03, force], [end, force], [end + 0.01, 0], [5, 0]]
+    torque = "[inputs]\n" + wires(shaft__torque_32=rows)
+    at = {"revolutions": revolutions, "steps_per_revolution": steps, "shaft__start_angle": f"{start} deg"}
+    return verdicts(shaft, torque, *parts, **at)
 
 
 def test_what_turns_at_its_own_speed_turns_whole_revolutions_too() -> None:
     """In a fifth of a revolution the belt was never at risk."""
-    claim = '[[claims]]\nkind = "lowest_margin"\nbound = 0.99\n'
-    text = 'duration = "{}"\nstep = "0.0001 s"\n' + WEFT + BELT + claim
-    values = {"weft.speed": "600 rpm", "belt.speed": "600 rpm"}
-    (short,), (whole,) = (
-        evaluate(parse(text.format(s), overrides=values)).claims for s in ("20 ms", "0.1 s")
-    )
+    margin = claim("lowest_margin", bound=0.99)
+    text = 'duration = "{}"\nstep = "0.0001 s"\n' + WEFT + BELT + margin
+    speeds = {"weft__speed": "600 rpm", "belt__speed": "600 rpm"}
+    (short,), (whole,) = (verdicts(text.format(duration), **speeds) for duration in ("20 ms", "0.1 s"))
     assert short.word == "undecided" and short.note.startswith(
         "a mechanism at its own speed turns by only 0.2"
     )
@@ -136,55 +137,47 @@ def test_what_turns_at_its_own_speed_turns_whole_revolutions_too() -> None:
 
 
 def test_a_window_that_a_shaft_enters_and_leaves_by_one_edge_is_not_passed() -> None:
-    text = TURNING_BACK.format(0.1, 5, force=2000, end=0.06, after=0.07) + WEFT
-    text += BELOW.format("weft.travel", '"1 m"') + 'window = ["8 deg", "300 deg"]\n'
-    (found,) = evaluate(parse(text)).claims
+    window = below("weft.travel", "1 m") + 'window = ["8 deg", "300 deg"]\n'
+    (found,) = turned_back(0.1, 5, 2000, 0.06, WEFT, window)
     assert (found.word, found.note) == ("undecided", "the run never passes through the whole window")
 
 
 def test_a_revolution_ends_once_however_a_shaft_turns_back() -> None:
     """The first one takes 1.9549 s at 60 to -397 rev/min; its end by the arrays of a finer run."""
-    text = TURNING_BACK.format(4, 0, force=3000, end=0.12, after=0.13)
-    (found,) = evaluate(parse(text + '[[claims]]\nkind = "speed_fluctuation"\nat_most = 8\n')).claims
+    (found,) = turned_back(4, 0, 3000, 0.12, claim("speed_fluctuation", at_most=8))
     assert found.word == "FAILS" and found.worst == pytest.approx(14.895, rel=1e-3)
 
 
-REED = '[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"\nreed = true\n[reed]\nbeat_up_angle = "150 deg"\n'
-SHED = '[[claims]]\nkind = "reed_clear_of_rapier"\nclearance = "20 mm"\n'
 FRAMES = '[loom]\nmachine = "WL680-3600"\nweave = "10/01"\n'
-DWELL = '[[claims]]\nkind = "dwell"\nheald = "heald_1"\nat_least = "60 deg"\n'
-CLEAR = '[[claims]]\nkind = "clear_shed"\nheald = "heald_1"\nclearance = "3 mm"\nat_least = "100 deg"\n'
+DWELL = claim("dwell", heald="heald_1", at_least="60 deg")
+CLEAR = claim("clear_shed", heald="heald_1", clearance="3 mm", at_least="100 deg")
 
 
-@pytest.mark.parametrize(("start", "scene", "claim"), [(230, FRAMES, DWELL), (330, FRAMES, CLEAR)])
-def test_a_dwell_in_which_the_shaft_turns_back_has_no_length(start: int, scene: str, claim: str) -> None:
+@pytest.mark.parametrize(("start", "judged"), [(230, DWELL), (330, CLEAR)])
+def test_a_dwell_in_which_the_shaft_turns_back_has_no_length(start: int, judged: str) -> None:
     """Entered and left at one angle, it lasted 0 deg, and failed."""
-    text = TURNING_BACK.format(3, start, force=2000, end=0.06, after=0.07) + scene + claim
-    (found,) = evaluate(parse(text)).claims
+    (found,) = turned_back(3, start, 2000, 0.06, FRAMES, judged)
     assert found.word == "undecided" and "the shaft turns back" in found.note
 
 
 def test_a_mechanism_that_follows_nothing_stands() -> None:
-    text = 'duration = "20 ms"\nstep = "0.2 ms"\n' + WEFT + BELOW.format("weft.travel", '"1 m"')
-    (found,) = evaluate(parse(text, overrides={"weft.follow_shaft": True})).claims
+    travel = below("weft.travel", "1 m")
+    (found,) = verdicts('duration = "20 ms"\nstep = "0.2 ms"\n', WEFT, travel, weft__follow_shaft=True)
     assert found.word == "undecided" and "nothing feeds weft.shaft_angle" in found.note
 
 
 def test_a_head_that_turns_back_has_not_been_through_the_shed() -> None:
-    text = TURNING_BACK.format(0.1, 60, force=2000, end=0.06, after=0.07) + REED + SHED
-    text = text.replace("steps_per_revolution = 720", "steps_per_revolution = 7200")
-    (found,) = evaluate(parse(text)).claims
+    reed, shed = loom("reed = true\n"), claim("reed_clear_of_rapier", clearance="20 mm")
+    late = table("reed", beat_up_angle="150 deg")
+    (found,) = turned_back(0.1, 60, 2000, 0.06, reed, late, shed, steps=7200)
     assert found.word == "undecided" and "the shaft turns by only 0.0" in found.note
 
 
 def test_a_table_of_the_shafts_angle_takes_effect_as_a_wire_does() -> None:
     """The mechanism turned at its own speed, whatever the table said."""
-    text = 'revolutions = {}\nsteps_per_revolution = 90\n[shaft]\nspeed = "200 rpm"\n' + WEFT
-    text += "[wires]\n" + "".join(
-        f'"weft.shaft_{each}" = false\n' for each in ("angle", "velocity", "acceleration")
-    )
-    text += '[inputs]\n"weft.shaft_angle" = [[0, 0], [10, "720 deg"]]\n'
-    text += '"weft.shaft_velocity" = [[0, "40 rpm"]]\n' + BELOW.format("weft.travel", '"1 m"')
-    (short,), (whole,) = (evaluate(parse(text.format(turns))).claims for turns in (1, 6))
+    cut = "[wires]\n" + wires(**{f"weft__shaft_{each}": False for each in MOTION})
+    turning = wires(weft__shaft_angle=[[0, 0], [10, "720 deg"]], weft__shaft_velocity=[[0, "40 rpm"]])
+    scene = '[shaft]\nspeed = "200 rpm"\n', WEFT, cut, f"[inputs]\n{turning}", below("weft.travel", "1 m")
+    (short,), (whole,) = (verdicts(*scene, revolutions=turns, steps_per_revolution=90) for turns in (1, 6))
     assert short.word == "undecided" and short.note.startswith("weft.shaft_angle turns by only 0.2")
     assert whole.word == "FAILS" and whole.worst == pytest.approx(2.0953, rel=1e-3)
