@@ -5,11 +5,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from scene_texts import LOOM, claim, parsed
 
 from loomfmu import LoomfmuError, Trace, evaluate, limit, prepare
 from loomfmu.cli import main
 from loomfmu.cosim.accuracy import GROWTH, tried_steps
-from loomfmu.cosim.scenes.scene import parse
 
 DEMO = Path(__file__).parents[2] / "sims" / "wl680_3600.toml"
 REPEAT = {"revolutions": 2}  # of the weave
@@ -55,20 +55,16 @@ def test_each_row_chooses_its_own_steps_and_a_search_keeps_them() -> None:
 
 def test_a_loop_is_iterated_unless_the_scene_says_otherwise() -> None:
     text = LIGHT.read_text()
-    assert (
-        parse(text.replace('coupling = "iterated"', ""), overrides={"accuracy": 1e-3}).coupling == "iterated"
-    )
-    lagged = parse(text, overrides={"accuracy": 1e-3, "coupling": "lagged"})
-    assert lagged.coupling == "lagged"
-    assert parse(DEMO.read_text(), overrides={"accuracy": 1e-3}).coupling == "lagged"  # it has no loop
+    assert parsed(text.replace('coupling = "iterated"', ""), accuracy=1e-3).coupling == "iterated"
+    assert parsed(text, accuracy=1e-3, coupling="lagged").coupling == "lagged"
+    assert parsed(DEMO.read_text(), accuracy=1e-3).coupling == "lagged"  # it has no loop
 
 
 def test_setting_one_replaces_the_other() -> None:
     text = DEMO.read_text().replace("steps_per_revolution = 1440", "accuracy = 1e-3")
-    assert parse(text).accuracy == 1e-3
-    assert parse(text, overrides={"steps_per_revolution": 90}).accuracy is None
-    windows = DEMO.with_name("belt_alone.toml").read_text()
-    assert parse(windows, overrides={"accuracy": 1e-3}).grid == "uniform"
+    assert parsed(text).accuracy == 1e-3
+    assert parsed(text, steps_per_revolution=90).accuracy is None
+    assert parsed(DEMO.with_name("belt_alone.toml").read_text(), accuracy=1e-3).grid == "uniform"
 
 
 @pytest.mark.parametrize(
@@ -90,15 +86,19 @@ def test_what_cannot_be_chosen_is_refused_in_one_line(given: dict[str, object], 
     assert "\n" not in str(refused.value)
 
 
-def test_an_accuracy_needs_claims_and_revolutions() -> None:
-    with pytest.raises(LoomfmuError, match="the scene has none: add"):
-        parse('accuracy = 1e-6\n[loom]\nmachine = "WL680-3600"\nhead = "G6300 left"')
-    seconds = (
-        'accuracy = 1e-6\nduration = "1 s"\nstep = "1 ms"\n[loom]\nmachine = "WL680-3600"\n'
-        'head = "G6300 left"\n[[claims]]\nkind = "lowest_margin"\nbound = 0'
-    )
-    with pytest.raises(LoomfmuError, match="the scene runs by seconds"):
-        parse(seconds)
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ((LOOM,), "the scene has none: add"),
+        (
+            ('duration = "1 s"\nstep = "1 ms"\n', LOOM, claim("lowest_margin", bound=0)),
+            "the scene runs by seconds",
+        ),
+    ],
+)
+def test_an_accuracy_needs_claims_and_revolutions(parts: tuple[str, ...], said: str) -> None:
+    with pytest.raises(LoomfmuError, match=said):
+        parsed(*parts, accuracy=1e-6)
 
 
 @pytest.mark.parametrize("revolutions", [1, 2.5, 2.025, 2.0625, 91 / 45, 1 + 1 / 1440])

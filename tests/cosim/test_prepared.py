@@ -58,12 +58,6 @@ def anew(given: dict[str, Any]) -> Evaluation:
     return evaluate(DEMO, set={key: each for key, each in SHORT.items() if key not in given} | given)
 
 
-def refusal(given: dict[str, Any]) -> str:
-    with pytest.raises(LoomfmuError) as raised:
-        anew(given)
-    return str(raised.value).removeprefix(f"{DEMO}: ")
-
-
 @pytest.fixture(scope="module")
 def loom() -> Iterator[loomfmu.Prepared]:
     with prepare(DEMO, set=SHORT) as made:
@@ -113,10 +107,11 @@ def test_values_alone_are_not_read_anew(loom: loomfmu.Prepared, monkeypatch: pyt
 def test_refusals_are_those_of_a_scene_that_is_read_anew(
     loom: loomfmu.Prepared, given: dict[str, Any]
 ) -> None:
-    wanted = refusal(given)
-    with pytest.raises(LoomfmuError) as raised:
+    with pytest.raises(LoomfmuError) as read_anew:
+        anew(given)
+    with pytest.raises(LoomfmuError) as prepared:
         loom.evaluate(given)
-    assert str(raised.value) == wanted
+    assert str(prepared.value) == str(read_anew.value).removeprefix(f"{DEMO}: ")
     same(loom.evaluate(), anew({}))
 
 
@@ -200,8 +195,6 @@ def test_an_evaluation_can_be_sent_to_another_process(loom: loomfmu.Prepared) ->
 def test_further_signals_are_kept() -> None:
     with prepare(DEMO, set=SHORT, values=["belt.deflection"]) as loom:
         assert "belt.deflection" in loom.evaluate(VALUES[0]).trace
-    with pytest.raises(LoomfmuError, match="belt has no output 'deflexion'"):
-        prepare(DEMO, values=["belt.deflexion"])
 
 
 def test_closing_frees_the_instances_and_a_later_run_makes_new_ones() -> None:

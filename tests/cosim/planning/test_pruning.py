@@ -6,9 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scene_texts as texts
 from direct_loom import small
+from scene_texts import claim, parsed
 
 import loomfmu
+from loomfmu import LoomfmuError
 from loomfmu.cosim.importing import fmus, pool
 from loomfmu.cosim.planning.plan import explained
 from loomfmu.cosim.planning.pruning import Pruned, prune
@@ -17,19 +20,7 @@ from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
-MARGIN = """
-record = []
-steps_per_revolution = 360
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-weave = "10/01/10/01"
-dampers = true
-{rest}
-[[claims]]
-kind = "lowest_margin"
-bound = 0.1
-"""
+LOOM = texts.loom('weave = "10/01/10/01"\ndampers = true\n')
 
 
 def needed_for(scene: Scene) -> Pruned:
@@ -38,7 +29,8 @@ def needed_for(scene: Scene) -> Pruned:
 
 
 def margin(rest: str = "") -> Scene:
-    return scenes.parse(MARGIN.format(rest=rest), "margin")
+    lowest = claim("lowest_margin", bound=0.1)
+    return parsed("record = []\n", LOOM, rest, lowest, steps_per_revolution=360)
 
 
 def test_a_scene_that_claims_the_belts_margin_alone_needs_two_fmus() -> None:
@@ -101,39 +93,32 @@ def test_an_evaluation_gives_the_verdicts_of_a_run_and_writes_nothing(
     np.testing.assert_array_equal(evaluated.trace["heald_3.lift"], result.trace["heald_3.lift"])
     assert evaluated.trace.parameter("heald_3.stroke") == result.trace.parameter("heald_3.stroke")
     assert "damper_3.rate" not in evaluated.trace
-    with pytest.raises(loomfmu.LoomfmuError, match=r"signal 'damper_3.rate' is not recorded"):
+    with pytest.raises(LoomfmuError, match=r"signal 'damper_3.rate' is not recorded"):
         evaluated.trace["damper_3.rate"]
-    with pytest.raises(
-        loomfmu.LoomfmuError, match=r"record: heald_3 has no output 'lifft'; did you mean 'lift'"
-    ):
+    with pytest.raises(LoomfmuError, match=r"record: heald_3 has no output 'lifft'; did you mean 'lift'"):
         loomfmu.evaluate(DEMO, values=["heald_3.lifft"])
 
 
 @pytest.mark.parametrize(
     "rest",
     [
-        '[shaft]\nramp_duration = "0.1 s"',
-        "[shaft]\nripple_amplitude = 0.01",
-        "[weft]\nfollow_shaft = false\n[belt]\nguide_clearance = 0.0004",
-        '[wires]\n"belt.yarn_tension" = false\n"belt.shaft_acceleration" = false\n',
+        '[shaft]\nramp_duration = "0.1 s"\n',
+        "[shaft]\nripple_amplitude = 0.01\n",
+        "[weft]\nfollow_shaft = false\n[belt]\nguide_clearance = 0.0004\n",
+        '[wires]\n"belt.shaft_acceleration" = false\n',
     ],
 )
 def test_a_shaft_stays_where_it_is_more_than_a_product(rest: str) -> None:
-    if "yarn_tension" in rest:
-        rest = rest.replace('"belt.yarn_tension" = false\n', "")
     needed = needed_for(margin(rest))
     assert "shaft" in needed.scene.instances
     assert not needed.shafts
 
 
-def test_a_shaft_that_others_read_stays(tmp_path: Path) -> None:
-    rest = '[wires]\n"belt.guide_clearance" = "shaft.acceleration"\n'
-    with pytest.raises(
-        loomfmu.LoomfmuError, match=r"shaft.acceleration is in rad/s2, belt.guide_clearance in m"
-    ):
-        margin(rest)
+def test_a_shaft_that_others_read_stays() -> None:
+    with pytest.raises(LoomfmuError, match=r"shaft.acceleration is in rad/s2, belt.guide_clearance in m"):
+        margin('[wires]\n"belt.guide_clearance" = "shaft.acceleration"\n')
     rest = '[other]\ncomponent = "HealdFrame"\n[wires]\n"other.rotor_angle" = "shaft.angle"\n'
-    assert "shaft" in needed_for(scenes.parse(f'record = ["other.*"]\n{rest}', "other")).scene.instances
+    assert "shaft" in needed_for(parsed('record = ["other.*"]\n', rest)).scene.instances
 
 
 def test_a_driven_input_goes_with_its_instance() -> None:
@@ -154,11 +139,14 @@ def test_loops_are_kept_whole() -> None:
 
 
 def test_without_a_request_nothing_runs() -> None:
-    evaluated = loomfmu.evaluate(scenes.parse("revolutions = 2\nsteps_per_revolution = 8\n[shaft]", "shaft"))
+    evaluated = loomfmu.evaluate(parsed("[shaft]", revolutions=2, steps_per_revolution=8))
     assert evaluated.skipped[-1] == "ran none of 1 FMUs; 16 FMU steps skipped"
     # the closed form of a constant speed: 400 rev/min
     np.testing.assert_allclose(evaluated.trace["shaft.angle"], np.arange(17) * np.pi / 4, rtol=1e-15)
     assert evaluated.trace["shaft.velocity"][-1] == evaluated.trace.parameter("shaft.speed")
+
+
+TO_FIND = "ran 1 of 1 FMUs, 98 steps each and 10 to find the windows"
 
 
 @pytest.mark.parametrize(
@@ -166,12 +154,7 @@ def test_without_a_request_nothing_runs() -> None:
     [
         (50, 0, "ran 1 of 1 FMUs, 50 steps each: 50 FMU steps instead of 100, 2 times fewer"),
         (100, 0, "ran 1 of 1 FMUs, 100 steps each; nothing skipped"),
-        (
-            98,
-            10,
-            "ran 1 of 1 FMUs, 98 steps each and 10 to find the windows:"
-            " 108 FMU steps instead of 100, 8 % more",
-        ),
+        (98, 10, f"{TO_FIND}: 108 FMU steps instead of 100, 8 % more"),
     ],
 )
 def test_what_a_grid_saves_or_costs_is_reported(taken: int, scouted: int, expected: str) -> None:

@@ -1,29 +1,23 @@
 """Both rapiers of a loom: what `both_rapiers` adds, how it is wired, and what both take from the shaft."""
 
+import re
 from typing import Any
 
 import numpy as np
 import pytest
+import scene_texts as texts
 
 import loomfmu
 from loomfmu import LoomfmuError
 from loomfmu.components.weft_insertion import WeftInsertion
-from loomfmu.cosim.scenes import scene as scenes
+from loomfmu.cosim.scenes.scene import Scene
 
-LOOM = """
-revolutions = 1
-steps_per_revolution = 180
-[loom]
-machine = "WL680-3600"
-head = "G6300 left"
-{both}
-"""
+TIMES = {"revolutions": 1, "steps_per_revolution": 180}
 BOTH = 'both_rapiers = true\ntaker_head = "G6300 right"'
 
 
-def parsed(both: str = BOTH, rest: str = "", **overrides: Any) -> scenes.Scene:
-    values = {name.replace("__", "."): value for name, value in overrides.items()}
-    return scenes.parse(LOOM.format(both=both) + rest, "both", values)
+def parsed(both: str = BOTH, rest: str = "", **overrides: Any) -> Scene:
+    return texts.parsed(texts.LOOM, both, "\n", rest, **TIMES | overrides)
 
 
 def test_the_taker_is_wired_as_the_giver_is() -> None:
@@ -82,13 +76,16 @@ def test_heads_differ_between_the_rapiers_without_a_warning_but_not_within_one()
 
 @pytest.mark.parametrize(("head", "notes"), [("GS900 right", 0), ("G6300 left", 1)])
 def test_a_rapier_is_what_is_wired_together_whatever_it_is_called(head: str, notes: int) -> None:
-    published = 'machine = "WL680-3600"\nhead = '
-    found = scenes.parse(
-        f'[loom]\n{published}"G6300 left"\n'
-        f'[second]\ncomponent = "WeftInsertion"\n{published}"GS900 right"\n'
-        f'[its_belt]\ncomponent = "BeltMonitor"\n{published}"{head}"\n'
-        '[wires]\n"its_belt.travel" = "second.travel"\n"its_belt.acceleration" = "second.acceleration"\n'
-    ).notes
+    weft, belt = (
+        {"component": "WeftInsertion", "head": "GS900 right"},
+        {"component": "BeltMonitor", "head": head},
+    )
+    tables = (
+        texts.table(name, machine="WL680-3600", **given)
+        for name, given in (("second", weft), ("its_belt", belt))
+    )
+    motion = {f"its_belt__{each}": f"second.{each}" for each in ("travel", "acceleration")}
+    found = texts.parsed(texts.LOOM, *tables, "[wires]\n", texts.wires(**motion)).notes
     start = "the loom mixes heads: second has GS900 right and its_belt has G6300 left;"
     assert [note.startswith(start) for note in found] == [True] * notes
 
@@ -114,9 +111,8 @@ def test_machine_and_head_set_both_rapiers() -> None:
     ],
 )
 def test_what_is_wrong_is_said(both: str, message: str) -> None:
-    with pytest.raises(LoomfmuError) as refusal:
+    with pytest.raises(LoomfmuError, match=re.escape(message)):
         parsed(both)
-    assert message in str(refusal.value)
 
 
 def test_the_giver_moves_as_without_a_taker(fmu_cache: None) -> None:

@@ -1,7 +1,8 @@
 """What instances of a standard loom share is set once, and the warp hangs on the carrier."""
 
+from scene_texts import claim, parsed
+
 from loomfmu.cosim.reading import checked_claims
-from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.values import Values
 
 LOOM = """
@@ -21,9 +22,14 @@ creep_rate = 3
 """
 
 
+def sources(text: str) -> dict[str, str]:
+    """The output that each wired input takes."""
+    return {".".join(wire.sink): ".".join(wire.source) for wire in parsed(text).wires}
+
+
 def test_parameters_that_are_not_set_are_those_of_the_instance_that_they_belong_to() -> None:
     driven = '[shaft]\ncomponent = "DrivenShaft"\n' + LOOM
-    instances = scenes.parse(driven, overrides={"damper_1.carrier_mass": 5.0}).instances
+    instances = parsed(driven, damper_1__carrier_mass=5.0).instances
     assert [instances[name].values["stroke"] for name in ("warp_1", "damper_1", "damper_2")] == [0.09] * 3
     assert instances["damper_1"].values["thread_stiffness"] == 80.0
     assert [instances[f"{name}_2"].values["thread_count"] for name in ("damper", "play")] == [600, 600]
@@ -35,79 +41,72 @@ def test_parameters_that_are_not_set_are_those_of_the_instance_that_they_belong_
 
 def test_all_of_a_frame_moves_with_it_where_its_load_is_not_wired() -> None:
     # at a constant speed nothing takes the torque: its carrier would neither move with it nor load it
-    assert "sprung_mass" not in scenes.parse(LOOM).instances["heald_1"].values
+    assert "sprung_mass" not in parsed(LOOM).instances["heald_1"].values
     wired = LOOM + '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
-    assert scenes.parse(wired).instances["heald_1"].values["sprung_mass"] == 7.5
+    assert parsed(wired).instances["heald_1"].values["sprung_mass"] == 7.5
 
 
 def test_a_damper_without_warp_has_no_threads() -> None:
-    instances = scenes.parse('[loom]\nweave = "10"\ndampers = true\n').instances
+    instances = parsed('[loom]\nweave = "10"\ndampers = true\n').instances
     assert instances["damper_1"].effective()["thread_count"] == 0
 
 
 def test_the_warp_and_the_healds_hang_on_the_carrier_and_no_wire_closes_a_loop() -> None:
-    scene = scenes.parse(LOOM)
-    wires = {".".join(wire.sink): ".".join(wire.source) for wire in scene.wires}
+    wires = sources(LOOM)
     assert wires["warp_2.lift"] == wires["play_2.lift"] == "damper_2.carrier_lift"
     assert wires["damper_2.lift"] == "heald_2.lift"
     assert wires["play_2.warp_load"] == "warp_2.frame_load"
-    without = scenes.parse('[loom]\nweave = "10"\nwarps = true\n')
-    assert {".".join(w.source) for w in without.wires if w.sink == ("warp_1", "lift")} == {"heald_1.lift"}
+    assert sources('[loom]\nweave = "10"\nwarps = true\n')["warp_1.lift"] == "heald_1.lift"
 
 
-def load_of(text: str, name: str = "load") -> list[str]:
-    return [".".join(wire.source) for wire in scenes.parse(text).wires if wire.sink == ("heald_1", name)]
+def load_of(text: str, name: str = "load") -> str | None:
+    return sources(text).get(f"heald_1.{name}")
 
 
 def test_carrier_or_warp_load_a_frame_whose_torque_a_shaft_feels() -> None:
     driven = '[shaft]\ncomponent = "DrivenShaft"\n[loom]\nweave = "10"\nwarps = true\n'
-    assert load_of(driven + "dampers = true\n") == ["damper_1.transmitted_force"]
-    assert load_of(driven) == ["warp_1.frame_load"]
-    assert load_of(driven + '[wires]\n"heald_1.load" = false\n') == []
+    assert load_of(driven + "dampers = true\n") == "damper_1.transmitted_force"
+    assert load_of(driven) == "warp_1.frame_load"
+    assert load_of(driven + '[wires]\n"heald_1.load" = false\n') is None
     # where nothing takes the torque, the wire would only close a loop
-    assert load_of('[loom]\nweave = "10"\nwarps = true\ndampers = true\n') == []
+    assert load_of('[loom]\nweave = "10"\nwarps = true\ndampers = true\n') is None
 
 
 def test_the_work_on_a_load_comes_from_where_the_load_comes_from() -> None:
     driven = '[shaft]\ncomponent = "DrivenShaft"\n[loom]\nweave = "10"\nwarps = true\n'
     dampers = driven + "dampers = true\n"
-    assert load_of(dampers, "load_work") == ["damper_1.frame_work"]
-    assert scenes.parse(dampers).instances["heald_1"].values["use_load_work"]
-    assert load_of(driven, "load_work") == ["warp_1.frame_work"]
+    assert load_of(dampers, "load_work") == "damper_1.frame_work"
+    assert parsed(dampers).instances["heald_1"].values["use_load_work"]
+    assert load_of(driven, "load_work") == "warp_1.frame_work"
     by_hand = dampers + '[wires]\n"heald_1.load" = "warp_1.frame_load"\n'
-    assert load_of(by_hand, "load_work") == ["warp_1.frame_work"]
+    assert load_of(by_hand, "load_work") == "warp_1.frame_work"
     # cut with the load; where it is cut alone, or the load is another model's, the torque is passed on
-    assert load_of(dampers + '[wires]\n"heald_1.load" = false\n', "load_work") == []
+    assert load_of(dampers + '[wires]\n"heald_1.load" = false\n', "load_work") is None
     alone = dampers + '[wires]\n"heald_1.load_work" = false\n'
-    assert "use_load_work" not in scenes.parse(alone).instances["heald_1"].values
+    assert "use_load_work" not in parsed(alone).instances["heald_1"].values
     other = dampers + '[wires]\n"heald_1.load" = "warp_2.frame_load"\n[warp_2]\n'
-    assert load_of(other, "load_work") == []
+    assert load_of(other, "load_work") is None
     # at a constant speed nothing takes the work
     constant = LOOM + '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
-    assert load_of(constant, "load_work") == []
+    assert load_of(constant, "load_work") is None
 
 
 def test_a_claim_on_a_torque_that_leaves_the_load_out_is_noted() -> None:
-    claim = '[[claims]]\nkind = "below"\nsignal = "heald_1.shaft_torque"\nbound = "1000 N.m"\n'
+    def notes(*parts: str, signal: str = "heald_1.shaft_torque", bound: str = "1000 N.m") -> tuple[str, ...]:
+        return checked_claims(parsed(*parts, claim("below", signal=signal, bound=bound))).scene.notes
+
     whole = "revolutions = 2\n" + LOOM
-    (note,) = checked_claims(scenes.parse(whole + claim)).scene.notes
+    (note,) = notes(whole)
     assert "leaves out damper_1.transmitted_force, because heald_1.load is not wired" in note
-    wired = '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n'
-    assert checked_claims(scenes.parse(whole + wired + claim)).scene.notes == ()
-    assert (
-        checked_claims(scenes.parse('[shaft]\ncomponent = "DrivenShaft"\n' + LOOM + claim)).scene.notes == ()
-    )
-    energy = claim.replace("1000 N.m", "1000 J")
+    assert notes(whole, '[wires]\n"heald_1.load" = "damper_1.transmitted_force"\n') == ()
+    assert notes('[shaft]\ncomponent = "DrivenShaft"\n', LOOM) == ()
     for other in ("heald_1.shaft_work", "dobby.kinetic_energy"):
-        scene = scenes.parse(LOOM + energy.replace("heald_1.shaft_torque", other))
-        assert checked_claims(scene).scene.notes == ()
-    assert checked_claims(scenes.parse('[loom]\nweave = "10"\n' + claim)).scene.notes == ()
+        assert notes(LOOM, signal=other, bound="1000 J") == ()
+    assert notes('[loom]\nweave = "10"\n') == ()
 
 
 def test_a_scene_may_hang_the_warp_on_the_frame() -> None:
-    scene = scenes.parse(LOOM + '[wires]\n"warp_1.lift" = "heald_1.lift"\n')
-    wires = {".".join(wire.sink): ".".join(wire.source) for wire in scene.wires}
-    assert wires["warp_1.lift"] == "heald_1.lift"
+    assert sources(LOOM + '[wires]\n"warp_1.lift" = "heald_1.lift"\n')["warp_1.lift"] == "heald_1.lift"
 
 
 def test_values_of_a_prepared_scene_reach_those_that_share_them() -> None:
@@ -115,8 +114,8 @@ def test_values_of_a_prepared_scene_reach_those_that_share_them() -> None:
         {"warp_1.thread_stiffness": 55.0, "damper.carrier_mass": 6.0, "heald_2.stroke": 0.08},
         {"warp.thread_count": 900, "damper_1.thread_count": 100},
     ):
-        read = scenes.parse(LOOM, overrides=given)
-        values = Values(scenes.parse(LOOM))
+        read = parsed(LOOM, **given)
+        values = Values(parsed(LOOM))
         assert all(values.targets(key) for key in given)
         found = values.set(given, given)
         assert {n: e.values for n, e in found.instances.items()} == {

@@ -1,25 +1,17 @@
 """The weft of a standard loom: `yarn = true` wires it to head and belt and changes nothing else."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from scene_texts import parsed
 
-import loomfmu
-from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.errors import LoomfmuError
+from loomfmu import LoomfmuError, evaluate
 
-PLAIN = """
-revolutions = 1
-steps_per_revolution = 180
-[loom]
-machine = "WL680-3600"
-"""
+PLAIN = '[loom]\nmachine = "WL680-3600"\n'
 WITH_YARN = PLAIN + "yarn = true\n"
 
 
 def wires(text: str) -> dict[str, str]:
-    return {".".join(wire.sink): ".".join(wire.source) for wire in scenes.parse(text).wires}
+    return {".".join(wire.sink): ".".join(wire.source) for wire in parsed(text).wires}
 
 
 def test_its_wires() -> None:
@@ -36,12 +28,12 @@ def test_its_wires() -> None:
 
 def test_a_tension_that_is_given_and_wired_is_refused() -> None:
     with pytest.raises(LoomfmuError, match=r"belt\.yarn_tension"):
-        scenes.parse(WITH_YARN + '[belt]\nyarn_tension = "50 cN"\n')
+        parsed(WITH_YARN, '[belt]\nyarn_tension = "50 cN"\n')
 
 
-def test_its_tension_is_what_loads_the_belt(tmp_path: Path) -> None:
-    (tmp_path / "loom.toml").write_text(WITH_YARN)
-    trace = loomfmu.run(tmp_path / "loom.toml", output=tmp_path / "loom.h5").trace
+def test_its_tension_is_what_loads_the_belt() -> None:
+    values = ["weft.velocity", "yarn.tension", "belt.axial_force", "belt.inertia_force"]
+    trace = evaluate(parsed(WITH_YARN, revolutions=1, steps_per_revolution=180), values=values).trace
     inward = trace["weft.velocity"] > 0.0
     carried = np.where(inward, trace["yarn.tension"], 0.0)
     assert carried.max() > 0.5
