@@ -374,71 +374,68 @@ def test_dwell_is_the_rotor_laws_own(loom: Callable[..., Trace], steps: int, tol
     assert wider.claim == "dwell within 5 % of the stroke"
 
 
-@pytest.mark.no_cover
-def test_a_frame_that_holds_dwells_a_turn_longer(loom: Callable[..., Trace]) -> None:
-    trace = loom(weave="1100/0110", revolutions=9)
-    for heald in ("heald_1", "heald_2"):
-        found = judge(trace, kind="dwell", heald=heald, at_least="80 deg")
-        assert found
-        assert abs(found.worst - (TURN + exact_dwell(0.015))) < 1e-9
-    # of an unequal pattern the shortest dwell counts
-    unequal = loom(weave="1000/0111", revolutions=9)
-    found = judge(unequal, kind="dwell", heald="heald_1", at_least=0.0)
-    assert abs(found.worst - exact_dwell(0.015)) < 1e-9
-
-
-def test_a_dwell_that_the_ends_of_the_run_cut_off_is_not_dropped(loom: Callable[..., Trace]) -> None:
-    # the short dwell of the pattern lies across the ends of the run; the long one alone was judged, and held
-    cut = loom(90, weave="1000/0111", revolutions=4, shaft__start_angle="160 deg")
-    found = judge(cut, kind="dwell", heald="heald_1", at_least="150 deg")
-    assert (found.word, found.worst > math.radians(800.0)) == ("undecided", True)
-    assert "cut off by an end of the run" in found.note
-    assert (
-        judge(cut, kind="dwell", heald="heald_1", at_least="20 deg").word == "holds"
-    )  # both parts last longer
-
-
-def test_a_frame_that_never_moves_dwells_throughout(loom: Callable[..., Trace]) -> None:
-    found = judge(loom(90, weave="1/10"), kind="dwell", heald="heald_1", at_least="80 deg")
-    assert found
-    assert found.note == "the frame stays there throughout the run"
-    assert math.isclose(found.worst, 3 * TURN, rel_tol=1e-14)
-    # a run that is shorter than the bound cannot tell
-    short = judge(loom(90, weave="1/10", revolutions=0.2), kind="dwell", heald="heald_1", at_least="80 deg")
-    assert short.word == "undecided"
-    assert short.note.endswith("; the frame stays there all the time, but the run is too short to tell")
-
-
+HOLDING = {"weave": "1100/0110"}
+UNEQUAL = {"weave": "1000/0111"}
+STILL = {"steps": 90, "weave": "1/10"}
 SLOW = {"shaft__start_angle": "180 deg"}  # the slow point, in the middle of a dwell
 
 
-@pytest.mark.parametrize("start", ["180 deg", "150 deg"])
-def test_a_dwell_that_is_under_way_at_the_start_is_judged_where_the_run_has_a_whole_one(
-    loom: Callable[..., Trace], start: str
+@pytest.mark.parametrize(
+    ("values", "heald", "turns"),
+    [
+        (HOLDING | {"revolutions": 9}, "heald_1", 1),
+        (HOLDING | {"revolutions": 9}, "heald_2", 1),
+        (UNEQUAL | {"revolutions": 9}, "heald_1", 0),  # the shortest dwell counts
+        # one that is under way at the start is judged where the run has a whole one
+        (SLOW | {"revolutions": 2}, "heald_1", 0),
+        ({"shaft__start_angle": "150 deg", "revolutions": 2}, "heald_1", 0),
+        ({"shaft__speed": "-600 rpm"}, "heald_1", 0),
+    ],
+)
+def test_a_dwell_lasts_as_long_as_its_frame_is_held(
+    loom: Callable[..., Trace], values: dict[str, Any], heald: str, turns: int
 ) -> None:
-    found = judge(loom(revolutions=2, shaft__start_angle=start), kind="dwell", heald="heald_1", at_least=0.0)
-    assert abs(found.worst - exact_dwell(0.015)) < 1e-9
-    assert found.note == ""
+    found = judge(loom(**values), kind="dwell", heald=heald, at_least=0.0)
+    assert found and 0.0 <= found.angle < TURN
+    assert abs(found.worst - (turns * TURN + exact_dwell(0.015))) < 1e-9
+    assert "weave" in values or found.note == ""
 
 
+ONE_IS_CUT = "one is cut off by an end of the run and may be shorter; run longer or start elsewhere"
+CUT_OFF = UNEQUAL | {"steps": 90, "revolutions": 4, "shaft__start_angle": "160 deg"}
+
+
+@pytest.mark.parametrize(
+    ("values", "at_least", "word", "note"),
+    [
+        # the short dwell lies across the ends of the run; the long one alone was judged, and held
+        (CUT_OFF, 150, "undecided", ONE_IS_CUT),
+        (CUT_OFF, 20, "holds", ""),  # both parts last longer
+        # raised for a turn and half a dwell, lowered for half a dwell, or for a turn more
+        (HOLDING | SLOW | {"revolutions": 4}, 40, "holds", ""),
+        (HOLDING | SLOW | {"revolutions": 2}, 300, "undecided", ONE_IS_CUT),
+        (
+            *(HOLDING | SLOW | {"revolutions": 3}, 300, "undecided"),
+            "; cut off by an end of the run: it lasts at least this long",
+        ),
+        (HOLDING | SLOW | {"revolutions": 2}, 440, "undecided", "; none begins and ends within the run"),
+        (STILL, 80, "holds", "the frame stays there throughout the run"),
+        (
+            *(STILL | {"revolutions": 0.2}, 80, "undecided"),
+            "; the frame stays there all the time, but the run is too short to tell",
+        ),
+    ],
+)
 def test_what_a_run_shows_of_a_dwell_that_it_cuts_off_is_the_least_that_it_lasts(
-    loom: Callable[..., Trace],
+    loom: Callable[..., Trace], values: dict[str, Any], at_least: float, word: str, note: str
 ) -> None:
-    def judged(revolutions: float, at_least: str) -> Verdict:
-        trace = loom(weave="1100/0110", revolutions=revolutions, **SLOW)
-        return judge(trace, kind="dwell", heald="heald_1", at_least=at_least)
-
-    # raised for a turn and half a dwell, lowered for half a dwell, or for a turn more
-    assert judged(4, "40 deg")
-    one = judged(2, "300 deg")
-    assert one.word == "undecided"
-    assert one.note.endswith(
-        "one is cut off by an end of the run and may be shorter; run longer or start elsewhere"
-    )
-    both = judged(3, "300 deg")
-    assert both.word == "undecided"
-    assert both.note.endswith("; cut off by an end of the run: it lasts at least this long")
-    assert judged(2, "440 deg").note.endswith("; none begins and ends within the run")
+    found = judge(loom(**values), kind="dwell", heald="heald_1", at_least=f"{at_least} deg")
+    assert found.word == word
+    assert found.note.endswith(note)
+    if values == STILL:
+        assert math.isclose(found.worst, 3 * TURN, rel_tol=1e-14)
+    if values == CUT_OFF and word == "undecided":
+        assert found.worst > math.radians(800.0)
 
 
 @pytest.mark.parametrize(
@@ -546,13 +543,6 @@ def test_dwell_contains_needs_the_run_to_get_there(loom: Callable[..., Trace]) -
         found = judge(trace, **claim, angles=angles)
         assert (found.word, found.note) == ("undecided", "the run never reaches 180 deg")
     assert judge(loom(90, revolutions=0.2, weave="1/1"), **claim, angles=["60 deg"])
-
-
-def test_a_shaft_that_turns_backwards_dwells_as_long(loom: Callable[..., Trace]) -> None:
-    found = judge(loom(shaft__speed="-600 rpm"), kind="dwell", heald="heald_1", at_least="80 deg")
-    assert found
-    assert abs(found.worst - exact_dwell(0.015)) < 1e-9
-    assert 0.0 <= found.angle < TURN
 
 
 # ---- the dampers
