@@ -22,6 +22,9 @@ LOOM = texts.loom('weave = "10/01/10/01"\ndampers = true\n')
 RPM = 2 * math.pi / 60
 
 
+LENGTH_OF_450 = parameters("BeltMonitor", machine="WL450-3600")["head_length"]
+
+
 def wired(*parts: str) -> set[str]:
     return {str(wire) for wire in parsed(*parts).wires}
 
@@ -64,28 +67,77 @@ def test_mechanisms_on_the_shaft_follow_it_of_themselves() -> None:
     assert alone.instances["weft"].values["follow_shaft"] is False
 
 
-def test_published_machines_and_heads_set_what_they_know() -> None:
-    weft, belt = values_of("weft", LOOM), values_of("belt", LOOM)
-    assert weft["output_length"] == 0.121
-    assert weft["moving_mass"] == belt["head_mass"] == 0.1105
-    assert belt["head_length"] == 0.55
-    other = LOOM + table("belt", head="GS900 left", head_length="540 mm")
-    assert values_of("belt", other)["head_mass"] == 0.1222
-    assert math.isclose(values_of("belt", other)["head_length"], 0.54, rel_tol=1e-15)  # one product
-    assert values_of("weft", other)["moving_mass"] == 0.1105
+GROUP, OWN = table("heald", stroke="60 mm", frame_mass=10.0), table("heald_2", stroke="70 mm")
+MEMBERS = table("heald_1", pattern="10") + table("heald_2", pattern="01")
+STROKES = {f"heald_{n}.stroke": 0.07 if n == 2 else 0.06 for n in (1, 2, 3, 4)}
+OTHER_HEAD = {"weft.moving_mass": 0.1222, "belt.head_mass": 0.1222}
+TRAVEL = table("belt", idle_travel="200 mm")
 
 
 @pytest.mark.parametrize(
-    ("frame", "more", "pattern"),
+    ("text", "given", "values"),
     [
-        ("heald_1", "", (2, 1, 0)),
-        ("heald_2", table("heald_2", pattern="0010"), (4, 4, 0)),
-        ("heald_1", table("heald_1", pattern="1" * 17 + "0" * 3), (20, 65535, 1)),
+        # published machines and heads set what they know
+        (LOOM, {}, {"weft.output_length": 0.121, "weft.moving_mass": 0.1105}),
+        (LOOM, {}, {"belt.head_mass": 0.1105, "belt.head_length": 0.55}),
+        (
+            LOOM + table("belt", head="GS900 left", head_length="540 mm"),
+            *({}, {"belt.head_mass": 0.1222, "belt.head_length": 0.54, "weft.moving_mass": 0.1105}),
+        ),
+        (LOOM, {"head": "GS900 left"}, OTHER_HEAD),
+        (LOOM, {"loom.head": "GS900 left"}, OTHER_HEAD),
+        # a value of the scene prevails over the machine, and one that is set over both
+        (
+            LOOM + TRAVEL,
+            {"machine": "WL450-3600"},
+            {"belt.idle_travel": 0.2, "belt.head_length": LENGTH_OF_450},
+        ),
+        (LOOM + TRAVEL, {"machine": "WL450-3600", "belt.idle_travel": 0.3}, {"belt.idle_travel": 0.3}),
+        (LOOM + TRAVEL, {"belt.idle_travel": 0.3, "machine": "WL450-3600"}, {"belt.idle_travel": 0.3}),
+        # every frame has its string of pegs
+        (LOOM, {}, {"heald_1.pattern_length": 2, "heald_1.pattern_1": 1}),
+        (LOOM + table("heald_2", pattern="0010"), {}, {"heald_2.pattern_length": 4, "heald_2.pattern_1": 4}),
+        (
+            LOOM + table("heald_1", pattern="1" * 17 + "0" * 3),
+            *({}, {"heald_1.pattern_length": 20, "heald_1.pattern_1": 65535, "heald_1.pattern_2": 1}),
+        ),
+        # a table without a number is for all members, wherever it stands, and a member's own says more
+        (LOOM + GROUP + OWN, {}, STROKES | {"heald_2.frame_mass": 10.0}),
+        (LOOM + OWN + GROUP, {}, STROKES | {"heald_2.frame_mass": 10.0}),
+        (GROUP + MEMBERS, {}, {"heald_1.stroke": 0.06, "heald_2.stroke": 0.06}),
+        (MEMBERS + GROUP, {}, {"heald_1.stroke": 0.06, "heald_2.stroke": 0.06}),
+        # so it is with what is set, in any order
+        (
+            LOOM + table("heald_1", stroke="80 mm"),
+            *({"heald.stroke": "60mm", "heald_2.stroke": "70 mm"}, STROKES),
+        ),
+        (LOOM, {"heald_2.stroke": "70 mm", "heald.stroke": "60mm"}, STROKES),
+        # numbers are SI, and texts have units
+        (LOOM, {"belt.guide_clearance": "0.5mm"}, {"belt.guide_clearance": 0.5e-3}),
+        *(
+            ("[shaft]", {"shaft.speed": speed}, {"shaft.speed": 71.733})
+            for speed in (71.733, "71.733", "71.733 rad/s")
+        ),
+        ("[shaft]", {"shaft.speed": "685 rpm"}, {"shaft.speed": 685 * RPM}),
+        ("[shaft]", {"shaft.ripple_order": "3"}, {"shaft.ripple_order": 3}),
+        # a law has a name or a number
+        *(
+            (f"[dobby]\nlaw = {law}\n", {}, {"dobby.law": 3})
+            for law in ("'sloped_line'", "'sloped-line'", "'sloped line'", "3", "'3'")
+        ),
+        ("[dobby]\nlaw = 'uniform'\n", {}, {"dobby.law": 1}),
+        *(
+            (f"[belt]\nprescribe_length_factor = {given}\n", {}, {"belt.prescribe_length_factor": value})
+            for given, value in (("true", True), ("false", False), ("'true'", True), ("'False'", False))
+        ),
     ],
 )
-def test_every_frame_has_its_string_of_pegs(frame: str, more: str, pattern: tuple[int, ...]) -> None:
-    values = values_of(frame, LOOM, more)
-    assert tuple(values[f"pattern_{each}"] for each in ("length", 1, 2)) == pattern
+def test_values_that_a_scene_and_set_give(text: str, given: dict[str, Any], values: dict[str, Any]) -> None:
+    instances = parsed(text, **given).instances
+    for name, value in values.items():
+        owner, _, variable = name.partition(".")
+        found = instances[owner].values[variable]
+        assert type(found) is type(value) and found == pytest.approx(value, rel=1e-15)  # one product
 
 
 # ---- wires
@@ -137,23 +189,7 @@ def test_an_input_whose_wire_is_cut_takes_a_value_or_its_start(tmp_path: Path) -
             assert set(trace["belt.inertia_force"]) == {0.1105 * acceleration}
 
 
-# ---- groups, own names, values
-
-
-def test_a_table_without_number_is_for_all_members_and_a_members_own_says_more() -> None:
-    group, own = table("heald", stroke="60 mm", frame_mass=10.0), table("heald_2", stroke="70 mm")
-    for order in (group + own, own + group):
-        found = [values_of(f"heald_{n}", LOOM, order) for n in (1, 2, 3, 4)]
-        assert [round(each["stroke"], 12) for each in found] == [0.06, 0.07, 0.06, 0.06]
-        assert all(each["frame_mass"] == 10.0 for each in found)
-
-
-@pytest.mark.parametrize("group_first", [True, False])
-def test_a_group_may_stand_before_its_members(group_first: bool) -> None:
-    group, members = '[heald]\nstroke = "60 mm"\n', '[heald_1]\npattern = "10"\n[heald_2]\npattern = "01"\n'
-    scene = parsed(group + members if group_first else members + group)
-    assert sorted(scene.instances) == ["heald_1", "heald_2", "shaft"]
-    assert all(scene.instances[f"heald_{n}"].values["stroke"] == 0.06 for n in (1, 2))
+# ---- own names, and what a loom has one of
 
 
 def test_one_frame_needs_no_number() -> None:
@@ -162,56 +198,11 @@ def test_one_frame_needs_no_number() -> None:
     assert "dobby.rotor_angle -> heald.rotor_angle" in {str(wire) for wire in scene.wires}
 
 
-def test_set_reaches_one_member_all_members_and_the_runs_own_keys() -> None:
-    given = {
-        "heald.stroke": "60mm",
-        "heald_2.stroke": "70 mm",
-        "shaft.speed": "685rpm",
-        "belt.guide_clearance": "0.5mm",
-        "revolutions": "2.5",
-        "steps_per_revolution": "360",
-    }
-    scene = parsed("revolutions = 9\n" + LOOM + '[heald_1]\nstroke = "80 mm"\n', **given)
-    values = {name: instance.values for name, instance in scene.instances.items()}
-    assert [round(values[f"heald_{n}"]["stroke"], 12) for n in (1, 2, 3)] == [0.06, 0.07, 0.06]
-    assert math.isclose(scene.speed, 685 * RPM, rel_tol=1e-15)
-    assert math.isclose(values["belt"]["guide_clearance"], 0.5e-3, rel_tol=1e-15)
+def test_set_reaches_the_runs_own_keys() -> None:
+    scene = parsed("revolutions = 9\n", LOOM, revolutions="2.5", steps_per_revolution="360")
     assert (scene.periods, scene.steps_per_period, scene.steps) == (2.5, 360, 900)
-
-
-def test_a_value_of_one_member_prevails_over_that_of_all_in_any_order() -> None:
-    """As in a scene, where [heald_1] prevails over [heald]."""
-    given = {"heald_1.stroke": "60 mm", "heald.stroke": "98 mm"}
-    for overrides in (given, dict(reversed(given.items()))):
-        instances = parsed(LOOM, **overrides).instances
-        assert [instances[f"heald_{n}"].values["stroke"] for n in (1, 2)] == [0.06, 0.098]
     both = {"machine": "WL680-3800", "loom.machine": "WL680-3600"}
     assert re.match(r"machine and loom\.machine both set \w+\.machine; leave out", refusal(LOOM, **both))
-
-
-@pytest.mark.parametrize(
-    ("given", "speed"),
-    [(71.733, 71.733), ("71.733", 71.733), ("71.733 rad/s", 71.733), ("685 rpm", 685 * RPM)],
-)
-def test_numbers_are_si_and_texts_have_units(given: Any, speed: float) -> None:
-    assert math.isclose(parsed("[shaft]", shaft__speed=given).speed, speed, rel_tol=1e-15)
-    assert values_of("shaft", "[shaft]", shaft__ripple_order="3") == {"ripple_order": 3}
-
-
-@pytest.mark.parametrize("given", ["'sloped_line'", "'sloped-line'", "'sloped line'", "3", "'3'"])
-def test_a_law_has_a_name_or_a_number(given: str) -> None:
-    value = values_of("dobby", f"[dobby]\nlaw = {given}\n")["law"]
-    assert value == 3 and type(value) is int
-    assert values_of("dobby", "[dobby]\nlaw = 'uniform'\n")["law"] == 1
-
-
-@pytest.mark.parametrize(
-    ("given", "value"), [("true", True), ("false", False), ("'true'", True), ("'False'", False)]
-)
-def test_yes_or_no(given: str, value: bool) -> None:
-    assert (
-        values_of("belt", f"[belt]\nprescribe_length_factor = {given}\n")["prescribe_length_factor"] is value
-    )
 
 
 def test_components_under_names_of_their_own() -> None:
@@ -226,8 +217,6 @@ def test_components_under_names_of_their_own() -> None:
     assert Wire(("shaft", "acceleration"), ("left_head", "shaft_acceleration")) in scene.wires
 
 
-# ---- what a loom has one of
-
 MIXED = (
     "the loom mixes machines: weft has WL450-3600 and belt has WL680-3600; machine = NAME sets all of them"
 )
@@ -241,25 +230,6 @@ def test_a_machine_is_set_for_all_that_have_one(key: str) -> None:
         assert changed.instances[name].values == written.instances[name].values
         assert changed.instances[name].published["machine"] == "WL450-3600"
     assert changed.notes == written.notes == ()
-
-
-@pytest.mark.parametrize("key", ["head", "loom__head"])
-def test_so_is_a_head(key: str) -> None:
-    given = {key: "GS900 left"}
-    assert (
-        values_of("weft", LOOM, **given)["moving_mass"]
-        == values_of("belt", LOOM, **given)["head_mass"]
-        == 0.1222
-    )
-
-
-def test_a_value_of_the_scene_prevails_over_the_machine_and_set_over_both() -> None:
-    text, machine = LOOM + table("belt", idle_travel="200 mm"), {"machine": "WL450-3600"}
-    belt = values_of("belt", text, **machine)
-    published = parameters("BeltMonitor", **machine)
-    assert (belt["idle_travel"], belt["head_length"]) == (0.2, published["head_length"])
-    for order in (machine | {"belt__idle_travel": 0.3}, {"belt__idle_travel": 0.3} | machine):
-        assert values_of("belt", text, **order)["idle_travel"] == 0.3
 
 
 def test_a_loom_of_two_machines_is_named(tmp_path: Path) -> None:
