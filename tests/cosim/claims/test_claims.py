@@ -32,6 +32,7 @@ from loomfmu.physics.rotor_laws.rotor import SLOPED_SINE, rotor_law
 from loomfmu.traces import Recording, Signals
 
 TURN = 2 * math.pi
+Looms = Callable[..., Trace]  # of a loom with other steps, weaves and values
 LOOM = "revolutions = 3\n" + texts.LOOM + 'weave = "{weave}"\n{rest}'
 DEMO = Path(__file__).parents[3] / "sims" / "wl680_3600.toml"
 
@@ -41,7 +42,7 @@ BOUNDED = claim("below", signal="heald_1.lift", bound=1.0) + claim(
 
 
 @pytest.fixture(scope="module")
-def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Callable[..., Trace]:
+def loom(tmp_path_factory: pytest.TempPathFactory, fmu_cache: None) -> Looms:
     """Traces of a loom; the same one is run once."""
     known: dict[tuple[Any, ...], Trace] = {}
     directory = tmp_path_factory.mktemp("looms")
@@ -149,9 +150,7 @@ def test_windows_of_shaft_angle(sense: int, window: list[Any], low: float, high:
 
 
 @pytest.mark.parametrize("steps", [90, 360])
-def test_the_edges_of_a_window_follow_a_shaft_that_accelerates(
-    loom: Callable[..., Trace], steps: int
-) -> None:
+def test_the_edges_of_a_window_follow_a_shaft_that_accelerates(loom: Looms, steps: int) -> None:
     trace = loom(steps, revolutions=2, shaft__ramp_duration="0.15 s")
     travel, place = loom_figures._travel("WL680-3600")[1], math.radians(90.1)
     found = judge(trace, kind="above", signal="weft.travel", bound=0.0, window=[place, "110.3 deg"])
@@ -170,7 +169,7 @@ def test_a_windows_edges_are_found_on_samples_thousands_of_turns_away() -> None:
     assert math.isclose(found.worst, math.sin(math.radians(60)), abs_tol=4e-12)
 
 
-def test_of_equal_extremes_the_first_is_named(loom: Callable[..., Trace]) -> None:
+def test_of_equal_extremes_the_first_is_named(loom: Looms) -> None:
     trace = loom(shaft__speed="600 rpm", rest="reed = true\nlocks = true\n")
     for given in (
         {"kind": "below", "signal": "weft.travel", "bound": 0.0},
@@ -221,9 +220,7 @@ def test_what_is_not_a_number_does_not_hold(
         assert found.note == "a.x or its rate is not finite everywhere"
 
 
-def test_claims_on_the_loom_say_where_rates_are_missing(
-    loom: Callable[..., Trace], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_claims_on_the_loom_say_where_rates_are_missing(loom: Looms, monkeypatch: pytest.MonkeyPatch) -> None:
     known = loom(90, rest="reed = true\n")
     with Trace(known.path) as trace:
         monkeypatch.setattr(trace, "rate", lambda signal: None)
@@ -304,7 +301,7 @@ def test_where_one_extreme_is_in_doubt_another_one_still_counts() -> None:
 @pytest.mark.parametrize("steps", [90, 360, 1000])
 @pytest.mark.parametrize("grid", ["uniform", "windows"])
 def test_a_start_up_stays_below_its_speed_and_frames_within_their_stroke(
-    loom: Callable[..., Trace], steps: int, grid: str
+    loom: Looms, steps: int, grid: str
 ) -> None:
     start = loom(steps, grid=grid, shaft__speed="153 rpm", shaft__ramp_duration="0.02 s", rest=BOUNDED)
     assert judge(start, kind="below", signal="shaft.velocity", bound="shaft.speed").word != "FAILS"
@@ -331,7 +328,7 @@ def test_a_window_that_the_run_never_enters_is_not_judged() -> None:
 # ---- the belt
 
 
-def test_lowest_margin(loom: Callable[..., Trace]) -> None:
+def test_lowest_margin(loom: Looms) -> None:
     trace = loom(shaft__speed="600 rpm")
     holds = judge(trace, kind="lowest_margin", bound=0.1)
     assert holds
@@ -345,7 +342,7 @@ def test_lowest_margin(loom: Callable[..., Trace]) -> None:
     assert abs(coarse.worst - holds.worst) < 1e-5  # the quintic between samples 4 degrees apart
 
 
-def test_the_margin_of_a_belt_by_another_name(loom: Callable[..., Trace]) -> None:
+def test_the_margin_of_a_belt_by_another_name(loom: Looms) -> None:
     rest = '[worn]\ncomponent = "BeltMonitor"\nguide_clearance = "0.75 mm"\n'
     trace = loom(rest=rest, shaft__speed="600 rpm")
     assert judge(trace, kind="lowest_margin", bound=0.0)
@@ -362,7 +359,7 @@ def exact_dwell(tolerance: float) -> float:
 
 
 @pytest.mark.parametrize(("steps", "tolerance"), [(1440, 1e-9), (90, 1e-9), (45, 1e-8)])
-def test_dwell_is_the_rotor_laws_own(loom: Callable[..., Trace], steps: int, tolerance: float) -> None:
+def test_dwell_is_the_rotor_laws_own(loom: Looms, steps: int, tolerance: float) -> None:
     # off by 4e-16 rad at 1440 steps, 2.5e-11 at 90, 3e-10 at 45: the quintic's error falls as h^6
     found = judge(loom(steps), kind="dwell", heald="heald_1", at_least="80 deg")
     assert found
@@ -393,7 +390,7 @@ SLOW = {"shaft__start_angle": "180 deg"}  # the slow point, in the middle of a d
     ],
 )
 def test_a_dwell_lasts_as_long_as_its_frame_is_held(
-    loom: Callable[..., Trace], values: dict[str, Any], heald: str, turns: int
+    loom: Looms, values: dict[str, Any], heald: str, turns: int
 ) -> None:
     found = judge(loom(**values), kind="dwell", heald=heald, at_least=0.0)
     assert found and 0.0 <= found.angle < TURN
@@ -427,7 +424,7 @@ CUT_OFF = UNEQUAL | {"steps": 90, "revolutions": 4, "shaft__start_angle": "160 d
     ],
 )
 def test_what_a_run_shows_of_a_dwell_that_it_cuts_off_is_the_least_that_it_lasts(
-    loom: Callable[..., Trace], values: dict[str, Any], at_least: float, word: str, note: str
+    loom: Looms, values: dict[str, Any], at_least: float, word: str, note: str
 ) -> None:
     found = judge(loom(**values), kind="dwell", heald="heald_1", at_least=f"{at_least} deg")
     assert found.word == word
@@ -447,7 +444,7 @@ def test_what_a_run_shows_of_a_dwell_that_it_cuts_off_is_the_least_that_it_lasts
     ],
 )
 def test_a_run_that_is_shorter_than_the_repeat_of_the_weave_shows_too_little(
-    loom: Callable[..., Trace], claim: dict[str, Any]
+    loom: Looms, claim: dict[str, Any]
 ) -> None:
     assert judge(loom(90, weave="1010/0101", revolutions=2), **claim)  # twice the same
     found = judge(loom(90, weave="1100/0110", revolutions=3), **claim)
@@ -460,7 +457,7 @@ def test_a_run_that_is_shorter_than_the_repeat_of_the_weave_shows_too_little(
     )
 
 
-def test_a_run_that_begins_exactly_on_the_level_of_a_dwell(loom: Callable[..., Trace]) -> None:
+def test_a_run_that_begins_exactly_on_the_level_of_a_dwell(loom: Looms) -> None:
     # raised for one pick of three, from 30 deg before the slow point: 60 deg of dwell, or 420 deg lowered
     trace = loom(90, weave="100/010", revolutions=4, shaft__start_angle="150 deg")
     stroke, begin = trace.parameter("heald_1.stroke"), float(trace["heald_1.lift"][0])
@@ -490,7 +487,7 @@ def test_a_level_that_is_passed_twice_between_two_samples_is_passed_twice() -> N
     assert crossings(trace, 0.61) == []
 
 
-def test_clear_shed_is_the_dwell_at_another_height(loom: Callable[..., Trace]) -> None:
+def test_clear_shed_is_the_dwell_at_another_height(loom: Looms) -> None:
     # |warp| > 6 mm is a lift within 1/2 - 6 mm / (98 mm / 6) of the stroke from an end
     exact = exact_dwell(0.5 - 0.006 / (0.098 / 6))
     for steps in (1440, 90):
@@ -515,7 +512,7 @@ def test_a_clearance_beyond_the_warp_is_rejected_before_the_run(given: dict[str,
         checked_claims(parsed('[loom]\nweave = "10"\n', shed, **given))
 
 
-def test_dwell_contains(loom: Callable[..., Trace]) -> None:
+def test_dwell_contains(loom: Looms) -> None:
     trace = loom()
     claim = {"kind": "dwell_contains", "heald": "heald_2"}
     holds = judge(trace, **claim, angles=["140 deg", "180 deg", "220 deg"])
@@ -536,7 +533,7 @@ def test_dwell_contains(loom: Callable[..., Trace]) -> None:
     )
 
 
-def test_dwell_contains_needs_the_run_to_get_there(loom: Callable[..., Trace]) -> None:
+def test_dwell_contains_needs_the_run_to_get_there(loom: Looms) -> None:
     trace = loom(90, revolutions=0.2)
     claim: dict[str, Any] = {"kind": "dwell_contains", "heald": "heald_1", "tolerance": 0.499}
     for angles in (["180 deg"], ["60 deg", "180 deg"]):
@@ -550,7 +547,7 @@ def test_dwell_contains_needs_the_run_to_get_there(loom: Callable[..., Trace]) -
 DAMPED = {"rest": "[damper_1]\n", "shaft__speed": "600 rpm"}
 
 
-def test_peak_load(loom: Callable[..., Trace]) -> None:
+def test_peak_load(loom: Looms) -> None:
     trace = loom(**DAMPED)
     worst = trace["damper_1.peak_load"][-1]
     holds = judge(trace, kind="peak_load", damper="damper_1", at_most=worst)
@@ -567,7 +564,7 @@ def test_peak_load(loom: Callable[..., Trace]) -> None:
     assert math.isclose(holds.angle, finer.angle, abs_tol=math.radians(0.25 / 20))
 
 
-def test_stop_contacts(loom: Callable[..., Trace]) -> None:
+def test_stop_contacts(loom: Looms) -> None:
     trace = loom(**DAMPED)
     counted = trace["damper_1.stop_contacts"]
     assert counted[-1] >= 2
@@ -583,7 +580,7 @@ def test_stop_contacts(loom: Callable[..., Trace]) -> None:
 # ---- in Python, in the scene, in the file
 
 
-def test_a_verdict_as_a_person_reads_it(loom: Callable[..., Trace]) -> None:
+def test_a_verdict_as_a_person_reads_it(loom: Looms) -> None:
     trace = loom(shaft__speed="700 rpm")
     said = str(judge(trace, kind="lowest_margin", bound=0.1, name="no buckling"))
     assert said.startswith("FAILS: no buckling: lowest margin (belt.lowest_margin), -0.05")
@@ -593,7 +590,7 @@ def test_a_verdict_as_a_person_reads_it(loom: Callable[..., Trace]) -> None:
     assert said.endswith(", bound 80 deg")
 
 
-def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Callable[..., Trace]) -> None:
+def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Looms) -> None:
     trace = loom()
     found = judge(trace, kind="above", signal="belt.lowest_speed_limit", bound="600 rpm")
     assert (found.unit, found.display_unit) == ("rad/s", "rev/min")
@@ -614,7 +611,7 @@ def test_a_verdicts_numbers_stand_beside_their_own_units(loom: Callable[..., Tra
     assert dwelling.as_dict()["display"]["bound"] == 1.5
 
 
-def test_a_verdict_comes_back_from_its_file(loom: Callable[..., Trace]) -> None:
+def test_a_verdict_comes_back_from_its_file(loom: Looms) -> None:
     for given in (
         {"kind": "above", "signal": "belt.lowest_speed_limit", "bound": "600 rpm"},
         {"kind": "dwell_contains", "heald": "heald_1", "angles": ["180 deg"], "tolerance": "0.1 %"},
@@ -714,14 +711,14 @@ WHOLE_TURN = "is empty; a whole revolution is [0 deg, 360 deg]"
     ],
 )
 def test_a_claim_that_cannot_be_judged_is_refused_with_its_name(
-    loom: Callable[..., Trace], given: dict[str, Any], said: str
+    loom: Looms, given: dict[str, Any], said: str
 ) -> None:
     with pytest.raises(LoomfmuError) as raised:
         judge(loom(), **given)
     assert str(raised.value).replace(loom().path.name, "loom_0.h5") == said
 
 
-def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Callable[..., Trace]) -> None:
+def test_every_verdict_has_a_signed_distance_to_its_bound(loom: Looms) -> None:
     trace = loom(shaft__speed="600 rpm")
     for kind, way in (("above", 1.0), ("below", -1.0)):
         found = judge(trace, kind=kind, signal="weft.travel", bound="1 m")
@@ -960,7 +957,7 @@ def test_a_run_that_never_reaches_the_belts_risk_says_so() -> None:
     assert (never.holds, never.worst, never.note) == (True, 1.0, "the belt is never at risk in this run")
 
 
-def test_a_negative_speed_is_refused_as_a_bound(loom: Callable[..., Trace]) -> None:
+def test_a_negative_speed_is_refused_as_a_bound(loom: Looms) -> None:
     said = r'bound shaft.speed = -800 rev/min is negative, .*, such as bound = "800 rev/min"'
     with pytest.raises(LoomfmuError, match=said):
         evaluate(DEMO, set={"shaft.speed": "-800 rpm"})
@@ -970,7 +967,7 @@ def test_a_negative_speed_is_refused_as_a_bound(loom: Callable[..., Trace]) -> N
     assert not judge(backwards, kind="above", signal="belt.lowest_speed_limit", bound="800 rpm")
 
 
-def test_a_limit_of_speed_that_turns_negative_in_a_page_is_not_compared(loom: Callable[..., Trace]) -> None:
+def test_a_limit_of_speed_that_turns_negative_in_a_page_is_not_compared(loom: Looms) -> None:
     trace = loom(90)
     question = kinds()["above"](signal="belt.lowest_speed_limit", bound="shaft.speed").question(trace)
     negative = question._replace(numbers=[-80.0, *question.numbers[1:]])
@@ -982,7 +979,7 @@ def test_a_limit_of_speed_that_turns_negative_in_a_page_is_not_compared(loom: Ca
 @pytest.mark.parametrize("start", [0, 45])
 @pytest.mark.parametrize("way", [1, -1])
 def test_revolutions_are_counted_from_1_the_way_that_the_shaft_turns(
-    loom: Callable[..., Trace], start: int, way: int
+    loom: Looms, start: int, way: int
 ) -> None:
     trace = loom(360, shaft__speed=f"{600 * way} rpm", shaft__start_angle=f"{start * way} deg")
     steps = [round(360 * revolutions) for revolutions in (0.0, 0.3, 1.3, 2.6)]
