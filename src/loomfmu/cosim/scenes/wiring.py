@@ -232,11 +232,8 @@ def left_out(known: Known, wired: Collection[str], signal: str) -> dict[str, str
     depends = variable.depends if variable else ()
     found: dict[str, str] = {}
     for v in known[owner].caused:
-        if (
-            f"{owner}.{v.name}" not in wired
-            and v.source_for in outputs
-            and (depends is None or v.name in depends)
-        ):
+        needed = v.source_for in outputs and (depends is None or v.name in depends)
+        if needed and f"{owner}.{v.name}" not in wired:
             found |= _usual_wire(owner, v, known)
     return found
 
