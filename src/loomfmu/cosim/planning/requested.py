@@ -1,4 +1,4 @@
-"""What is asked of a scene: the signals that a run must give, and steps that show how instances move."""
+"""The signals that a run must give for what is asked of a scene, and steps that show how instances move."""
 
 import math
 from collections.abc import Iterable, Iterator
