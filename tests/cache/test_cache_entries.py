@@ -255,7 +255,6 @@ def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path)
     assert kept.is_dir()
 
 
-USED = 64 * "0"
 USES = """
 import sys
 from pathlib import Path
@@ -267,14 +266,19 @@ print(path.read_bytes() == b"content", flush=True)
 """
 
 
+def another_user() -> subprocess.Popen[str]:
+    """A process that uses the cache until it reads a line."""
+    command = [sys.executable, "-c", USES]
+    user = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert user.stdout is not None and user.stdout.readline() == "ready\n"
+    return user
+
+
 @unix
 def test_a_cache_that_another_process_uses_is_not_emptied(
     own_cache: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    user = subprocess.Popen(
-        [sys.executable, "-c", USES], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    assert user.stdout is not None and user.stdout.readline() == "ready\n"
+    user = another_user()
     assert cli.main(["cache", "--clear"]) == 2
     assert capsys.readouterr().err == (
         f"loomfmu: {own_cache}: in use by another loomfmu; end it (or its Python session) and try again\n"
@@ -291,14 +295,12 @@ def test_what_long_was_not_used_is_deleted_by_the_next_one_to_use_the_cache_alon
         (fmus_in_it / name).mkdir(parents=True)
     for name in (old, other):
         os.utime(fmus_in_it / name, (0, 0))
-    command = [sys.executable, "-c", USES]
-    first = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    assert first.stdout is not None and first.stdout.readline() == "ready\n"
+    first = another_user()
     assert not (fmus_in_it / old).exists()
     (fmus_in_it / old).mkdir()
     os.utime(fmus_in_it / old, (0, 0))  # as what the first one has used for a month
-    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
-    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, old, young, other])
+    another_user().communicate("\n")
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([KEY, old, young, other])
     first.communicate("\n")
-    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
-    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, young, other])
+    another_user().communicate("\n")
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([KEY, young, other])
