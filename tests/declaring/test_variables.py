@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from loomfmu.declaring.declarations import input_, output, parameter, state
-from loomfmu.declaring.variables import Component, variables_of
+from loomfmu.declaring.variables import Component, Problem, variables_of
 
 
 @dataclass(slots=True)
@@ -135,6 +135,7 @@ def test_a_field_without_declaration_is_refused():
 
 def test_a_component_has_to_say_what_it_does():
     assert Pump().check() == 0
+    assert not Problem("it leaks").warning, "a problem ends the step unless it says otherwise"
     with pytest.raises(NotImplementedError):
         Pump().initialize(0.0)
     with pytest.raises(NotImplementedError):
