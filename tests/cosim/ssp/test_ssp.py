@@ -5,6 +5,7 @@ import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,7 +16,7 @@ from lxml import etree
 
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
-from loomfmu.cosim.run import run
+from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.ssp import export as ssp
@@ -61,12 +62,19 @@ def names_of(parent: ElementTree.Element) -> list[str]:
     return [element.tag.rpartition("}")[2] for element in parent]
 
 
-def equal(trace: Trace, other: Trace) -> None:
-    assert set(trace) == set(other)
-    np.testing.assert_array_equal(trace.time, other.time)
-    np.testing.assert_array_equal(trace.shaft_angle, other.shaft_angle)
-    for signal in trace:
-        np.testing.assert_array_equal(trace[signal], other[signal], err_msg=signal)
+def alike(
+    folder: Path, scene: Scene | Path, package: Path, changed: dict[str, Any] | None = None, **more: Any
+) -> tuple[Result, Result]:
+    """The runs of a scene and of a package, equal to the bit; `more` is changed in both."""
+    before = run(scene, set=(changed or {}) | more, output=folder / "before.h5")
+    after = run(package, set=more, output=folder / "after.h5")
+    assert set(before.trace) == set(after.trace)
+    np.testing.assert_array_equal(before.trace.time, after.trace.time)
+    np.testing.assert_array_equal(before.trace.shaft_angle, after.trace.shaft_angle)
+    for signal in before.trace:
+        np.testing.assert_array_equal(before.trace[signal], after.trace[signal], err_msg=signal)
+    assert list(map(str, after.claims)) == list(map(str, before.claims))
+    return before, after
 
 
 @pytest.fixture(scope="module")
@@ -157,8 +165,7 @@ def test_a_choice_is_written_by_its_name_and_only_where_it_is_not_the_default(
     assert choices(path) == ["harmonic_ends"]
     written = etree.fromstring(members(path)["resources/dobby.ssv"])
     validate_tree(written, "SystemStructureParameterValues.xsd")
-    before = run(scene, output=tmp_path / "before.h5")
-    equal(before.trace, run(path, output=tmp_path / "after.h5").trace)
+    alike(tmp_path, scene, path)
 
 
 def test_what_tells_of_our_master_is_left_to_others(tmp_path: Path) -> None:
@@ -194,10 +201,7 @@ def test_the_diagram_goes_from_left_to_right(demo: Path) -> None:
 def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) -> None:
     changed = SHORT | {"shaft.speed": "487.3 rpm"}
     scene = scenes.load(SIMS / f"{name}.toml", changed)
-    before = run(scene, output=tmp_path / "before.h5")
-    after = run(packed(scene, tmp_path), output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
-    assert list(map(str, after.claims)) == list(map(str, before.claims))
+    before, after = alike(tmp_path, scene, packed(scene, tmp_path))
     assert after.scene.title == scene.title and after.scene.description == scene.description
     assert after.trace.attributes["scene"] == scene.text
     signals = [signal for signal in before.trace if signal in scene.record]
@@ -207,17 +211,13 @@ def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) 
 @pytest.mark.parametrize("text", [TIMED, "revolutions = 0.5\n[weft]\n[belt]\n" + LOOP])
 def test_so_do_a_scene_without_shaft_and_one_with_a_loop(tmp_path: Path, text: str) -> None:
     scene = scenes.parse(text, "odd")
-    before = run(scene, output=tmp_path / "before.h5")
-    after = run(packed(scene, tmp_path), output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
+    before, after = alike(tmp_path, scene, packed(scene, tmp_path))
     assert after.warnings == before.warnings
 
 
 def test_values_of_a_package_can_be_changed(demo: Path, tmp_path: Path) -> None:
     changed = {"shaft.speed": "650 rpm", "heald.stroke": "90 mm", "steps_per_revolution": "44"}
-    before = run(DEMO, set=SHORT | changed, output=tmp_path / "before.h5")
-    after = run(demo, set=changed, output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
+    _before, after = alike(tmp_path, DEMO, demo, {"revolutions": 0.5}, **changed)
     again = run(after.scene, set={"steps_per_revolution": 30}, output=tmp_path / "again.h5")
     assert (again.trace.rows, again.scene.speed) == (16, scenes.load(DEMO).speed)
 
@@ -298,10 +298,7 @@ def test_a_package_of_the_form_before_is_still_read(demo: Path, tmp_path: Path) 
         ("resources/dobby.ssv", "</ssv:Parameters>", f"{law}</ssv:Parameters>"),
     )
     assert names_of(structure(path))[-1] == "Annotations"
-    after = run(path, output=tmp_path / "after.h5")
-    expected = run(DEMO, set=SHORT | {"dobby.law": "harmonic_ends"}, output=tmp_path / "expected.h5")
-    equal(after.trace, expected.trace)
-    assert list(map(str, after.claims)) == list(map(str, expected.claims))
+    alike(tmp_path, DEMO, path, SHORT | {"dobby.law": "harmonic_ends"})
 
 
 # ---- the command
