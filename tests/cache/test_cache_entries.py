@@ -15,6 +15,7 @@ import pytest
 from loomfmu import LoomfmuError, cli
 from loomfmu.cache import entries
 from loomfmu.cache.entries import FMUS, UNPACKED, folder, made_file
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master import steppers
 from loomfmu.fmi.native.libraries import library_of
@@ -148,12 +149,23 @@ def run(cache: Path, *options: str) -> str:
     )
 
 
+def test_what_was_changed_in_an_unpacked_fmu_is_put_right_when_it_is_read() -> None:
+    path = fmus.file_of(COMPONENTS["MainShaft"], "live", ())
+    (unpacked,) = fmus.load(path).directory.glob("resources/*/component.py")
+    clean, planted = unpacked.read_bytes(), unpacked.parents[1] / "math.py"
+    unpacked.write_bytes(clean + b"1 / 0\n")
+    planted.touch()  # an FMU's resources come first in Python's path
+    assert fmus.load(path).directory in planted.parents
+    assert unpacked.read_bytes() == clean and not planted.exists()
+
+
+@pytest.mark.slow
 def test_a_line_added_to_an_unpacked_live_fmu_is_not_run(own_cache: Path, tmp_path: Path) -> None:
     said, mark = run(own_cache, "--live"), tmp_path / "was run"
     (unpacked,) = own_cache.glob("unpacked/*/resources/*beltmonitor*/component.py")
     clean = unpacked.read_bytes()
     unpacked.write_bytes(clean + f"open({str(mark)!r}, 'w')\n".encode())
-    planted = unpacked.parents[1] / "math.py"  # an FMU's resources come first in Python's path
+    planted = unpacked.parents[1] / "math.py"
     planted.write_text(f"open({str(mark)!r}, 'w')\n")
     assert run(own_cache, "--live") == said
     assert not mark.exists() and not planted.exists()
