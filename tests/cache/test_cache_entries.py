@@ -15,6 +15,7 @@ import pytest
 from loomfmu import LoomfmuError, cli
 from loomfmu.cache import entries
 from loomfmu.cache.entries import FMUS, UNPACKED, folder, made_file
+from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.master import steppers
 from loomfmu.fmi.native.libraries import library_of
@@ -148,12 +149,23 @@ def run(cache: Path, *options: str) -> str:
     )
 
 
+def test_what_was_changed_in_an_unpacked_fmu_is_put_right_when_it_is_read() -> None:
+    path = fmus.file_of(COMPONENTS["MainShaft"], "live", ())
+    (unpacked,) = fmus.load(path).directory.glob("resources/*/component.py")
+    clean, planted = unpacked.read_bytes(), unpacked.parents[1] / "math.py"
+    unpacked.write_bytes(clean + b"1 / 0\n")
+    planted.touch()  # an FMU's resources come first in Python's path
+    assert fmus.load(path).directory in planted.parents
+    assert unpacked.read_bytes() == clean and not planted.exists()
+
+
+@pytest.mark.slow
 def test_a_line_added_to_an_unpacked_live_fmu_is_not_run(own_cache: Path, tmp_path: Path) -> None:
     said, mark = run(own_cache, "--live"), tmp_path / "was run"
     (unpacked,) = own_cache.glob("unpacked/*/resources/*beltmonitor*/component.py")
     clean = unpacked.read_bytes()
     unpacked.write_bytes(clean + f"open({str(mark)!r}, 'w')\n".encode())
-    planted = unpacked.parents[1] / "math.py"  # an FMU's resources come first in Python's path
+    planted = unpacked.parents[1] / "math.py"
     planted.write_text(f"open({str(mark)!r}, 'w')\n")
     assert run(own_cache, "--live") == said
     assert not mark.exists() and not planted.exists()
@@ -255,7 +267,6 @@ def test_a_folder_that_is_a_link_is_not_emptied(own_cache: Path, tmp_path: Path)
     assert kept.is_dir()
 
 
-USED = 64 * "0"
 USES = """
 import sys
 from pathlib import Path
@@ -267,14 +278,19 @@ print(path.read_bytes() == b"content", flush=True)
 """
 
 
+def another_user() -> subprocess.Popen[str]:
+    """A process that uses the cache until it reads a line."""
+    command = [sys.executable, "-c", USES]
+    user = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert user.stdout is not None and user.stdout.readline() == "ready\n"
+    return user
+
+
 @unix
 def test_a_cache_that_another_process_uses_is_not_emptied(
     own_cache: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    user = subprocess.Popen(
-        [sys.executable, "-c", USES], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    assert user.stdout is not None and user.stdout.readline() == "ready\n"
+    user = another_user()
     assert cli.main(["cache", "--clear"]) == 2
     assert capsys.readouterr().err == (
         f"loomfmu: {own_cache}: in use by another loomfmu; end it (or its Python session) and try again\n"
@@ -291,14 +307,12 @@ def test_what_long_was_not_used_is_deleted_by_the_next_one_to_use_the_cache_alon
         (fmus_in_it / name).mkdir(parents=True)
     for name in (old, other):
         os.utime(fmus_in_it / name, (0, 0))
-    command = [sys.executable, "-c", USES]
-    first = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    assert first.stdout is not None and first.stdout.readline() == "ready\n"
+    first = another_user()
     assert not (fmus_in_it / old).exists()
     (fmus_in_it / old).mkdir()
     os.utime(fmus_in_it / old, (0, 0))  # as what the first one has used for a month
-    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
-    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, old, young, other])
+    another_user().communicate("\n")
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([KEY, old, young, other])
     first.communicate("\n")
-    subprocess.run(command, input="\n", text=True, check=True, capture_output=True)
-    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([USED, young, other])
+    another_user().communicate("\n")
+    assert sorted(path.name for path in fmus_in_it.iterdir()) == sorted([KEY, young, other])

@@ -2,9 +2,12 @@
 
 import contextlib
 import ctypes
+import subprocess
+import sys
 from collections.abc import Callable
-from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -54,16 +57,23 @@ def packed(scene: Scene, directory: Path) -> Path:
 # ---- the masters
 
 
-def libcosim(scene: Scene, directory: Path) -> Signals:
-    """libcosim reads the package and the step in it."""
+def libcosimpy() -> SimpleNamespace:
+    """What the tests use of libcosim, which logs errors alone."""
     pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
 
     log_output_level(CosimLogLevel.ERROR)
-    execution = CosimExecution.from_ssp_file(str(packed(scene, directory)))
-    observer = CosimObserver.create_last_value()
+    return SimpleNamespace(Execution=CosimExecution, Observer=CosimObserver, Slave=CosimLocalSlave)
+
+
+def libcosim(scene: Scene, directory: Path) -> Signals:
+    """libcosim reads the package and the step in it."""
+    cosim = libcosimpy()
+    execution = cosim.Execution.from_ssp_file(str(packed(scene, directory)))
+    observer = cosim.Observer.create_last_value()
     assert execution.add_observer(observer)
     indices = {info.name.decode(): info.index for info in execution.slave_infos()}
     ports = {name: instance.fmu.ports for name, instance in scene.instances.items()}
@@ -76,26 +86,26 @@ def libcosim(scene: Scene, directory: Path) -> Signals:
     return {signal: np.array(values) for signal, values in rows.items()}
 
 
-@cache
-def tbb() -> None:
-    """ecos is linked to a library that `pip install tbb4u` puts where the loader does not look."""
+def ecospy() -> ModuleType:
+    """ecos; it is linked to a library that `pip install tbb4u` puts where the loader does not look."""
     with contextlib.suppress(ImportError, OSError):
         import tbb4u
 
         ctypes.CDLL(str(Path(tbb4u.__file__).with_name("libtbb.so.12")), ctypes.RTLD_GLOBAL)
-
-
-def ecos(scene: Scene, directory: Path) -> Signals:
-    """ecos reads the package, and takes the parameter sets of one name."""
-    tbb()
     try:
-        from ecospy import EcosSimulation
+        import ecospy
         from ecospy.lib import EcosLib
     except (ImportError, OSError) as error:
         pytest.skip(f"ecospy cannot be loaded: {error}")
     EcosLib.set_log_level("off")
+    return ecospy
+
+
+def ecos(scene: Scene, directory: Path) -> Signals:
+    """ecos reads the package, and takes the parameter sets of one name."""
     rows = {signal: [] for signal in reals(scene)}
-    with EcosSimulation(step_size=scene.step_size, ssp_path=str(packed(scene, directory))) as simulation:
+    path = str(packed(scene, directory))
+    with ecospy().EcosSimulation(step_size=scene.step_size, ssp_path=path) as simulation:
         assert simulation.init(parameter_set=ssp.SET_NAME)
         for _ in range(scene.steps):
             simulation.step(1)
@@ -158,3 +168,20 @@ def omsimulator(scene: Scene, directory: Path) -> Signals:
 
 
 MASTERS: dict[str, Master] = {"libcosim": libcosim, "ecos": ecos, "fmpy": fmpy, "OMSimulator": omsimulator}
+
+
+# ---- the checkers
+
+
+def check_by_fmutool(path: Path, fmi: int = 2) -> None:
+    """The checker of the FMU manipulation toolbox finds no fault in an FMU."""
+    if find_spec("fmu_manipulation_toolbox") is None:
+        pytest.skip("fmu-manipulation-toolbox is not installed")
+    command = [Path(sys.executable).with_name("fmutool"), "-input", path, "-check"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert f"This FMU seems to be compliant with FMI-{fmi}.0." in said
+    assert "WARNING" not in said and "ERROR" not in said, said
+    if fmi == 2:
+        assert "No semantic error against the FMI-2 standard." in said

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from masters import MASTERS, demo, ours
+from masters import MASTERS, demo, libcosimpy, ours
 
 from loomfmu.cosim.importing.fmus import Fmu
 
@@ -54,16 +54,10 @@ def test_a_wired_loom_converges_to_ours_with_the_step(tmp_path: Path, master: st
 
 
 def test_libcosim_loads_every_native_fmu(natives: dict[str, Fmu]) -> None:
-    pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
-    from libcosimpy.CosimExecution import CosimExecution
-    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
-    from libcosimpy.CosimSlave import CosimLocalSlave
-
-    log_output_level(CosimLogLevel.ERROR)
-    execution = CosimExecution.from_step_size(int(1e5))
-    slaves = []
+    cosim, slaves = libcosimpy(), []
+    execution = cosim.Execution.from_step_size(int(1e5))
     for name, fmu in natives.items():
-        slaves.append(CosimLocalSlave(fmu_path=str(fmu.path), instance_name=name))
+        slaves.append(cosim.Slave(fmu_path=str(fmu.path), instance_name=name))
         index = execution.add_local_slave(slaves[-1])
         # FMI Library has parsed it; libcosim knows no enumerations
         known = [port for port in fmu.ports.values() if port.base_type != "Enumeration"]

@@ -1,15 +1,12 @@
 """A whole loom as one FMU under third-party masters: the bits of our own run."""
 
-import subprocess
-import sys
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
-from masters import Signals, demo, ours, tbb
+from masters import Signals, check_by_fmutool, demo, ecospy, libcosimpy, ours
 from whole_fmus import Whole, exported
 
 from loomfmu.cosim.importing.fmus import Fmu
@@ -19,18 +16,11 @@ Stepped = Callable[[Path, list[str], dict[str, int]], Signals]
 
 
 def libcosim(path: Path, signals: list[str], references: dict[str, int]) -> Signals:
-    pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
-    from libcosimpy.CosimExecution import CosimExecution
-    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
-    from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimSlave import CosimLocalSlave
-
-    log_output_level(CosimLogLevel.ERROR)
-    execution = CosimExecution.from_step_size(int(1e5))
-    slave = CosimLocalSlave(fmu_path=str(path), instance_name="loom")
-    index = execution.add_local_slave(slave)
-    observer = CosimObserver.create_last_value()
-    assert execution.add_observer(observer)
+    cosim = libcosimpy()
+    execution = cosim.Execution.from_step_size(int(1e5))
+    index = execution.add_local_slave(slave := cosim.Slave(fmu_path=str(path), instance_name="loom"))
+    observer = cosim.Observer.create_last_value()
+    assert slave and execution.add_observer(observer)
     rows = []
     for _ in range(STEPS):
         assert execution.step(1)
@@ -39,17 +29,10 @@ def libcosim(path: Path, signals: list[str], references: dict[str, int]) -> Sign
 
 
 def ecos(path: Path, signals: list[str], _references: dict[str, int]) -> Signals:
-    tbb()
-    try:
-        from ecospy import EcosSimulation, EcosSimulationStructure
-        from ecospy.lib import EcosLib
-    except (ImportError, OSError) as error:
-        pytest.skip(f"ecospy cannot be loaded: {error}")
-    EcosLib.set_log_level("off")
-    rows = []
-    with EcosSimulationStructure() as structure:
+    ecos, rows = ecospy(), []
+    with ecos.EcosSimulationStructure() as structure:
         structure.add_model("loom", path)
-        with EcosSimulation(step_size=1e-4, structure=structure) as simulation:
+        with ecos.EcosSimulation(step_size=1e-4, structure=structure) as simulation:
             assert simulation.init()
             for _ in range(STEPS):
                 simulation.step(1)
@@ -76,11 +59,4 @@ def test_it_gives_our_bits(tmp_path: Path, master: Stepped) -> None:
 def test_checkers_find_no_fault(natives: dict[str, Fmu], tmp_path: Path, fmi: int) -> None:
     path = exported(demo(STEPS), tmp_path, fmi)
     assert validate_fmu(str(path)) == []
-    if find_spec("fmu_manipulation_toolbox") is None:
-        pytest.skip("fmu-manipulation-toolbox is not installed")
-    command = [Path(sys.executable).with_name("fmutool"), "-input", path, "-check"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    said = done.stdout + done.stderr
-    assert done.returncode == 0, said
-    assert f"This FMU seems to be compliant with FMI-{fmi}.0." in said
-    assert "WARNING" not in said and "ERROR" not in said, said
+    check_by_fmutool(path, fmi)

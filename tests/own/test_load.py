@@ -43,6 +43,7 @@ class Bell(Component):
         self.rate = self.pitch
         return 0
 '''
+# texts that are replaced, each with its new one, and what is said then
 MISTAKES = {
     "a class that is no dataclass": ("@dataclass(slots=True)\n", "", r"line 9: Bell is not a dataclass"),
     "no slots": ("(slots=True)", "", r"line 10: Bell could store undeclared values"),
@@ -96,15 +97,10 @@ MISTAKES = {
         "line 19: blows is a state, but keeps is not MOTION: remove keeps, or declare blows as auxiliary",
     ),
     "an output that integrates": (
-        'output("m/s", "Rate")\n\n    def initialize(self, time: float) -> int:\n        """Silence."""\n'
-        "        self.sound = 0.0\n        return 0\n\n"
-        '    def step(self, time: float, step_size: float) -> int:\n        """Ring."""\n'
-        "        self.sound = self.pitch * time",
-        'output("m/s", "Rate")\n    keeps: ClassVar[str] = NOTHING\n\n'
-        '    def initialize(self, time: float) -> int:\n        """Silence."""\n'
-        "        self.sound = 0.0\n        return 0\n\n"
-        '    def step(self, time: float, step_size: float) -> int:\n        """Ring."""\n'
-        "        self.sound = self.sound + self.pitch * step_size",
+        '    rate: float = output("m/s", "Rate")',
+        '    rate: float = output("m/s", "Rate")\n    keeps: ClassVar[str] = NOTHING',
+        "self.pitch * time",
+        "self.sound + self.pitch * step_size",
         "line 15: sound depends on earlier steps, but keeps is not MOTION: remove keeps",
     ),
     "a problem without words": (
@@ -141,14 +137,22 @@ MISTAKES = {
 }
 
 
+def bell(folder: Path, *changes: tuple[str, str]) -> Path:
+    """The file of a bell, some of its lines written in another way."""
+    text, path = GOOD, folder / "bell.py"
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_gets_one_line_with_its_place(
     mistake: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    old, new, said = MISTAKES[mistake]
-    assert old in GOOD
-    path = tmp_path / "bell.py"
-    path.write_text(GOOD.replace(old, new))
+    *texts, said = MISTAKES[mistake]
+    path = bell(tmp_path, *zip(texts[::2], texts[1::2], strict=True))
     assert main(["build", str(path), "--output", str(tmp_path / "made")]) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"loomfmu: {path}")
@@ -170,35 +174,32 @@ def test_a_mistake_gets_one_line_with_its_place(
     ],
 )
 def test_files_and_classes_that_are_not_there(tmp_path: Path, spec: str, said: str) -> None:
-    (tmp_path / "bell.py").write_text(GOOD)
+    bell(tmp_path)
     with pytest.raises(LoomfmuError, match=said):
         load.component(spec, tmp_path)
 
 
 def test_an_array_of_another_type_is_refused(tmp_path: Path) -> None:
-    text = GOOD.replace("import EXTREMES", "import array, EXTREMES").replace(
-        "    pitch:",
-        '    peg: tuple[KIND, ...] = array(parameter("1", n, "A peg") for n in (1, 0))\n    pitch:',
+    declared = '    peg: KIND = array(parameter("1", n, "A peg") for n in (1, 0))\n    pitch:'
+    changes = (
+        ("from typing", "from collections.abc import Sequence\nfrom typing"),
+        ("import EX", "import array, EX"),
     )
-    path = tmp_path / "bell.py"
-    path.write_text(text.replace("KIND", "int"))
-    assert load.component(str(path))(peg_2=5).peg == (1, 5)
-    listed = text.replace("tuple[KIND, ...]", "Sequence[int]")  # of one that is set from a list
-    path.write_text(listed.replace("from typing", "from collections.abc import Sequence\nfrom typing"))
-    assert load.component(str(path))(peg_2=5).peg == (1, 5)
-    path.write_text(text.replace("KIND", "float"))
-    with pytest.raises(
-        LoomfmuError, match=r"line 14: peg_1 is declared tuple\[float, \.\.\.\], but its start"
-    ):
+    for kind in ("tuple[int, ...]", "Sequence[int]"):  # the latter of one that is set from a list
+        path = bell(tmp_path, *changes, ("    pitch:", declared.replace("KIND", kind)))
+        assert load.component(str(path))(peg_2=5).peg == (1, 5)
+    bell(tmp_path, *changes, ("    pitch:", declared.replace("KIND", "tuple[float, ...]")))
+    said = r"line 15: peg_1 is declared tuple\[float, \.\.\.\], but its start"
+    with pytest.raises(LoomfmuError, match=said):
         load.component(str(path))
+
+
+PITCHED = (("from dataclasses", "from pitches import LOW\nfrom dataclasses"), ("0.5,", "LOW,"))
 
 
 def test_a_file_is_run_again_only_if_a_text_has_changed(tmp_path: Path) -> None:
     (tmp_path / "pitches.py").write_text("LOW = 0.25\n")
-    path = tmp_path / "bell.py"
-    path.write_text(
-        GOOD.replace("from dataclasses", "from pitches import LOW\nfrom dataclasses").replace("0.5,", "LOW,")
-    )
+    bell(tmp_path, *PITCHED)
     first = load.component("bell.py", tmp_path)
     assert first().pitch == 0.25
     assert load.component("bell.py:Bell", tmp_path)().pitch == 0.25
@@ -212,11 +213,7 @@ def test_neighbours_of_one_name_in_two_folders_do_not_meet(tmp_path: Path) -> No
     for name, low in (("here", 0.25), ("there", 0.5)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "pitches.py").write_text(f"LOW = {low}\n")
-        (tmp_path / name / "bell.py").write_text(
-            GOOD.replace("from dataclasses", "from pitches import LOW\nfrom dataclasses").replace(
-                "0.5,", "LOW,"
-            )
-        )
+        bell(tmp_path / name, *PITCHED)
         found.append(load.component("bell.py", tmp_path / name)().pitch)
     assert found == [0.25, 0.5]
     assert list(tmp_path.rglob("*.pyc")) == []
@@ -238,17 +235,16 @@ def test_variables_called_as_ours_are_have_no_special_effect(tmp_path: Path) -> 
         '    soft: float = parameter("1", 0.5, "Soft", unless="loud")\n'
         "    pitch"
     )
-    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", f"{more}:", 1))
+    bell(tmp_path, ("pitch:", f"{more}:"))
     text = 'duration = "1 s"\nstep = "0.1 s"\n[shaft]\n[bell]\ncomponent = "bell.py"\n'
-    bell = scene.parse(text, directory=tmp_path).instances["bell"]
-    assert {"guide_clearance", "lift_fraction", "soft"} <= set(bell.effective())
-    assert "force" not in bell.effective()
-    bell.follow("lift_fraction")
-    assert "follow_lift" not in bell.values
-    bell.follow("force")
-    assert bell.values["loud"] is True
-    assert "soft" not in bell.effective()
-    assert "force" in bell.effective()
+    instance = scene.parse(text, directory=tmp_path).instances["bell"]
+    assert {"guide_clearance", "lift_fraction", "soft"} <= set(instance.effective())
+    assert "force" not in instance.effective()
+    instance.follow("lift_fraction")
+    assert "follow_lift" not in instance.values
+    instance.follow("force")
+    assert instance.values["loud"] is True
+    assert "soft" not in instance.effective() and "force" in instance.effective()
 
 
 @pytest.mark.parametrize(
@@ -263,14 +259,14 @@ def test_units_of_heat_and_electricity_reach_the_model_description(
         '    warmth: float = output("K", "Temperature", rate="warming")\n'
         '    warming: float = output("K/s", "Warming")\n    pitch:'
     )
-    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more, 1))
+    bell(tmp_path, ("pitch:", more))
     root = fromstring(described(load.component("bell.py", tmp_path)))
     bases = {unit.get("name"): unit[0].attrib for unit in root.iter("Unit")}
     assert bases["K"] == {"K": "1"}
     assert bases["K/s"] == {"s": "-1", "K": "1"}
     assert bases["J/K"] == {"kg": "1", "m": "2", "s": "-2", "K": "-1"}
     assert bases["N.m/A"] == {"kg": "1", "m": "2", "s": "-2", "A": "-1"}
-    (tmp_path / "bell.py").write_text(GOOD.replace("pitch:", more.replace("K/s", "W/K"), 1))
+    bell(tmp_path, ("pitch:", more.replace("K/s", "W/K")))
     with pytest.raises(LoomfmuError, match="warmth is in K, but its rate warming in W/K"):
         load.component("bell.py", tmp_path)
 
@@ -288,7 +284,7 @@ HEARD = '    load: float = input_("N", 0.0, "Load", unbounded=True, source="{}")
 )
 def test_an_input_whose_source_is_absent_is_named(tmp_path: Path, name: str, source: str, said: str) -> None:
     """A wire vanished: the claim held on the start of the input."""
-    (tmp_path / "bell.py").write_text(GOOD.replace("    sound: float", HEARD.format(source), 1))
+    bell(tmp_path, ("    sound: float", HEARD.format(source)))
     text = f'[loom]\nweave = "10/01"\nwarps = true\n[{name}]\ncomponent = "bell.py:Bell"\n'
     with pytest.raises(LoomfmuError) as raised:
         scene.parse(text, directory=tmp_path)

@@ -29,13 +29,8 @@ try:
 except ImportError:  # Windows deletes no file that is in use
     fcntl = None
 
-FMUS, UNPACKED, PACKAGES, STEPPER, IDENTITIES = KINDS = (
-    "fmus",
-    "unpacked",
-    "packages",
-    "stepper",
-    "identities",
-)
+KINDS = ("fmus", "unpacked", "packages", "stepper", "identities")
+FMUS, UNPACKED, PACKAGES, STEPPER, IDENTITIES = KINDS
 PARTIAL = "partial"  # files that are being written, each with a name of its own
 KEY = re.compile("[0-9a-f]{8}[0-9a-f-]{28}")  # how the names of entries begin; nothing else is ever deleted
 CHECKSUM = "sha256"  # what the file beside a made one is called

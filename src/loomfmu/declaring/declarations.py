@@ -12,24 +12,16 @@ from typing import Any
 MAKERS = "parameter, input_, output, state, auxiliary or indicator"
 
 
-def _declare(
-    causality: str,
-    variability: str,
-    unit: str,
-    start: float | int | bool,
-    description: str,
-    display: str | None,
-    **rest: Any,
+def _declared(
+    causality: str, variability: str, start: float | int | bool, display: str | None = None, **rest: Any
 ) -> Any:
-    declared = {
-        "causality": causality,
-        "variability": variability,
-        "unit": unit,
-        "display": display or unit,
-        "description": description,
-        **rest,
-    }
-    return field(default=start, metadata=declared)
+    """The field of a variable; `rest` are the arguments of its declaration under their own names."""
+    rest |= {"causality": causality, "variability": variability, "display": display or rest["unit"]}
+    return field(default=start, metadata=rest)
+
+
+def _usual(start: float | int | bool) -> str:
+    return "continuous" if isinstance(start, float) else "discrete"
 
 
 def parameter(
@@ -50,22 +42,7 @@ def parameter(
     """A value that is set before a run and fixed during it."""
     if choices:
         minimum, maximum = 1, len(choices)
-    return _declare(
-        "parameter",
-        "fixed",
-        unit,
-        start,
-        description,
-        display,
-        minimum=minimum,
-        maximum=maximum,
-        nominal=nominal,
-        choices=choices,
-        source=source,
-        source_for=source_for,
-        when=when,
-        unless=unless,
-    )
+    return _declared(causality="parameter", variability="fixed", **locals())
 
 
 def at_step_end() -> Any:
@@ -92,24 +69,7 @@ def input_(
     unless: str | None = None,
 ) -> Any:
     """A value that comes from outside at every step; an integer or a boolean changes from step to step."""
-    variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "input",
-        variability,
-        unit,
-        start,
-        description,
-        display,
-        minimum=minimum,
-        maximum=maximum,
-        nominal=nominal,
-        unbounded=unbounded,
-        rate=rate,
-        source=source,
-        source_for=source_for,
-        when=when,
-        unless=unless,
-    )
+    return _declared(causality="input", variability=_usual(start), **locals())
 
 
 def output(
@@ -132,26 +92,9 @@ def output(
     error: str | None = None,
 ) -> Any:
     """A value that the component computes; integers and booleans are discrete by default."""
-    usual = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "output",
-        variability or usual,
-        unit,
-        start,
-        description,
-        display,
-        nominal=nominal,
-        unbounded=unbounded,
-        rate=rate,
-        depends=(follows,) if follows else depends,
-        follows=follows,
-        lowest_of=lowest_of,
-        highest_of=highest_of,
-        so_far=so_far,
-        pole=pole,
-        valid_if=valid_if,
-        error=error,
-    )
+    variability = variability or _usual(start)
+    depends = (follows,) if follows else depends
+    return _declared(causality="output", **locals())
 
 
 def state(
@@ -167,18 +110,7 @@ def state(
 
     Its limits are those that the component itself keeps to: a saved state beyond them is rejected.
     """
-    variability = "continuous" if isinstance(start, float) else "discrete"
-    return _declare(
-        "local",
-        variability,
-        unit,
-        start,
-        description,
-        None,
-        minimum=minimum,
-        maximum=maximum,
-        carried=carried,
-    )
+    return _declared(causality="local", variability=_usual(start), **locals())
 
 
 def auxiliary(unit: str, description: str, **rest: Any) -> Any:
@@ -188,4 +120,4 @@ def auxiliary(unit: str, description: str, **rest: Any) -> Any:
 
 def indicator(unit: str, description: str) -> Any:
     """A value that changes its sign where an output jumps, so that a solver finds the instant."""
-    return _declare("local", "continuous", unit, 0.0, description, None, indicator=True)
+    return _declared(causality="local", variability="continuous", start=0.0, indicator=True, **locals())

@@ -15,12 +15,7 @@ from ..errors import suggestion
 from . import memory
 
 NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
-PARAMETER_SETS = (
-    "machine",
-    "head",
-    "pattern",
-    "component",
-)  # keys of an instance for several values
+PARAMETER_SETS = ("machine", "head", "pattern", "component")  # keys of an instance for several values
 FILES = ("fmu", "units")  # of an instance given as a file
 ISOLATED = "isolated"  # whether it runs in a process of its own
 # of all that an instance has beside its variables; `units` is one of FMUs that are files only

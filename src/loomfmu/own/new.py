@@ -22,7 +22,7 @@ DEVICES = (
     "prn",
     "aux",
     "nul",
-    *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)),
+    *(f"{port}{place}" for port in ("com", "lpt") for place in range(1, 10)),
 )
 MODULES = ("loomfmu", "conftest")  # not among the installed packages where this one is run from a checkout
 FILES = ("eccentric.py", "test_eccentric.py", "README.md", "eccentric.toml")

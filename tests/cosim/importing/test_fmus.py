@@ -1,8 +1,6 @@
 """FMUs of our own: known from their declarations, built when they are needed, native where they can be."""
 
 import io
-import os
-import zipfile
 from pathlib import Path
 
 import fmpy
@@ -26,9 +24,8 @@ SCENE = "revolutions = 0.1\nsteps_per_revolution = 90\n[weft]\n[belt]\n"
 
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_declared_variables_are_those_that_the_description_has(name: str) -> None:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w") as archive:
-        archive.writestr("modelDescription.xml", model_description(COMPONENTS[name], guid="", version=""))
+    description = model_description(COMPONENTS[name], guid="", version="")
+    packed = io.BytesIO(zipped({"modelDescription.xml": description}))
     read = ports_of(fmpy.read_model_description(packed, validate=False), COMPONENTS[name])
     declared = declared_ports(COMPONENTS[name])
     assert declared == read
@@ -43,12 +40,8 @@ def test_a_built_fmu_is_what_its_file_says(name: str, flavour: str) -> None:
     assert fmu.file == read.file
     assert (fmu.name, fmu.ports, fmu.fmi) == (read.name, read.ports, read.fmi)
     assert read.component is fmu.component
-    assert (fmu.trusted, fmu.single, fmu.fixed_step, fmu.needs_tool) == (
-        read.trusted,
-        read.single,
-        read.fixed_step,
-        read.needs_tool,
-    )
+    for trait in ("trusted", "single", "fixed_step", "needs_tool"):
+        assert getattr(fmu, trait) == getattr(read, trait)
 
 
 @pytest.mark.parametrize(("flavour", "fmi"), [("live", 2), ("native", 2), ("native", 3)])
@@ -117,40 +110,31 @@ def test_what_is_needed_is_built_at_once(monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 
 def test_files_that_are_no_fmus_are_told_in_one_line(tmp_path: Path) -> None:
-    whole = fmus.of_component("MainShaft").path.read_bytes()
-    path = tmp_path / "wrong.fmu"
-    for content in (b"", b"no zip", whole[: len(whole) // 2], whole[:-30]):
-        path.write_bytes(content)
-        with pytest.raises(LoomfmuError) as raised:
-            fmus.load(path)
-        assert str(raised.value) == f"{path}: not a readable FMU (File is not a zip file)"
-    with pytest.raises(LoomfmuError, match=r"none\.fmu: there is no such FMU$"):
-        fmus.load(tmp_path / "none.fmu")
-    with pytest.raises(LoomfmuError, match=r": not a readable FMU \(Is a directory"):
-        fmus.load(tmp_path)
+    path, whole = tmp_path / "wrong.fmu", fmus.of_component("MainShaft").path.read_bytes()
+    cases = {
+        "not a readable FMU (File is not a zip file)": [
+            b"",
+            b"no zip",
+            whole[: len(whole) // 2],
+            whole[:-30],
+        ],
+        "not a readable FMU (it has no modelDescription.xml)": [zipped({}), zipped({"x.xml": b"<a/>"})],
+        "its modelDescription.xml cannot be read (": [
+            zipped({"modelDescription.xml": text}) for text in (b"<a", b"<a/>")
+        ],
+    }
+    for said, contents in cases.items():
+        for content in contents:
+            path.write_bytes(content)
+            with pytest.raises(LoomfmuError) as raised:
+                fmus.load(path)
+            assert str(raised.value).startswith(f"{path}: {said}") and "\n" not in str(raised.value)
     unpacked = cache_directory() / "unpacked"
     assert all(len(entry.name) == 64 for entry in unpacked.iterdir())  # nothing half unpacked is left
 
 
-def test_a_zip_that_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
-    def packed(**files: str) -> Path:
-        path = tmp_path / f"{len(os.listdir(tmp_path))}.fmu"
-        with zipfile.ZipFile(path, "w") as zipped:
-            for name, text in files.items():
-                zipped.writestr(f"{name}.xml", text)
-        return path
-
-    start = '<fmiModelDescription fmiVersion="{}" modelName="M" guid="g"{}>'
-    model_exchange = start.format("2.0", "") + '<ModelExchange modelIdentifier="M"/>'
-    cases = {
-        packed(): "not a readable FMU",
-        packed(other="<a/>"): "not a readable FMU",
-        packed(modelDescription="<a"): "its modelDescription.xml cannot be read",
-        packed(modelDescription="<a/>"): "its modelDescription.xml cannot be read",
-        packed(modelDescription=model_exchange + "<ModelVariables/></fmiModelDescription>"): "only FMI 2.0",
-    }
-    for path, said in cases.items():
-        with pytest.raises(LoomfmuError) as raised:
-            fmus.load(path)
-        assert str(raised.value).startswith(f"{path}: ")
-        assert said in str(raised.value) and "\n" not in str(raised.value)
+def test_an_fmu_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(LoomfmuError, match=r"none\.fmu: there is no such FMU$"):
+        fmus.load(tmp_path / "none.fmu")
+    with pytest.raises(LoomfmuError, match=r": not a readable FMU \(Is a directory"):
+        fmus.load(tmp_path)

@@ -63,14 +63,24 @@ def test_values_come_through_as_they_are(place: Path, tmp_path: Path, each: str,
 
 
 @either
-def test_what_a_wired_input_cannot_hold_ends_the_run(place: Path, tmp_path: Path, isolated: bool) -> None:
-    text = LENGTH + SHAFT3 + OTHER + '[wires]\n"other.to_UInt8" = "shaft.{}"\n'
+@pytest.mark.parametrize(
+    ("source", "changed", "time", "value"),
+    [("Int16", {"shaft__to_Int16": -1}, "0", -1), ("steps", {"duration": "0.3 s"}, "0.255", 256)],
+)
+def test_what_a_wired_input_cannot_hold_ends_the_run(
+    place: Path,
+    tmp_path: Path,
+    isolated: bool,
+    source: str,
+    changed: dict[str, object],
+    time: str,
+    value: int,
+) -> None:
+    text = LENGTH + SHAFT3 + OTHER + f'[wires]\n"other.to_UInt8" = "shaft.{source}"\n'
     with pytest.raises(LoomfmuError) as raised:
-        ran(place, text.format("Int16"), tmp_path, isolated=isolated, shaft__to_Int16=-1)
-    assert str(raised.value) == "other at 0 s: to_UInt8 = -1 is outside [0, 255], the range of UInt8"
-    with pytest.raises(LoomfmuError) as raised:
-        ran(place, text.format("steps"), tmp_path, isolated=isolated, duration="0.3 s")
-    assert str(raised.value) == "other at 0.255 s: to_UInt8 = 256 is outside [0, 255], the range of UInt8"
+        ran(place, text, tmp_path, isolated=isolated, **changed)
+    said = f"other at {time} s: to_UInt8 = {value} is outside [0, 255], the range of UInt8"
+    assert str(raised.value) == said
 
 
 @either

@@ -23,20 +23,18 @@ FILES = {
     ),
     "its modelDescription.xml cannot be read (Unsupported FMI version: 4.0)": THIRD.replace('"3.0"', '"4.0"'),
 }
-REFERS = (
-    "Failed to validate modelDescription.xml: The derivative attribute of model variable J (line 21)"
-    " references model variable index 0 which does not exist."
-)
-FILES[f"its modelDescription.xml cannot be read ({REFERS})"] = description2().replace(
-    '<Real start="0.5"', '<Real derivative="0" start="0.5"', 1
-)
-NO_IDENTIFIER = (
-    "modelIdentifier = {!r} is not a C identifier; it must name a library of the FMU by letters, digits and"
-    " _, and no digit first"
-)
 FILES |= {
-    NO_IDENTIFIER.format(name): description2().replace('modelIdentifier="Motor"', f'modelIdentifier="{name}"')
-    for name in ("../../outside/Motor", "", "7up", "Mötor")
+    "its modelDescription.xml cannot be read (Failed to validate modelDescription.xml: The derivative"
+    " attribute of model variable J (line 21) references model variable index 0 which does not exist.)": (
+        description2().replace('<Real start="0.5"', '<Real derivative="0" start="0.5"', 1)
+    ),
+    **{
+        f"modelIdentifier = {name!r} is not a C identifier; it must name a library of the FMU by letters,"
+        " digits and _, and no digit first": description2().replace(
+            'Identifier="Motor"', f'Identifier="{name}"'
+        )
+        for name in ("../../outside/Motor", "", "7up", "Mötor")
+    },
 }
 
 
@@ -56,12 +54,13 @@ def test_an_fmu_without_a_library_for_this_machine_is_refused_with_what_it_has(
     said = f"motor: {tmp_path / 'Motor.fmu'} has no library for this platform, {fmpy.platform}; it has "
     bad(tmp_path, description2())
     scene = 'record = ["weft.*"]\n' + MOTOR + "[weft]\n"  # nothing recorded depends on the motor
-    with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
-        archive.writestr("binaries/other64/NotIt.so", b"")
-    for folder, known in (("", "none"), ("win64", "win64"), ("darwin64", "darwin64 and win64")):
-        if folder:
-            with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
-                archive.writestr(f"binaries/{folder}/Motor.dll", b"")
+    for member, known in (
+        ("binaries/other64/NotIt.so", "none"),
+        ("binaries/win64/Motor.dll", "win64"),
+        ("binaries/darwin64/Motor.dll", "darwin64 and win64"),
+    ):
+        with zipfile.ZipFile(tmp_path / "Motor.fmu", "a") as archive:
+            archive.writestr(member, b"")
         with pytest.raises(LoomfmuError) as raised:
             ran(tmp_path, scene, tmp_path)
         assert str(raised.value) == said + known

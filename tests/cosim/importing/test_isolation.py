@@ -9,12 +9,13 @@ import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import motor_scenes
 import numpy as np
 import pytest
 from foreign_motors import misbehaving, motor2, motor3
-from motor_scenes import LENGTH, MOTOR, SHAFT3, WEFT, exact
+from motor_scenes import MOTOR, SHAFT3, WEFT, exact
 
 import loomfmu
 from loomfmu import LoomfmuError, Trace
@@ -31,13 +32,23 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the misbehaving
 @pytest.fixture(autouse=True)
 def nothing_is_left() -> Iterator[None]:
     yield
-    processes = [each._process for slaves in pool._resting.values() for each in slaves if isolated(each)]
+    resting = [slave._process for slave in resting_processes()]
     pool.free_all()
-    assert not any(process.alive or process._folder.exists() for process in processes)
+    assert not any(process.alive or process._folder.exists() for process in resting)
 
 
-def isolated(slave: object) -> bool:
-    return isinstance(slave, IsolatedSlave)
+def resting_processes() -> list[IsolatedSlave]:
+    return [each for slaves in pool._resting.values() for each in slaves if isinstance(each, IsolatedSlave)]
+
+
+RUN = ("-m", "loomfmu.cli", "run", "motor.toml")
+
+
+def python(folder: Path, scene: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Python in a process of its own, where motor.toml is this scene."""
+    (folder / "motor.toml").write_text(scene)
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
 
 
 # ---- results
@@ -100,15 +111,11 @@ def test_which_are_isolated(tmp_path: Path) -> None:
         scenes.parse(both, "x", {"step_timeout": "5 m"}, tmp_path)
 
 
-def processes() -> list[IsolatedSlave]:
-    return [each for slaves in pool._resting.values() for each in slaves if isinstance(each, IsolatedSlave)]
-
-
 def test_each_run_has_a_process_of_its_own(tmp_path: Path) -> None:
     motor2(tmp_path)
     scene = scenes.parse(MOTOR, directory=tmp_path)
     first = evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"]
-    assert processes() == []
+    assert resting_processes() == []
     assert evaluate(scene, values=["motor.flange_w"]).trace["motor.flange_w"].tolist() == first.tolist()
 
 
@@ -118,9 +125,9 @@ def test_a_process_serves_the_next_run_of_an_fmu_of_ours() -> None:
         return evaluate(scene, flavour="native", values=["belt.margin"]).trace["belt.margin"].tolist()
 
     first = margins()
-    (one,) = processes()
+    (one,) = resting_processes()
     assert margins() == first
-    assert processes() == [one]
+    assert resting_processes() == [one]
     one._process._popen.kill()
     one._process._popen.wait()
     assert margins() == first
@@ -169,19 +176,30 @@ def test_what_fails_after_the_last_step_costs_nothing(tmp_path: Path, what: str,
         assert result.holds and result.trace.rows == 201
 
 
-@pytest.mark.parametrize("what", ["MOVE", "PRINT", "LOG"])
+@pytest.mark.parametrize("what", ["PRINT", "LOG"])
 def test_what_disturbs_others_disturbs_nobody(
-    tmp_path: Path, what: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, what: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     misbehaving(tmp_path, what)
-    result = ran(tmp_path, MOTOR, Path(), duration="0.06 s")
-    assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
-    assert capfd.readouterr() == ("", "")
+    result = ran(tmp_path, MOTOR, tmp_path, duration="0.06 s")
+    assert result.holds and capfd.readouterr() == ("", "")
     assert len(result.warnings) == (51 if what == "LOG" else 0)
     if what == "LOG":
         assert result.warnings[0] == "motor: 99950 earlier messages left out"
         assert result.warnings[-1] == "motor: line 9999"
+
+
+@pytest.mark.parametrize(
+    ("where", "isolated"),
+    [("STEP", True), *((where, False) for where in ("STEP", "INITIALIZATION", "TERMINATE", "FREE"))],
+)
+def test_a_changed_working_directory_is_changed_back(
+    tmp_path: Path, where: str, isolated: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    misbehaving(tmp_path, "MOVE", where)
+    assert ran(tmp_path, MOTOR, Path(), isolated=isolated).holds
+    assert (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
 
 
 def test_a_run_that_takes_too_long_is_ended(tmp_path: Path) -> None:
@@ -196,16 +214,17 @@ def test_a_run_that_takes_too_long_is_ended(tmp_path: Path) -> None:
         ran(tmp_path, MOTOR, tmp_path, run_timeout="0.5 s", duration="100000 s")
 
 
-def test_ctrl_c_ends_a_hang(tmp_path: Path) -> None:
-    for where in ("STEP", "INITIALIZATION"):
-        misbehaving(tmp_path, "HANG", where)
-        timer = threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
-        with pytest.raises(KeyboardInterrupt) as raised:
-            ran(tmp_path, MOTOR, tmp_path)
-        timer.join()
-        if where == "STEP":
-            assert str(raised.value).startswith("interrupted; 51 samples are in ")
+@pytest.mark.few(1)
+@pytest.mark.parametrize(
+    ("where", "said"), [("STEP", "interrupted; 51 samples are in "), ("INITIALIZATION", "interrupted")]
+)
+def test_ctrl_c_ends_a_hang(tmp_path: Path, where: str, said: str) -> None:
+    misbehaving(tmp_path, "HANG", where)
+    timer = threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt, match=f"^{said}"):
+        ran(tmp_path, MOTOR, tmp_path)
+    timer.join()
 
 
 def test_the_processes_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
@@ -241,14 +260,20 @@ values = ["motor.flange_w"]
 """
 
 
+def swept(folder: Path, what: str, scene: str, processes: int) -> list[dict[str, Any]]:
+    """The rows of a sweep in which an FMU misbehaves in the first two of four."""
+    misbehaving(folder, what)
+    (folder / "motor.toml").write_text(scene)
+    (folder / "sweep.toml").write_text(SWEEP)
+    found = loomfmu.sweep(folder / "sweep.toml", output=folder / "out", processes=processes)
+    assert found.errors == 2 and found.holding == 2
+    return found.table.to_pylist()
+
+
 @pytest.mark.few(1)
 @pytest.mark.parametrize("what", ["CRASH", "HANG", "EXIT"])
 def test_other_rows_of_a_sweep_are_unharmed(tmp_path: Path, what: str) -> None:
-    misbehaving(tmp_path, what)
-    (tmp_path / "motor.toml").write_text('step_timeout = "0.5 s"\n' + MOTOR)
-    (tmp_path / "sweep.toml").write_text(SWEEP)
-    found = loomfmu.sweep(tmp_path / "sweep.toml", output=tmp_path / "out", processes=1)
-    rows = found.table.to_pylist()
+    rows = swept(tmp_path, what, 'step_timeout = "0.5 s"\n' + MOTOR, 1)
     said = IN_A_STEP[what].replace("\\", "")
     assert [row["error"] for row in rows] == [f"motor at 0.05 s: {said}"] * 2 + [None] * 2
     for row in rows[2:]:
@@ -267,10 +292,10 @@ def test_what_an_fmu_starts_in_a_session_of_its_own_ends_with_it(
             ran(tmp_path, MOTOR, tmp_path)
     else:
         assert ran(tmp_path, MOTOR.replace('"0.2 s"', '"0.055 s"'), tmp_path).holds
-    assert [each for each in Path("/proc").glob("[0-9]*/environ") if str(tmp_path) in told(each)] == []
+    assert [each for each in Path("/proc").glob("[0-9]*/environ") if str(tmp_path) in content(each)] == []
 
 
-def told(path: Path) -> str:
+def content(path: Path) -> str:
     """The content of a file of /proc; nothing of a process that has ended."""
     try:
         return path.read_text(errors="replace")
@@ -280,7 +305,7 @@ def told(path: Path) -> str:
 
 # ---- not isolated
 
-IN_THIS_PROCESS = "isolated = false\n" + LENGTH + '[motor]\nfmu = "Motor.fmu"\n'
+IN_THIS_PROCESS = "isolated = false\n" + MOTOR
 
 
 @pytest.mark.few(2)
@@ -297,14 +322,7 @@ def test_the_command_outlives_an_fmu_that_ends_its_process(
     tmp_path: Path, what: str, how: str, where: str
 ) -> None:
     misbehaving(tmp_path, what, where)
-    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
-    done = subprocess.run(
-        [sys.executable, "-m", "loomfmu.cli", "run", "motor.toml"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = python(tmp_path, IN_THIS_PROCESS, *RUN)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         f"loomfmu: motor {how} before the run was finished; isolated = true keeps the trace up to there\n"
@@ -313,14 +331,7 @@ def test_the_command_outlives_an_fmu_that_ends_its_process(
 
 def test_exit_in_a_script_is_a_failure(tmp_path: Path) -> None:
     misbehaving(tmp_path, "EXIT")
-    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
-    done = subprocess.run(
-        [sys.executable, "-c", "import loomfmu; loomfmu.run('motor.toml')"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = python(tmp_path, IN_THIS_PROCESS, "-c", "import loomfmu; loomfmu.run('motor.toml')")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         "loomfmu: an FMU ended the process (exit) before the run was finished, one of motor;"
@@ -333,24 +344,15 @@ def test_a_run_in_a_child_process_is_like_any_other(tmp_path: Path) -> None:
     motor2(tmp_path)
     for bound, status in ((100.0, 0), (1.0, 1)):
         claim = f'[[claims]]\nkind = "below"\nsignal = "motor.flange_w"\nbound = {bound}\n'
-        (tmp_path / "motor.toml").write_text(MOTOR + claim)
         done = [
-            subprocess.run(
-                [
-                    sys.executable,
-                    "-m",
-                    "loomfmu.cli",
-                    "run",
-                    "motor.toml",
-                    "--set",
-                    f"isolated={isolated}",
-                    "--output",
-                    f"{bound}_{isolated}.h5",
-                ],
-                cwd=tmp_path,
-                capture_output=True,
-                text=True,
-                check=False,
+            python(
+                tmp_path,
+                MOTOR + claim,
+                *RUN,
+                "--set",
+                f"isolated={isolated}",
+                "--output",
+                f"{bound}_{isolated}.h5",
             )
             for isolated in ("true", "false")
         ]
@@ -393,26 +395,11 @@ def test_the_second_ctrl_c_ends_a_run_whose_fmu_hangs(tmp_path: Path) -> None:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("processes", [1, 2])
 def test_a_row_whose_fmu_ends_the_process_leaves_the_others_unharmed(tmp_path: Path, processes: int) -> None:
-    misbehaving(tmp_path, "QUIT")
-    (tmp_path / "motor.toml").write_text(IN_THIS_PROCESS)
-    (tmp_path / "sweep.toml").write_text(SWEEP)
-    found = loomfmu.sweep(tmp_path / "sweep.toml", output=tmp_path / "out", processes=processes)
-    assert found.errors == 2 and found.holding == 2
-    for row in found.table.to_pylist()[:2]:
+    for row in swept(tmp_path, "QUIT", IN_THIS_PROCESS, processes)[:2]:
         assert row["error"] == (
             "the process that ran it ended with status 0, with motor in it;"
             " isolated = true says which call of which FMU"
         )
-
-
-@pytest.mark.parametrize("where", ["STEP", "INITIALIZATION", "TERMINATE", "FREE"])
-def test_a_changed_working_directory_is_changed_back(
-    tmp_path: Path, where: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    misbehaving(tmp_path, "MOVE", where)
-    result = ran(tmp_path, IN_THIS_PROCESS, Path())
-    assert result.holds and (tmp_path / "motor.h5").exists() and Path.cwd() == tmp_path
 
 
 @pytest.mark.few(3)
@@ -427,7 +414,8 @@ def test_a_changed_rounding_is_changed_back_before_others_compute(
     found = []
     for what in ("ROUND", "STATUS"):
         misbehaving(tmp_path, what, where)
-        found.append(ran(tmp_path, IN_THIS_PROCESS + weft, tmp_path / what).trace["weft.travel"])
+        result = ran(tmp_path, MOTOR + weft, tmp_path / what, isolated=False)
+        found.append(result.trace["weft.travel"])
         tiny = 1e-300
         assert 1.0 + tiny == 1.0
     np.testing.assert_array_equal(*found)
@@ -438,39 +426,24 @@ def test_a_changed_rounding_is_changed_back_before_others_compute(
 @pytest.mark.parametrize("text", [MOTOR, IN_THIS_PROCESS])
 def test_of_a_process_that_an_fmu_has_forked_one_goes_on(tmp_path: Path, text: str, where: str) -> None:
     misbehaving(tmp_path, "FORK", where)
-    (tmp_path / "scene.toml").write_text(text.replace('"0.2 s"', '"0.055 s"'))
-    done = subprocess.run(
-        [sys.executable, "-m", "loomfmu.cli", "run", "scene.toml"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+    done = python(tmp_path, text.replace('"0.2 s"', '"0.055 s"'), *RUN)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("trace: ") == 1
-    assert os.listdir(tmp_path / "results") == ["scene.h5"]
-    with Trace(tmp_path / "results" / "scene.h5") as trace:
+    assert os.listdir(tmp_path / "results") == ["motor.h5"]
+    with Trace(tmp_path / "results" / "motor.h5") as trace:
         assert trace.status == "complete" and trace.rows == 56
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("isolated", [True, False])
-def test_a_step_in_the_background_is_named(tmp_path: Path, isolated: bool) -> None:
-    misbehaving(tmp_path, "STATUS", returned=5)
-    (tmp_path / "x.toml").write_text(MOTOR)
-    said = r"motor at 0\.05 s: fmi2DoStep returned fmi2Pending: steps in the background are not supported"
-    with pytest.raises(LoomfmuError, match=said):
-        loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})
-
-
-@pytest.mark.few(3)
-@pytest.mark.parametrize("isolated", [True, False])
-@pytest.mark.parametrize("status", [-1, 6, 2**31 - 1, -(2**31)])
-def test_a_status_that_fmi_does_not_know_is_a_failure(tmp_path: Path, status: int, isolated: bool) -> None:
+@pytest.mark.parametrize("status", [5, -1, 6, 2**31 - 1, -(2**31)])
+def test_a_status_that_the_master_does_not_know_is_a_failure(
+    tmp_path: Path, status: int, isolated: bool
+) -> None:
     misbehaving(tmp_path, "STATUS", returned=status)
-    (tmp_path / "x.toml").write_text(MOTOR)
-    with pytest.raises(LoomfmuError, match=rf"motor at 0\.05 s: fmi2DoStep returned status {status}: "):
-        loomfmu.evaluate(tmp_path / "x.toml", set={"isolated": isolated})
+    said = "fmi2Pending: steps in the background are not" if status == 5 else f"status {status}: "
+    with pytest.raises(LoomfmuError, match=rf"^motor at 0\.05 s: fmi2DoStep returned {said}"):
+        ran(tmp_path, MOTOR, tmp_path, isolated=isolated)
 
 
 @pytest.mark.parametrize("study", [loomfmu.limit, loomfmu.tolerances])

@@ -11,21 +11,20 @@ import pytest
 from direct_loom import small
 from foreign_motors import WHOLE, motor3
 from odd_components import odd
+from stepped import same_bits, stepped
 
 import loomfmu
 from loomfmu import LoomfmuError
-from loomfmu.cache.entries import CHECKSUM
 from loomfmu.components import COMPONENTS
 from loomfmu.cosim.importing import fmus
 from loomfmu.cosim.importing.built import file_of
 from loomfmu.cosim.master import steppers
-from loomfmu.cosim.master.grid import Grid, chosen, uniform
+from loomfmu.cosim.master.grid import chosen, uniform
 from loomfmu.cosim.master.master import Interrupted, Master
+from loomfmu.cosim.master.steppers import CompiledStepper, PythonStepper
 from loomfmu.cosim.planning.pruning import prune
 from loomfmu.cosim.reading import in_flavour
 from loomfmu.cosim.scenes import scene as scenes
-from loomfmu.cosim.scenes.scene import Scene
-from loomfmu.fmi.native.libraries import library_of
 from loomfmu.fmi.native.platforms import host
 
 __all__ = ["odd"]
@@ -34,7 +33,6 @@ pytestmark = pytest.mark.skipif(
     find_spec("ziglang") is None or not sys.platform.startswith("linux"),
     reason="there is no compiler to build the stepper with",
 )
-Rows = list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 DRIVEN = '[inputs]\n"belt.guide_clearance" = [[0.1, "0.3 mm"], [0.3, "0.5 mm"], [0.6, "0.9 mm"]]\n'
 SCENES = {
@@ -45,30 +43,11 @@ SCENES = {
 }
 
 
-def rows_of(scene: Scene, compiled: bool, grid: Grid | None = None, block: int = 100) -> Rows:
-    """All blocks of a run: times, reals and integers."""
-    rows: Rows = []
-    with Master(scene, grid, compiled=compiled) as master:
-        master.initialize()
-        kind = steppers.CompiledStepper if compiled else steppers.PythonStepper
-        assert type(master._stepper) is kind
-        master.run(
-            block, lambda *parts: rows.append(tuple(part.copy() for part in parts)), lambda _step: None
-        )
-    return rows
-
-
-def equal(one: Rows, other: Rows) -> None:
-    # a slow run hands on smaller blocks, so that they are on disk in time
-    for parts, others in zip(zip(*one, strict=True), zip(*other, strict=True), strict=True):
-        np.testing.assert_array_equal(np.concatenate(parts), np.concatenate(others))
-
-
 @pytest.mark.parametrize("flavour", fmus.FLAVOURS)
 @pytest.mark.parametrize("changed", SCENES.values(), ids=list(SCENES))
 def test_both_steppers_give_the_same_bits(changed: dict[str, object], flavour: str) -> None:
     scene = in_flavour(small(180, **changed), flavour)
-    equal(rows_of(scene, compiled=True), rows_of(scene, compiled=False))
+    same_bits(stepped(scene, CompiledStepper), stepped(scene, PythonStepper))
 
 
 def test_the_python_loop_calls_the_fmus_without_a_call_of_its_own_around_each() -> None:
@@ -99,7 +78,7 @@ def test_fmus_of_fmi_3_are_stepped_in_c_to_the_bits_of_fmi_2(tmp_path: Path) -> 
     given = text + "".join(f'[{instance}]\nfmu = "{path}"\n' for instance, path in files.items())
     fmi2, fmi3 = (in_flavour(scenes.parse(each, "loom"), "native") for each in (text, given))
     assert all(each.fmu.fmi == 3 for each in fmi3.instances.values())
-    equal(rows_of(fmi2, compiled=True), rows_of(fmi3, compiled=True))
+    same_bits(stepped(fmi2, CompiledStepper), stepped(fmi3, CompiledStepper))
 
 
 MOTOR3 = """
@@ -122,8 +101,7 @@ fmu = "Motor3.fmu"
 def test_values_of_all_types_of_fmi_3_are_converted_alike(tmp_path: Path) -> None:
     motor3(tmp_path, description=WHOLE)
     scene = scenes.parse(MOTOR3, "motors", directory=tmp_path)
-    compiled = rows_of(scene, True)
-    equal(compiled, rows_of(scene, False))
+    same_bits(stepped(scene, CompiledStepper), stepped(scene, PythonStepper))
     assert {"Float32", "Boolean", "Enumeration", "Int64"} <= {
         port.base_type for port in scene.instances["shaft"].fmu.ports.values()
     }
@@ -144,12 +122,13 @@ component = "Switched"
 
 
 @pytest.mark.usefixtures("odd")
-@pytest.mark.parametrize("compiled", [True, False])
-def test_driven_integers_and_booleans_are_held_until_the_next_row(compiled: bool) -> None:
+@pytest.mark.parametrize("stepper", [CompiledStepper, PythonStepper])
+def test_driven_integers_and_booleans_are_held_until_the_next_row(stepper: type) -> None:
     scene = scenes.parse(SWITCHED.format(coupling="lagged", rest=""), "switched")
-    with Master(scene, compiled=compiled) as master:
-        slots = {variable: slot for (name, variable), (_kind, slot) in master.slots.items() if name == "odd"}
-    times, reals, integers = (np.concatenate(p) for p in zip(*rows_of(scene, compiled), strict=True))
+    slots = {
+        variable: slot for (name, variable), (_kind, slot) in Master(scene).slots.items() if name == "odd"
+    }
+    times, reals, integers = stepped(scene, stepper)
     turns = np.arange(91) / 90
     gear = np.where(turns < 0.4, 2, np.where(turns < 0.7, -3, 4))
     for variable in ("gear", "gear_in_use"):
@@ -181,23 +160,7 @@ def test_an_iterated_loop_takes_driven_integers_too() -> None:
 @pytest.mark.parametrize("block", [1, 2, 7, 4096])
 def test_the_size_of_a_block_changes_nothing(block: int) -> None:
     scene = small(90, rest=DRIVEN)
-    whole = [np.concatenate(parts) for parts in zip(*rows_of(scene, True), strict=True)]
-    parts = [np.concatenate(parts) for parts in zip(*rows_of(scene, True, block=block), strict=True)]
-    equal([tuple(whole)], [tuple(parts)])
-
-
-def test_very_many_blocks_are_handed_over(tmp_path: Path) -> None:
-    scene = scenes.parse("steps_per_revolution = 3000\n[shaft]", "long")
-    with Master(scene) as master:
-        master.initialize()
-        rows = 0
-
-        def count(times: np.ndarray, *_: np.ndarray) -> None:
-            nonlocal rows
-            rows += len(times)
-
-        master.run(2, count, lambda _step: None)  # what a run of millions of steps has in blocks of thousands
-    assert rows == 3001
+    same_bits(stepped(scene, CompiledStepper), stepped(scene, CompiledStepper, block=block))
 
 
 def test_chosen_points_are_stepped_by_both_alike() -> None:
@@ -205,19 +168,20 @@ def test_chosen_points_are_stepped_by_both_alike() -> None:
     random = np.random.default_rng(1)
     points = np.concatenate([[0.0], np.cumsum(random.uniform(1e-7, 2e-3, 200))])
     grid = chosen(scene, points)
-    compiled = rows_of(scene, True, grid)
-    equal(compiled, rows_of(scene, False, grid))
-    np.testing.assert_array_equal(np.concatenate([times for times, _, _ in compiled]), points)
+    compiled = stepped(scene, CompiledStepper, grid)
+    same_bits(compiled, stepped(scene, PythonStepper, grid))
+    np.testing.assert_array_equal(compiled[0], points)
 
 
 def test_equal_points_that_were_chosen_give_the_results_of_equal_steps() -> None:
     scene = small(90)
     even = uniform(scene)
     points = chosen(scene, np.arange(even.steps + 1) * even.step_size)
-    for one, other in zip(rows_of(scene, True, points), rows_of(scene, True), strict=True):
-        for part, its in zip(one, other, strict=True):
-            # the sizes of the steps differ by the rounding of a difference, 1e-16 of 0.1 s in steps of 1 ms
-            np.testing.assert_allclose(part, its, rtol=1e-9, atol=1e-9)
+    for part, its in zip(
+        stepped(scene, CompiledStepper, points), stepped(scene, CompiledStepper), strict=True
+    ):
+        # the sizes of the steps differ by the rounding of a difference, 1e-16 of 0.1 s in steps of 1 ms
+        np.testing.assert_allclose(part, its, rtol=1e-9, atol=1e-9)
 
 
 def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None:
@@ -230,11 +194,11 @@ def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None
     for master in (whole, without):
         with master:
             master.initialize()
-            blocks = []
+            samples = []
             master.run(
-                5000, lambda t, r, i, blocks=blocks: blocks.append((r.copy(), i.copy())), lambda _: None
+                5000, lambda *parts, to=samples: to.extend(part.copy() for part in parts), lambda _: None
             )
-            (found[master],) = blocks
+            _times, *found[master] = samples
     for key, (kind, slot) in whole.slots.items():
         other_kind, other_slot = without.slots[key]
         place = 0 if kind == "Real" else 1
@@ -249,60 +213,40 @@ def test_a_loom_without_its_constant_shaft_turns_alike_to_the_last_bit() -> None
 @pytest.mark.parametrize("component", ["Raising", "Overflowing"])
 def test_both_fail_alike_and_keep_the_same_rows(component: str) -> None:
     scene = scenes.parse(f'steps_per_revolution = 3000\n[odd]\ncomponent = "{component}"\n', "odd")
-    told, kept = [], []
+    failures, kept = [], []
     for compiled in (True, False):
-        rows = 0
-
-        def count(times: np.ndarray, *_: np.ndarray) -> None:
-            nonlocal rows
-            rows += len(times)
-
+        times: list[float] = []
         with Master(scene, compiled=compiled) as master:
             master.initialize()
             with pytest.raises(LoomfmuError) as raised:
-                master.run(1024, count, lambda _step: None)
-        told.append(str(raised.value))
-        kept.append(rows)
-    assert told[0] == told[1]
+                master.run(1024, lambda block, *_, times=times: times.extend(block), lambda _step: None)
+        failures.append(str(raised.value))
+        kept.append(len(times))
+    assert failures[0] == failures[1]
     assert kept == [2002, 2002]
 
 
 def test_an_interrupt_ends_a_compiled_run_soon_and_between_two_steps() -> None:
     scene = in_flavour(small(1440, revolutions=5000.0), "native")  # tens of seconds
-    rows = 0
-
-    def count(times: np.ndarray, *_: np.ndarray) -> None:
-        nonlocal rows
-        rows += len(times)
-
+    times: list[float] = []
     main = threading.main_thread().ident
     assert main is not None
     timer = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
     with pytest.raises(Interrupted), Master(scene, compiled=True) as master:
         master.initialize()
         timer.start()
-        master.run(1024, count, lambda _step: None)
+        master.run(1024, lambda block, *_: times.extend(block), lambda _step: None)
     timer.join()
-    assert 0 < rows < scene.steps
+    assert 0 < len(times) < scene.steps
 
 
 def test_without_a_compiler_the_python_loop_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(steppers, "library_of", lambda _source: None)
     with Master(small(90)) as master:
         master.initialize()
-        assert type(master._stepper) is steppers.PythonStepper
+        assert type(master._stepper) is PythonStepper
     with (
         pytest.raises(LoomfmuError, match="the compiled stepper is not available"),
         Master(small(90), compiled=True) as master,
     ):
         master.initialize()
-
-
-def test_the_library_is_built_once_and_shared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("LOOMFMU_CACHE", str(tmp_path))
-    first = library_of.__wrapped__(steppers.SOURCE)
-    assert first is not None
-    made = first.stat().st_mtime_ns
-    assert library_of.__wrapped__(steppers.SOURCE) == first
-    assert first.stat().st_mtime_ns == made
-    assert {path.name for path in first.parent.iterdir()} == {first.name, CHECKSUM}  # nothing half-made

@@ -20,7 +20,7 @@ DRIVE = """
   <ssd:Connectors><ssd:Connector name="phi" kind="output"/><ssd:Connector name="w" kind="output"/>
   <ssd:Connector name="free" kind="input"/></ssd:Connectors>
   <ssd:Elements><ssd:Component name="motor" source="resources/Motor.fmu">
-    <ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>
+    {connectors}<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>
       <ssv:ParameterSet version="1.0" name="inline"><ssv:Parameters>
         <ssv:Parameter name="J"><ssv:Real value="7"/></ssv:Parameter>
         <ssv:Parameter name="mode"><ssv:Enumeration value="no_way_back"/></ssv:Parameter>
@@ -66,39 +66,46 @@ ALGORITHM = (
     '<ssd:Annotations><ssc:Annotation type="com.opensimulationplatform"><osp:Algorithm>'
     '<osp:FixedStepAlgorithm baseStepSize="1e-3"/></osp:Algorithm></ssc:Annotation></ssd:Annotations>'
 )
+
+
+def parameter(name: str, kind: str, attributes: str) -> str:
+    return f'<ssv:Parameter name="{name}"><ssv:{kind} {attributes}/></ssv:Parameter>'
+
+
 SETS = {
-    "outer": '<ssv:Parameter name="left head.follow_shaft"><ssv:Boolean value="1"/></ssv:Parameter>'
-    '<ssv:Parameter name="left head.inputs_at_step_end"><ssv:Boolean value="false"/></ssv:Parameter>'
-    '<ssv:Parameter name="left head.crank_length"><ssv:Real value="15" unit="cm"/></ssv:Parameter>',
-    "mapped": '<ssv:Parameter name="inertia"><ssv:Real value="0.5"/></ssv:Parameter>'
-    '<ssv:Parameter name="other"><ssv:Real value="3"/></ssv:Parameter>',
+    "outer": parameter("left head.follow_shaft", "Boolean", 'value="1"')
+    + parameter("left head.inputs_at_step_end", "Boolean", 'value="false"')
+    + parameter("left head.crank_length", "Real", 'value="15" unit="cm"'),
+    "mapped": parameter("inertia", "Real", 'value="0.5"') + parameter("other", "Real", 'value="3"'),
 }
 CENTIMETRE = '<ssv:Units><ssc:Unit name="cm"><ssc:BaseUnit m="1" factor="0.01"/></ssc:Unit></ssv:Units>'
 
 
-def package(directory: Path, **changed: str) -> Path:
-    """A motor in a system of its own that drives a rapier head."""
-    motor = motor2(directory).read_bytes()
+def package(
+    directory: Path, files: dict[str, bytes] | None = None, units: bool = True, **changed: str
+) -> Path:
+    """A motor in a system of its own that drives a rapier head; `files` are more, `changed` parts of it."""
     spaces = " ".join(f'xmlns:{key}="{NAMESPACES[key]}"' for key in ("ssd", "ssc", "ssv", "ssm", "osp"))
     parts = {
         "namespaces": spaces,
-        "other": "",
-        "connection": "",
         "experiment": 'startTime="0" stopTime="0.2"',
         "algorithm": ALGORITHM,
-        "more": "",
-        "transformed": "",
-    } | changed
+        **dict.fromkeys(("other", "connection", "more", "transformed", "connectors"), ""),
+        **changed,
+    }
     parts["drive"] = DRIVE.format(**parts)
+    sets = {
+        f"resources/{name}.ssv": f'<ssv:ParameterSet version="1.0" name="{name}" {spaces}>'
+        f"<ssv:Parameters>{text}</ssv:Parameters>{CENTIMETRE}</ssv:ParameterSet>"
+        for name, text in SETS.items()
+    }
     path = directory / "elsewhere.ssp"
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("SystemStructure.ssd", STRUCTURE.format(**parts))
-        archive.writestr("resources/Motor.fmu", motor)
-        archive.writestr("resources/left head.fmu", fmus.of_component("WeftInsertion").path.read_bytes())
-        for name, text in SETS.items():
-            content = f"<ssv:Parameters>{text}</ssv:Parameters>{CENTIMETRE}"
-            start = f'<ssv:ParameterSet version="1.0" name="{name}" {spaces}>'
-            archive.writestr(f"resources/{name}.ssv", f"{start}{content}</ssv:ParameterSet>")
+        archive.write(motor2(directory, units=units), "resources/Motor.fmu")
+        archive.write(fmus.of_component("WeftInsertion").path, "resources/left head.fmu")
+        for name, content in (sets | (files or {})).items():
+            archive.writestr(name, content)
     return path
 
 
@@ -152,10 +159,8 @@ def test_duration_step_and_values_can_be_set(tmp_path: Path) -> None:
 
 
 def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
-    more = "".join(
-        f'<ssv:Parameter name="{name}"><ssv:{kind} value="3"/></ssv:Parameter>'
-        for name, kind in (("gain", "Real"), ("label", "String"), ("flange.phi", "Real"))
-    )
+    given = (("gain", "Real"), ("label", "String"), ("flange.phi", "Real"))
+    more = "".join(parameter(name, kind, 'value="3"') for name, kind in given)
     assert ran(tmp_path, more=more).warnings == (
         "drive_motor.gain of the package is ignored: Motor has no such variable",
         "drive_motor.label of the package is ignored: it is a text",
@@ -166,7 +171,7 @@ def test_what_names_no_variable_is_left_out_and_told(tmp_path: Path) -> None:
 def test_a_value_for_a_component_that_does_not_exist_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    more = '<ssv:Parameter name="lft head.crank_length"><ssv:Real value="1"/></ssv:Parameter>'
+    more = parameter("lft head.crank_length", "Real", 'value="1"')
     monkeypatch.setitem(SETS, "outer", SETS["outer"] + more)
     assert ran(tmp_path).warnings == (
         "lft head.crank_length of the package is ignored: there is no such component",
@@ -182,20 +187,12 @@ def test_units_that_connectors_state_count_where_the_fmu_states_none(tmp_path: P
             ("w_free", "parameter", "rad/s"),
         )
     )
-    path = package(tmp_path)
-    motor = motor2(tmp_path, units=False).read_bytes()
-    with zipfile.ZipFile(path) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    files["resources/Motor.fmu"] = motor
-    bare = rewritten(path, files)
+    bare = package(tmp_path, units=False)
     with pytest.raises(LoomfmuError, match=r"w_free = 572\.957795130823 rpm, but the variable has no unit"):
         run(bare, output=tmp_path / "x.h5")
     follow_the_hints(bare, tmp_path)
-    start = b'source="resources/Motor.fmu">'
-    assert start in files["SystemStructure.ssd"]
-    connectors = f"<ssd:Connectors>{stated}</ssd:Connectors>".encode()
-    files["SystemStructure.ssd"] = files["SystemStructure.ssd"].replace(start, start + connectors)
-    result = run(rewritten(path, files), output=tmp_path / "x.h5")
+    connectors = f"<ssd:Connectors>{stated}</ssd:Connectors>"
+    result = run(package(tmp_path, units=False, connectors=connectors), output=tmp_path / "x.h5")
     assert result.trace.unit("drive_motor.flange_w") == "rad/s"
     assert result.scene.instances["drive_motor"].values["w_free"] == pytest.approx(60.0, rel=1e-12)
 
@@ -222,92 +219,76 @@ def follow_the_hints(path: Path, tmp_path: Path) -> None:
 
 
 def test_a_plain_number_is_one_for_a_variable_without_unit(tmp_path: Path) -> None:
-    more = '<ssv:Parameter name="tau_stall"><ssv:Real value="130" unit="-"/></ssv:Parameter>'
-    more += '<ssv:Parameter name="w_free"><ssv:Real value="50"/></ssv:Parameter>'
-    path = package(tmp_path, more=more)
-    with zipfile.ZipFile(path) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    files["resources/Motor.fmu"] = motor2(tmp_path, units=False).read_bytes()
+    more = parameter("tau_stall", "Real", 'value="130" unit="-"') + parameter("w_free", "Real", 'value="50"')
     stated = {
         f"drive_motor.units.{name}": unit
         for name, unit in (("w_free", "rad/s"), ("flange_phi", "rad"), ("flange_w", "rad/s"))
     }
-    result = run(rewritten(path, files), set=stated, output=tmp_path / "x.h5")
+    result = run(package(tmp_path, units=False, more=more), set=stated, output=tmp_path / "x.h5")
     assert result.scene.instances["drive_motor"].values["tau_stall"] == 130.0
     assert result.scene.instances["drive_motor"].values["w_free"] == 50.0
 
 
-def rewritten(path: Path, files: dict[str, bytes]) -> Path:
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return path
+def component(attributes: str) -> dict[str, str]:
+    return {"other": f'<ssd:Component name="x" {attributes}/>'}
 
 
-LINEAR = '<ssc:LinearTransformation factor="2"/>'
+def connected(start: str, end: str) -> dict[str, str]:
+    """One more connection; an end without a dot is a connector of the whole system."""
+    ends = []
+    for which, (element, _, connector) in (("start", start.rpartition(".")), ("end", end.rpartition("."))):
+        ends += [f'{which}Element="{element}"'] * bool(element) + [f'{which}Connector="{connector}"']
+    return {"connection": f"<ssd:Connection {' '.join(ends)}/>"}
+
+
+def valued(name: str, kind: str, value: str) -> dict[str, str]:
+    return {"more": parameter(name, kind, f'value="{value}"')}
+
+
 MISTAKES = {
     "it starts at 1 s; runs start at 0 s": {"experiment": 'startTime="1" stopTime="2"'},
     "duration is given but not step": {"algorithm": ""},
     "there is no shaft whose speed sets the step: add duration": {"algorithm": "", "experiment": ""},
     "connection drive.motor.flange.phi -> drive.phi transforms its value; transformations are": {
-        "transformed": LINEAR
+        "transformed": '<ssc:LinearTransformation factor="2"/>'
     },
-    "resources/none.fmu is not in the package": {
-        "other": '<ssd:Component name="x" source="resources/none.fmu"/>'
-    },
-    "../x.fmu is not in the package": {"other": '<ssd:Component name="x" source="../x.fmu"/>'},
-    "http://host/x.fmu is not in the package": {
-        "other": '<ssd:Component name="x" source="http://host/x.fmu"/>'
-    },
-    "Component has no source": {"other": '<ssd:Component name="x"/>'},
+    "resources/none.fmu is not in the package": component('source="resources/none.fmu"'),
+    "../x.fmu is not in the package": component('source="../x.fmu"'),
+    "http://host/x.fmu is not in the package": component('source="http://host/x.fmu"'),
+    "Component has no source": component(""),
     "bus is a SignalDictionaryReference: only FMUs and systems are supported": {
         "other": '<ssd:SignalDictionaryReference name="bus" dictionary="d"/>'
     },
-    "x: 'a.ssp' is not an FMU but 'application/x-ssp-package'": {
-        "other": '<ssd:Component name="x" source="a.ssp" type="application/x-ssp-package"/>'
-    },
-    "left_head.shaft_angle is connected to 2 outputs": {
-        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
-        ' endElement="left head" endConnector="shaft_angle"/>'
-    },
-    "wire left_head.travel -> left_head.shaft_acceleration: left_head.travel is in m, left_head.": {
-        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
-        ' endElement="left head" endConnector="shaft_acceleration"/>'
-    },
-    "connection to 'lft head.travel': there is no element 'lft head'; did you mean 'left head'?": {
-        "connection": '<ssd:Connection startElement="lft head" startConnector="travel"'
-        ' endElement="drive" endConnector="free"/>'
-    },
-    "connection to 'drive.fre': there is no connector of a system 'fre'; did you mean 'free'?": {
-        "connection": '<ssd:Connection startElement="left head" startConnector="travel"'
-        ' endElement="drive" endConnector="fre"/>'
-    },
-    "connection to 'lod': there is no connector of a system 'lod'; did you mean 'load'?": {
-        "connection": '<ssd:Connection startConnector="lod" endElement="drive" endConnector="free"/>'
-    },
+    "x: 'a.ssp' is not an FMU but 'application/x-ssp-package'": component(
+        'source="a.ssp" type="application/x-ssp-package"'
+    ),
+    "left_head.shaft_angle is connected to 2 outputs": connected("left head.travel", "left head.shaft_angle"),
+    "wire left_head.travel -> left_head.shaft_acceleration: left_head.travel is in m, left_head.": connected(
+        "left head.travel", "left head.shaft_acceleration"
+    ),
+    "connection to 'lft head.travel': there is no element 'lft head'; did you mean 'left head'?": connected(
+        "lft head.travel", "drive.free"
+    ),
+    "connection to 'drive.fre': there is no connector of a system 'fre'; did you mean 'free'?": connected(
+        "left head.travel", "drive.fre"
+    ),
+    "connection to 'lod': there is no connector of a system 'lod'; did you mean 'load'?": connected(
+        "lod", "drive.free"
+    ),
     "there are two elements called 'left head'": {
         "other": '<ssd:Component name="left head" source="resources/Motor.fmu"/>'
     },
-    "drive_motor.verbose = 'yes' must be true or false": {
-        "more": '<ssv:Parameter name="verbose"><ssv:Boolean value="yes"/></ssv:Parameter>'
-    },
-    "drive_motor.mode = 99999999999999999999 must be 1 (both_ways) or 2 (no_way_back)": {
-        "more": '<ssv:Parameter name="mode"><ssv:Integer value="99999999999999999999"/></ssv:Parameter>'
-    },
+    "drive_motor.verbose = 'yes' must be true or false": valued("verbose", "Boolean", "yes"),
+    "drive_motor.mode = 99999999999999999999 must be 1 (both_ways) or 2 (no_way_back)": valued(
+        "mode", "Integer", "99999999999999999999"
+    ),
     "DefaultExperiment stopTime = 'late' is not a finite number": {"experiment": 'stopTime="late"'},
-    "connection to left_head: WeftInsertion has no variable 'travl'; did you mean 'travel'?": {
-        "connection": '<ssd:Connection startElement="left head" startConnector="travl"'
-        ' endElement="left head" endConnector="shaft_acceleration"/>'
-    },
-    "drive_motor.w_free = 1 kg, which does not fit rad/s": {
-        "more": '<ssv:Parameter name="w_free"><ssv:Real value="1" unit="kg"/></ssv:Parameter>'
-    },
-    "drive_motor.J = 'one' is not a number": {
-        "more": '<ssv:Parameter name="J"><ssv:Real value="one"/></ssv:Parameter>'
-    },
-    "drive_motor.J = -11 kg.m2 is outside [-10, inf] kg.m2": {
-        "more": '<ssv:Parameter name="J"><ssv:Real value="-11"/></ssv:Parameter>'
-    },
+    "connection to left_head: WeftInsertion has no variable 'travl'; did you mean 'travel'?": connected(
+        "left head.travl", "left head.shaft_acceleration"
+    ),
+    "drive_motor.w_free = 1 kg, which does not fit rad/s": valued("w_free", "Real", '1" unit="kg'),
+    "drive_motor.J = 'one' is not a number": valued("J", "Real", "one"),
+    "drive_motor.J = -11 kg.m2 is outside [-10, inf] kg.m2": valued("J", "Real", "-11"),
 }
 
 
@@ -321,23 +302,18 @@ def test_what_cannot_be_run_is_told_in_one_line(tmp_path: Path, said: str) -> No
 
 
 def test_nothing_is_written_outside_the_cache(tmp_path: Path) -> None:
-    path = package(tmp_path, other='<ssd:Component name="x" source="../../x.fmu"/>')
-    with zipfile.ZipFile(path, "a") as archive:
-        archive.writestr("../../x.fmu", "anything")
+    path = package(tmp_path, {"../../x.fmu": b"anything"}, **component('source="../../x.fmu"'))
     with pytest.raises(LoomfmuError, match=r"\.\./\.\./x\.fmu is not in the package$"):
         run(path, output=tmp_path / "x.h5")
 
 
-def test_a_system_without_components_is_told(tmp_path: Path) -> None:
-    spaces = f'xmlns:ssd="{NAMESPACES["ssd"]}"'
-    for system, said in (
-        ("", "describes no system"),
-        ('<ssd:System name="s"/>', "the system has no components"),
-    ):
-        content = f'<ssd:SystemStructureDescription version="1.0" name="n" {spaces}>{system}'
-        path = rewritten(
-            tmp_path / "bare.ssp",
-            {"SystemStructure.ssd": f"{content}</ssd:SystemStructureDescription>".encode()},
-        )
-        with pytest.raises(LoomfmuError, match=said):
-            run(path, output=tmp_path / "x.h5")
+@pytest.mark.parametrize(
+    ("system", "said"),
+    [("", "describes no system"), ('<ssd:System name="s"/>', "the system has no components")],
+)
+def test_a_system_without_components_is_told(tmp_path: Path, system: str, said: str) -> None:
+    start = f'<ssd:SystemStructureDescription version="1.0" name="n" xmlns:ssd="{NAMESPACES["ssd"]}">'
+    with zipfile.ZipFile(tmp_path / "bare.ssp", "w") as archive:
+        archive.writestr("SystemStructure.ssd", f"{start}{system}</ssd:SystemStructureDescription>")
+    with pytest.raises(LoomfmuError, match=said):
+        run(tmp_path / "bare.ssp", output=tmp_path / "x.h5")

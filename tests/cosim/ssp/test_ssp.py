@@ -1,9 +1,11 @@
 """System packages: what is written, that others can read it, and that it comes back to the last bit."""
 
 import itertools
+import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -14,12 +16,13 @@ from lxml import etree
 
 from loomfmu import LoomfmuError, Trace
 from loomfmu.cli import main
-from loomfmu.cosim.run import run
+from loomfmu.cosim.run import Result, run
 from loomfmu.cosim.scenes import scene as scenes
 from loomfmu.cosim.scenes.scene import Scene
 from loomfmu.cosim.ssp import export as ssp
 from loomfmu.cosim.ssp import read as ssp_read
 from loomfmu.cosim.ssp.xml import NAMESPACES
+from loomfmu.fmi.fmu_files import zipped
 
 SIMS = Path(__file__).parents[3] / "sims"
 DEMO = SIMS / "wl680_3600.toml"
@@ -45,17 +48,33 @@ def packed(scene: Scene, directory: Path) -> Path:
     return path
 
 
-def structure(path: Path) -> ElementTree.Element:
+def members(path: Path, suffix: str = "") -> dict[str, bytes]:
+    """The files of a package by name, those of one kind."""
     with zipfile.ZipFile(path) as archive:
-        return ElementTree.fromstring(archive.read("SystemStructure.ssd"))
+        return {name: archive.read(name) for name in archive.namelist() if name.endswith(suffix)}
 
 
-def equal(trace: Trace, other: Trace) -> None:
-    assert set(trace) == set(other)
-    np.testing.assert_array_equal(trace.time, other.time)
-    np.testing.assert_array_equal(trace.shaft_angle, other.shaft_angle)
-    for signal in trace:
-        np.testing.assert_array_equal(trace[signal], other[signal], err_msg=signal)
+def structure(path: Path) -> ElementTree.Element:
+    return ElementTree.fromstring(members(path)["SystemStructure.ssd"])
+
+
+def names_of(parent: ElementTree.Element) -> list[str]:
+    return [element.tag.rpartition("}")[2] for element in parent]
+
+
+def alike(
+    folder: Path, scene: Scene | Path, package: Path, changed: dict[str, Any] | None = None, **more: Any
+) -> tuple[Result, Result]:
+    """The runs of a scene and of a package, equal to the bit; `more` is changed in both."""
+    before = run(scene, set=(changed or {}) | more, output=folder / "before.h5")
+    after = run(package, set=more, output=folder / "after.h5")
+    assert set(before.trace) == set(after.trace)
+    np.testing.assert_array_equal(before.trace.time, after.trace.time)
+    np.testing.assert_array_equal(before.trace.shaft_angle, after.trace.shaft_angle)
+    for signal in before.trace:
+        np.testing.assert_array_equal(before.trace[signal], after.trace[signal], err_msg=signal)
+    assert list(map(str, after.claims)) == list(map(str, before.claims))
+    return before, after
 
 
 @pytest.fixture(scope="module")
@@ -75,11 +94,9 @@ def test_the_same_scene_gives_the_same_bytes(demo: Path, tmp_path: Path) -> None
 @pytest.mark.parametrize("name", ["wl680_3600", "full_loom", "worn_belt", "start_up"])
 def test_structure_and_parameters_are_valid(tmp_path: Path, name: str) -> None:
     path = packed(scenes.load(SIMS / f"{name}.toml", SHORT), tmp_path)
-    with zipfile.ZipFile(path) as archive:
-        for member in archive.namelist():
-            schema = {".ssd": "Description", ".ssv": "ParameterValues"}.get(Path(member).suffix)
-            if schema:
-                validate_tree(etree.fromstring(archive.read(member)), f"SystemStructure{schema}.xsd")
+    for suffix, schema in ((".ssd", "Description"), (".ssv", "ParameterValues")):
+        for content in members(path, suffix).values():
+            validate_tree(etree.fromstring(content), f"SystemStructure{schema}.xsd")
 
 
 def test_fmpy_reads_it(demo: Path) -> None:
@@ -107,9 +124,7 @@ def test_pyssp_reads_it_and_finds_it_in_order(demo: Path) -> None:
 
 
 def test_each_fmu_is_in_it_once(demo: Path) -> None:
-    with zipfile.ZipFile(demo) as archive:
-        fmus = [name for name in archive.namelist() if name.endswith(".fmu")]
-    assert sorted(fmus) == [
+    assert sorted(members(demo, ".fmu")) == [
         f"resources/{name}.fmu"
         for name in ("BeltMonitor", "DobbyDrive", "HealdDamper", "HealdFrame", "MainShaft", "WeftInsertion")
     ]
@@ -131,47 +146,34 @@ def test_it_has_what_omsimulator_asks_for_and_nothing_that_it_refuses(demo: Path
     assert master.get("description") == "oms-ma"
     assert float(master.get("stepSize")) == pytest.approx(scenes.load(DEMO, SHORT).step_size, rel=1e-15)
     # oms::Model::importFromSnapshot and oms::System::importFromSnapshot end at any other element
-    names = [element.tag.rpartition("}")[2] for element in found]
-    assert names == ["System", "Units", "DefaultExperiment"]
-    names = [element.tag.rpartition("}")[2] for element in found.find("ssd:System", NAMESPACES)]
-    assert names == ["Elements", "Connections", "Annotations"]
-    with zipfile.ZipFile(demo) as archive:  # it looks for the prefix as it stands
-        assert b"<oms:FixedStepMaster " in archive.read("SystemStructure.ssd")
+    assert names_of(found) == ["System", "Units", "DefaultExperiment"]
+    assert names_of(found.find("ssd:System", NAMESPACES)) == ["Elements", "Connections", "Annotations"]
+    # it looks for the prefix as it stands
+    assert b"<oms:FixedStepMaster " in members(demo)["SystemStructure.ssd"]
 
 
 def test_a_choice_is_written_by_its_name_and_only_where_it_is_not_the_default(
     demo: Path, tmp_path: Path
 ) -> None:
-    def choices(path: Path) -> list[str]:
-        parameters = []
-        with zipfile.ZipFile(path) as archive:
-            for name in archive.namelist():
-                if name.endswith(".ssv"):
-                    parameters += ElementTree.fromstring(archive.read(name)).iter(
-                        f"{{{NAMESPACES['ssv']}}}Enumeration"
-                    )
-        return [element.get("value") for element in parameters]
+    def choices(path: Path) -> list[str | None]:
+        sets = map(ElementTree.fromstring, members(path, ".ssv").values())
+        return [each.get("value") for one in sets for each in one.iter(f"{{{NAMESPACES['ssv']}}}Enumeration")]
 
     assert choices(demo) == []  # libcosim and ecos take no package with one
     scene = scenes.load(DEMO, SHORT | {"dobby.law": "harmonic_ends"})
     path = packed(scene, tmp_path)
     assert choices(path) == ["harmonic_ends"]
-    with zipfile.ZipFile(path) as archive:
-        validate_tree(
-            etree.fromstring(archive.read("resources/dobby.ssv")), "SystemStructureParameterValues.xsd"
-        )
-    before = run(scene, output=tmp_path / "before.h5")
-    equal(before.trace, run(path, output=tmp_path / "after.h5").trace)
+    written = etree.fromstring(members(path)["resources/dobby.ssv"])
+    validate_tree(written, "SystemStructureParameterValues.xsd")
+    alike(tmp_path, scene, path)
 
 
 def test_what_tells_of_our_master_is_left_to_others(tmp_path: Path) -> None:
     # they hand over values of the start of a step, which is what inputs_at_step_end says by default
-    with zipfile.ZipFile(packed(small(90), tmp_path)) as archive:
-        written = b"".join(archive.read(name) for name in archive.namelist() if name.endswith(".ssv"))
-    assert b"inputs_at_step_end" not in written
-    said = small(90, rest="[belt]\ninputs_at_step_end = false\n")
-    with zipfile.ZipFile(packed(said, tmp_path)) as archive:
-        assert b"inputs_at_step_end" in archive.read("resources/belt.ssv")
+    written = members(packed(small(90), tmp_path), ".ssv").values()
+    assert not any(b"inputs_at_step_end" in content for content in written)
+    said = packed(small(90, rest="[belt]\ninputs_at_step_end = false\n"), tmp_path)
+    assert b"inputs_at_step_end" in members(said)["resources/belt.ssv"]
     result = run(tmp_path / "small.ssp", output=tmp_path / "back.h5")
     assert result.scene.instances["belt"].values["inputs_at_step_end"] is False
     assert result.scene.instances["weft"].values["inputs_at_step_end"] is True
@@ -199,10 +201,7 @@ def test_the_diagram_goes_from_left_to_right(demo: Path) -> None:
 def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) -> None:
     changed = SHORT | {"shaft.speed": "487.3 rpm"}
     scene = scenes.load(SIMS / f"{name}.toml", changed)
-    before = run(scene, output=tmp_path / "before.h5")
-    after = run(packed(scene, tmp_path), output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
-    assert list(map(str, after.claims)) == list(map(str, before.claims))
+    before, after = alike(tmp_path, scene, packed(scene, tmp_path))
     assert after.scene.title == scene.title and after.scene.description == scene.description
     assert after.trace.attributes["scene"] == scene.text
     signals = [signal for signal in before.trace if signal in scene.record]
@@ -212,17 +211,13 @@ def test_a_package_runs_as_its_scene_to_the_last_bit(tmp_path: Path, name: str) 
 @pytest.mark.parametrize("text", [TIMED, "revolutions = 0.5\n[weft]\n[belt]\n" + LOOP])
 def test_so_do_a_scene_without_shaft_and_one_with_a_loop(tmp_path: Path, text: str) -> None:
     scene = scenes.parse(text, "odd")
-    before = run(scene, output=tmp_path / "before.h5")
-    after = run(packed(scene, tmp_path), output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
+    before, after = alike(tmp_path, scene, packed(scene, tmp_path))
     assert after.warnings == before.warnings
 
 
 def test_values_of_a_package_can_be_changed(demo: Path, tmp_path: Path) -> None:
     changed = {"shaft.speed": "650 rpm", "heald.stroke": "90 mm", "steps_per_revolution": "44"}
-    before = run(DEMO, set=SHORT | changed, output=tmp_path / "before.h5")
-    after = run(demo, set=changed, output=tmp_path / "after.h5")
-    equal(before.trace, after.trace)
+    _before, after = alike(tmp_path, DEMO, demo, {"revolutions": 0.5}, **changed)
     again = run(after.scene, set={"steps_per_revolution": 30}, output=tmp_path / "again.h5")
     assert (again.trace.rows, again.scene.speed) == (16, scenes.load(DEMO).speed)
 
@@ -256,34 +251,24 @@ def test_a_connected_input_of_a_package_takes_no_value(demo: Path) -> None:
     assert str(raised.value).endswith("belt.travel cannot be set, it is wired to weft.travel in the package")
 
 
-def edited(path: Path, target: Path, member: str, *changes: tuple[str, str]) -> Path:
-    """A copy of a package with texts of a member replaced."""
-    with zipfile.ZipFile(path) as archive, zipfile.ZipFile(target, "w") as copy:
-        for name in archive.namelist():
-            content = archive.read(name)
-            for before, after in changes if name == member else ():
-                assert before.encode() in content, before
-                content = content.replace(before.encode(), after.encode())
-            copy.writestr(name, content)
+def edited(path: Path, target: Path, *changes: tuple[str, str, str]) -> Path:
+    """A copy of a package with texts of its files replaced: each the file, the text and the new one."""
+    files = members(path)
+    for name, before, after in changes:
+        assert before.encode() in files[name], before
+        files[name] = files[name].replace(before.encode(), after.encode())
+    target.write_bytes(zipped(files))
     return target
 
 
 def test_what_another_tool_has_changed_in_it_holds(demo: Path, tmp_path: Path) -> None:
+    wire = '{0}Element="weft" {0}Connector="acceleration" {1}Element="belt" {1}Connector="acceleration"'
     path = edited(
         demo,
         tmp_path / "edited.ssp",
-        "resources/belt.ssv",
-        ('"0.1105" unit="kg"', '"221" unit="g"'),
-        ('<ssc:Unit name="kg">', f'{GRAM}<ssc:Unit name="kg">'),
-    )
-    path = edited(
-        path,
-        tmp_path / "again.ssp",
-        "SystemStructure.ssd",
-        (
-            'startElement="weft" startConnector="acceleration" endElement="belt" endConnector="acceleration"',
-            'endElement="weft" endConnector="acceleration" startElement="belt" startConnector="acceleration"',
-        ),
+        ("resources/belt.ssv", '"0.1105" unit="kg"', '"221" unit="g"'),
+        ("resources/belt.ssv", '<ssc:Unit name="kg">', f'{GRAM}<ssc:Unit name="kg">'),
+        ("SystemStructure.ssd", wire.format("start", "end"), wire.format("end", "start")),
     )
     trace = run(path, output=tmp_path / "edited.h5").trace
     expected = run(DEMO, set=SHORT | {"belt.head_mass": 0.221}, output=tmp_path / "expected.h5").trace
@@ -297,32 +282,23 @@ def test_what_another_tool_has_changed_in_it_holds(demo: Path, tmp_path: Path) -
 
 def test_a_package_of_the_form_before_is_still_read(demo: Path, tmp_path: Path) -> None:
     # our annotation at the end of the root, a choice by its number
-    text = zipfile.ZipFile(demo).read("SystemStructure.ssd").decode()
-    ours = text[text.index('<ssc:Annotation type="org.pypi.loomfmu">') : text.index("</loomfmu:Scene>")]
-    ours += "</loomfmu:Scene></ssc:Annotation>"
-    rest = text[text.index("</loomfmu:Scene>") :]
-    end = rest[len("</loomfmu:Scene>") :].replace("</ssc:Annotation>", "", 1)
+    text = members(demo)["SystemStructure.ssd"].decode()
+    (ours,) = re.findall(
+        r'<ssc:Annotation type="org\.pypi\.loomfmu">.*</loomfmu:Scene>\s*</ssc:Annotation>', text, re.DOTALL
+    )
+    last, law = (
+        "</ssd:DefaultExperiment>",
+        '<ssv:Parameter name="law"><ssv:Integer value="2"/></ssv:Parameter>',
+    )
     path = edited(
         demo,
-        tmp_path / "before.ssp",
-        "SystemStructure.ssd",
-        (ours[: ours.index("</loomfmu:Scene>")] + rest, end),
-        ("</ssd:DefaultExperiment>", f"</ssd:DefaultExperiment><ssd:Annotations>{ours}</ssd:Annotations>"),
-    )
-    path = edited(
-        path,
         tmp_path / "old.ssp",
-        "resources/dobby.ssv",
-        (
-            "</ssv:Parameters>",
-            '<ssv:Parameter name="law"><ssv:Integer value="2"/></ssv:Parameter></ssv:Parameters>',
-        ),
+        ("SystemStructure.ssd", ours, ""),
+        ("SystemStructure.ssd", last, f"{last}<ssd:Annotations>{ours}</ssd:Annotations>"),
+        ("resources/dobby.ssv", "</ssv:Parameters>", f"{law}</ssv:Parameters>"),
     )
-    assert [element.tag.rpartition("}")[2] for element in structure(path)][-1] == "Annotations"
-    after = run(path, output=tmp_path / "after.h5")
-    expected = run(DEMO, set=SHORT | {"dobby.law": "harmonic_ends"}, output=tmp_path / "expected.h5")
-    equal(after.trace, expected.trace)
-    assert list(map(str, after.claims)) == list(map(str, expected.claims))
+    assert names_of(structure(path))[-1] == "Annotations"
+    alike(tmp_path, DEMO, path, SHORT | {"dobby.law": "harmonic_ends"})
 
 
 # ---- the command
@@ -395,10 +371,8 @@ def test_a_mistake_is_told_in_one_line(
     monkeypatch.chdir(tmp_path)
     Path("text.ssp").write_text("no zip")
     Path("good.ssp").write_bytes(demo.read_bytes())
-    for name, files in {"empty": {}, "broken": {"SystemStructure.ssd": "<a"}}.items():
-        with zipfile.ZipFile(f"{name}.ssp", "w") as archive:
-            for member, text in files.items():
-                archive.writestr(member, text)
+    for name, files in {"empty": {}, "broken": {"SystemStructure.ssd": b"<a"}}.items():
+        Path(f"{name}.ssp").write_bytes(zipped(files))
     arguments, said = CASES[case]
     assert main(arguments) == 2
     assert capsys.readouterr().err == f"loomfmu: {said}\n"

@@ -14,16 +14,8 @@ REFUSED = 1000  # not a status of FMI: a value was not handed over, since it wou
 VALUES, STEP, SET_3, GET_3, STEP_3 = range(5)
 # the FMI 3.0 types that differ from the master's own, as stepper.c numbers them
 CONVERTED = (
-    "Float32",
-    "Boolean",
-    "Int8",
-    "Int16",
-    "Int64",
-    "UInt8",
-    "UInt16",
-    "UInt32",
-    "UInt64",
-    "Enumeration",
+    *("Float32", "Boolean", "Int8", "Int16", "Int64"),
+    *("UInt8", "UInt16", "UInt32", "UInt64", "Enumeration"),
 )
 
 

@@ -6,15 +6,14 @@ mode and without early return: it steps as an FMI 2.0 one does.
 
 import ctypes
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 
 from ...errors import LoomfmuError
 from . import calls
-from .calls import DISCARD, FATAL, OK, REFUSED, WARNING, Call, Compiled
+from .calls import DISCARD, OK, REFUSED, WARNING, Call, Compiled
 from .ports import CARRIED, RANGES, Value
 from .slave import Slave
 
@@ -54,6 +53,7 @@ class Fmi3Slave(Slave):
 
     standard = "fmi3"
     _state_word = "State"
+    refuses_by_log = False
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
@@ -65,27 +65,12 @@ class Fmi3Slave(Slave):
         self._names = {port.reference: port.name for port in fmu.ports.values()}
 
     def _open(self) -> Any:
-        slave = FMU3Slave(
-            guid=self.fmu.guid,
-            unzipDirectory=str(self.fmu.directory),
-            modelIdentifier=self.fmu.identifier,
-            instanceName=self.name,
-        )
+        slave = self._loaded(FMU3Slave)
         slave.instantiate(loggingOn=self.fmu.trusted, logMessage=self._log_3)
         return slave
 
     def _log_3(self, _environment: Any, status: int, _category: bytes, message: bytes) -> None:
         self._keep(status, message)
-
-    def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
-        """Call fmpy; a refusal by status becomes one line that names the instance."""
-        try:
-            function(*arguments)
-        except FMICallException as error:
-            self.fatal = self.fatal or error.status == FATAL
-            raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
-        finally:
-            self.environment.restore()
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the values and enter the initialization."""
@@ -97,10 +82,6 @@ class Fmi3Slave(Slave):
             self._do(getattr(self._slave, f"set{function}"), [port.reference], [value])
         no, zero, stop = ctypes.c_bool(False), ctypes.c_double(), ctypes.c_double(stop_time)
         self._do(self._call, "EnterInitializationMode", no, zero, zero, ctypes.c_bool(True), stop)
-
-    def finish_initialization(self) -> None:
-        """Leave the initialization."""
-        self._do(self._call, "ExitInitializationMode")
 
     def _ended(self) -> float | None:
         return float(self._flags.reached) if self._flags.terminate else None

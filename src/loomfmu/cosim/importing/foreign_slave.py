@@ -10,22 +10,11 @@ import math
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from fmpy import calloc, free
-from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Slave,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    fmi2CoSimulation,
-    fmi2False,
-)
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2False
 from fmpy.logging import addLoggerProxy
 
-from ...errors import LoomfmuError
-from .calls import FATAL, WARNING
-from .slave import Slave
+from .calls import WARNING
+from .slave import MEMORY, Slave
 
 if TYPE_CHECKING:
     from .fmus import Fmu
@@ -49,56 +38,20 @@ class ForeignSlave(Slave):
     """One instance of an FMI 2.0 FMU that this package has not made."""
 
     pooled = False
+    refuses_by_log = False
 
     def __init__(self, fmu: "Fmu", name: str):
         super().__init__(fmu, name)
         self._library = self._guarded_library()
 
     def _open(self) -> Any:
-        slave = FMU2Slave(
-            guid=self.fmu.guid,
-            unzipDirectory=str(self.fmu.directory),
-            modelIdentifier=self.fmu.identifier,
-            instanceName=self.name,
-        )
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = _logger
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        callbacks.componentEnvironment = id(self)
+        callbacks = fmi2CallbackFunctions(logger=_logger, componentEnvironment=id(self), **MEMORY)
         addLoggerProxy(ctypes.byref(callbacks))
         _instances[id(self)] = self
-        self._callbacks = callbacks
-        slave.callbacks = callbacks
-        slave.component = slave.fmi2Instantiate(
-            self.name.encode(),
-            fmi2CoSimulation,
-            self.fmu.guid.encode(),
-            _resources(self.fmu).encode(),
-            ctypes.byref(callbacks),
-            fmi2False,
-            fmi2False,
-        )
-        if slave.component is None:
-            raise LoomfmuError("no reason given")
-        return slave
+        return self._instantiated(FMU2Slave, callbacks, self._resources(), fmi2False)
 
     def _log(self, _environment: Any, _instance: bytes, status: int, _category: bytes, text: bytes) -> None:
         self._keep(status, text)
-
-    def _do(self, function: Any, *arguments: Any) -> None:
-        """Call fmpy; a refusal by status becomes one line that names the instance."""
-        try:
-            function(*arguments)
-        except FMICallException as error:
-            self.fatal = self.fatal or error.status == FATAL
-            raise LoomfmuError(f"{self.name}: {self._reason(error)}") from None
-        finally:
-            self.environment.restore()
-
-    def finish_initialization(self) -> None:
-        """Leave the initialization."""
-        self._do(self._call, "ExitInitializationMode")
 
     def _ended(self) -> float | None:
         kept = list(self.messages)  # it may complain of being asked
@@ -111,7 +64,3 @@ class ForeignSlave(Slave):
             return None
         self.messages[:] = kept
         return time.value if ended.value else None
-
-
-def _resources(fmu: "Fmu") -> str:
-    return (fmu.directory.absolute() / "resources").as_uri()

@@ -52,6 +52,10 @@ if TYPE_CHECKING:
 SIZES = {"Real": 8, "Integer": 4, "Boolean": 4}  # bytes of a value in the master's vectors
 _ZERO = ctypes.c_double(0.0)
 NEEDS_TOOL = "it says that it needs the tool that created it (needsExecutionTool = true)"
+MEMORY = {
+    "allocateMemory": fmi2CallbackAllocateMemoryTYPE(calloc),
+    "freeMemory": fmi2CallbackFreeMemoryTYPE(free),
+}
 STATUS = {DISCARD: "Discard", ERROR: "Error", FATAL: "Fatal", PENDING: "Pending"}
 
 
@@ -87,6 +91,7 @@ class Slave(Logged):
     standard = "fmi2"  # what its functions begin with
     pooled = True  # whether it can be reset for another run
     keeps_calls = True  # whether prepared calls serve another run, too
+    refuses_by_log = True  # whether what it logs as discarded or worse is a refusal, whatever it returns
     _state_word = "state"
 
     def __init__(self, fmu: "Fmu", name: str):
@@ -124,51 +129,56 @@ class Slave(Logged):
         """fmpy's slave, instantiated."""
         # live FMUs say there why they fail, for hosts without FMI's logging: here it is in `messages`
         logging.getLogger("loomfmu.live").addHandler(_unheard)
-        slave = FMU2Ours(
+        callbacks = fmi2CallbackFunctions(logger=fmi2CallbackLoggerTYPE(self._log), **MEMORY)
+        # pythonfmu's wrapper knows no escape but %20 and crashes where it finds no resources
+        return self._instantiated(FMU2Ours, callbacks, unquote(self._resources()), fmi2True)
+
+    def _resources(self) -> str:
+        return (self.fmu.directory.absolute() / "resources").as_uri()
+
+    def _loaded(self, wrapper: Callable[..., Any]) -> Any:
+        """fmpy's slave, of one of its classes, for the FMU's library."""
+        return wrapper(
             guid=self.fmu.guid,
             unzipDirectory=str(self.fmu.directory),
             modelIdentifier=self.fmu.identifier,
             instanceName=self.name,
         )
-        self._callbacks = fmi2CallbackFunctions()
-        self._callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
-        self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        self._instantiate(slave)
-        return slave
 
-    def _instantiate(self, slave: FMU2Slave) -> None:
-        """As fmpy's own method, but with a plain resource location.
-
-        pythonfmu's wrapper knows no escape but %20 and crashes where it finds no resources.
-        """
-        slave.callbacks = self._callbacks
-        resources = unquote((self.fmu.directory.absolute() / "resources").as_uri())
+    def _instantiated(
+        self, wrapper: Callable[..., Any], callbacks: fmi2CallbackFunctions, resources: str, logging_on: int
+    ) -> Any:
+        """As fmpy's own method, but with these callbacks and this resource location."""
+        slave = self._loaded(wrapper)
+        slave.callbacks = callbacks
         slave.component = slave.fmi2Instantiate(
             self.name.encode(),
             fmi2CoSimulation,
             self.fmu.guid.encode(),
             resources.encode(),
-            ctypes.byref(self._callbacks),
+            ctypes.byref(callbacks),
             fmi2False,
-            fmi2True,
+            logging_on,
         )
         if slave.component is None:
             raise LoomfmuError("no reason given")
+        return slave
 
     def _do(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Call fmpy; a refusal, by status or by log, becomes one line that names the instance."""
-        seen = len(self.messages)
-        failure: Exception | None = None
+        seen, failure = len(self.messages), None
         try:
             function(*arguments)
         except FMICallException as error:
             failure = error
             self._note(error.status)
-        if failure or (
-            len(self.messages) > seen and any(status >= DISCARD for status, _text in self.messages[seen:])
-        ):
+        finally:
+            self.environment.restore()
+        if failure or self._complained(self.messages[seen:]):
             raise LoomfmuError(f"{self.name}: {self._reason(failure)}")
+
+    def _complained(self, messages: Sequence[tuple[int, str]]) -> bool:
+        return self.refuses_by_log and any(status >= DISCARD for status, _text in messages)
 
     def start(self, values: dict[str, Value], stop_time: float) -> None:
         """Set the experiment up and the values, and enter the initialization."""
@@ -183,7 +193,7 @@ class Slave(Logged):
 
     def finish_initialization(self) -> None:
         """Leave the initialization; what the FMU complains of, or complained of before, is raised."""
-        if any(status >= DISCARD for status, _text in self.messages):
+        if self._complained(self.messages):
             raise LoomfmuError(f"{self.name}: {self._reason()}")
         self._do(self._call, "ExitInitializationMode")
 

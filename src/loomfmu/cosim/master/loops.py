@@ -18,7 +18,7 @@ from ..importing.calls import Rollback
 from ..importing.slave import Ended, Slave
 from ..scenes.graph import Wire
 from .grid import Span
-from .steppers import Action, Advanced, CompiledStepper, Driven, Memory, Stepper, compiled_library, take
+from .steppers import Action, Advanced, CompiledStepper, Memory, Rows, Stepper, compiled_library, take
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -135,8 +135,6 @@ def iteration(
     lagged: Sequence[Wire],
     slots: Sequence[int],
     memory: Memory,
-    time: ctypes.c_double,
-    size: ctypes.c_double,
     compiled: bool | None = None,
 ) -> Stepper:
     """A stepper that repeats the part of each step that lies on a loop; in C where `stepper` would be.
@@ -157,17 +155,13 @@ def iteration(
     # an FMU of ours never ends a run by itself, which would have to be seen through all exchanges of a step
     simple = all(action.slave.fmu.trusted for action in flat)
     library = compiled_library(flat, compiled) if simple or compiled else None
-    if library:
-        return CompiledIteration(library, loop, memory, time, size)
-    return Iteration(loop, memory, time, size)
+    return CompiledIteration(library, loop, memory) if library else Iteration(loop, memory)
 
 
 class CompiledIteration(CompiledStepper):
     """Repeats that part of each step in C."""
 
-    def __init__(
-        self, library: Path, loop: Loop, memory: Memory, time: ctypes.c_double, size: ctypes.c_double
-    ):
+    def __init__(self, library: Path, loop: Loop, memory: Memory):
         self._loop = loop
         self._slaves = loop.slaves
         self._solver = Broyden(memory.reals, memory.integers, loop.slots)
@@ -197,13 +191,11 @@ class CompiledIteration(CompiledStepper):
             self._room.ctypes.data,
             self._integers.ctypes.data,
         )
-        super().__init__(library, loop.actions, memory, time, size, ctypes.addressof(self._struct))
+        super().__init__(library, loop.actions, memory, ctypes.addressof(self._struct))
 
-    def _stopped(
-        self, place: int, status: int, span: Span, step: int, reals: Floats, integers: Integers
-    ) -> Advanced:
+    def _stopped(self, place: int, status: int, span: Span, step: int, rows: Rows) -> Advanced:
         if status >= 0:
-            return super()._stopped(place, status, span, step, reals, integers)
+            return super()._stopped(place, status, span, step, rows)
         failures = {
             NOT_SETTLED: lambda: self._loop.unsettled(float(span.starts[step])),
             NOT_SAVED: self._slaves[place].not_saved,
@@ -239,7 +231,7 @@ class _Loop(ctypes.Structure):
 class Iteration:
     """Repeats that part of each step from a saved state, in Python."""
 
-    def __init__(self, loop: Loop, memory: Memory, time: ctypes.c_double, size: ctypes.c_double):
+    def __init__(self, loop: Loop, memory: Memory):
         self._before, self._looped, self._after = (
             loop.actions[part]
             for part in (slice(loop.first), slice(loop.first, loop.end), slice(loop.end, None))
@@ -247,30 +239,28 @@ class Iteration:
         self._loop = loop
         self._slaves = loop.slaves
         self._memory = memory
-        self._time, self._size = time, size
         self._solver = Broyden(memory.reals, memory.integers, loop.slots)
 
-    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Rows, rows: Rows) -> Advanced:
         """See `Stepper`."""
         memory = self._memory
         for step in range(len(span)):
             if memory.interrupted.value:
                 return step, None
-            self._time.value, self._size.value = span.starts[step], span.sizes[step]
+            memory.time.value, memory.size.value = span.starts[step], span.sizes[step]
             memory.drive(driven, step)
             try:
                 ended = self._step(float(span.ends[step]))
             except LoomfmuError as failure:
                 return step, failure
-            reals[step] = memory.reals
-            integers[step] = memory.integers
+            memory.write(rows, step)
             if ended:
                 return step + 1, ended
         return len(span), None
 
     def _step(self, end: float) -> Ended | None:
         """Take one step; the FMU that ends the simulation with it. Raises LoomfmuError where that fails."""
-        time = self._time.value
+        time = self._memory.time.value
         ended = take(self._before, time, end)
         for slave in self._slaves:
             slave.save()

@@ -23,14 +23,13 @@ from ..importing.slave import NEEDS_TOOL, Ended, Slave
 from ..scenes.graph import step_order
 from ..scenes.scene import Scene
 from ..scenes.settings import ITERATED
-from .constant_shaft import ConstantShaft
 from .endless import interruptible
 from .grid import Grid, Span, uniform
 from .guards import directory_kept, exit_named
 from .loops import Growth, iteration
-from .signals import Signals
+from .signals import ConstantShaft, Signals
 from .start import Start
-from .steppers import Action, Memory, Stepper, stepper
+from .steppers import Action, Memory, Rows, Stepper, stepper
 
 PATIENCE = 0.05  # s between looks for Ctrl-C
 NOTHING = nullcontext()  # to be kept
@@ -85,7 +84,6 @@ class Master:
         self.steps = 0
         self.ended: Ended | None = None
         self._start_warnings: list[str] = []
-        self._time, self._size = ctypes.c_double(0.0), ctypes.c_double(0.0)
         self._part = 1  # steps between looks for Ctrl-C
         self._calls: _Calls | None = None  # as they were prepared for the last run
 
@@ -151,16 +149,7 @@ class Master:
             slave.start(self.scene.instances[name].values, self.grid.stop_time)
         signals.begin()
         calls = self._prepared()
-        start = Start(
-            self.slaves,
-            calls.inputs,
-            calls.outputs,
-            self.scene.wires,
-            self.lagged,
-            self.slots,
-            signals.reals,
-            signals.integers,
-        )
+        start = Start(self.slaves, calls.inputs, calls.outputs, self.lagged, signals)
         start.make()
         self._start_warnings = start.warnings
         self._growth = Growth(self.lagged, signals.real_slots(self.lagged))
@@ -185,14 +174,6 @@ class Master:
     def _make_stepper(self, calls: "_Calls") -> Stepper:
         """Return the stepper that makes the calls of all instances in their order."""
         signals = self._signals
-        actions = {
-            name: [
-                *calls.inputs[name],
-                Action(slave, slave.step_call(self._time, self._size)),
-                *calls.outputs[name],
-            ]
-            for name, slave in self.slaves.items()
-        }
         memory = Memory(
             signals.reals,
             signals.integers,
@@ -200,11 +181,19 @@ class Master:
             signals.driven_slots(real=False),
             self.interrupted,
         )
+        actions = {
+            name: [
+                *calls.inputs[name],
+                Action(slave, slave.step_call(memory.time, memory.size)),
+                *calls.outputs[name],
+            ]
+            for name, slave in self.slaves.items()
+        }
         if self.lagged and self.scene.coupling == ITERATED:
             slots = signals.real_slots(self.lagged)
-            return iteration(actions, self.lagged, slots, memory, self._time, self._size, self._compiled)
+            return iteration(actions, self.lagged, slots, memory, self._compiled)
         in_order = [action for each in actions.values() for action in each]
-        return stepper(in_order, memory, self._time, self._size, self._compiled)
+        return stepper(in_order, memory, self._compiled)
 
     # ---- stepping
 
@@ -218,9 +207,11 @@ class Master:
             Interrupted: Ctrl-C, after the step under way
         """
         times = np.empty(rows)
-        reals = np.empty((rows, len(self._signals.reals)))
-        integers = np.empty((rows, len(self._signals.integers)), dtype=np.int32)
-        times[0], reals[0], integers[0] = 0.0, self._signals.reals, self._signals.integers
+        values = Rows(
+            np.empty((rows, len(self._signals.reals))),
+            np.empty((rows, len(self._signals.integers)), dtype=np.int32),
+        )
+        times[0], values.reals[0], values.integers[0] = 0.0, self._signals.reals, self._signals.integers
         handed, filled, step = 0, 1, 0
         due = perf_counter() + HOLD
         failure: LoomfmuError | None = None
@@ -229,12 +220,12 @@ class Master:
                 if filled == rows or perf_counter() > due:
                     block = slice(handed, filled)
                     handed = filled = filled % rows  # first: what is found bad is not handed over again
-                    self._hand_over(times[block], reals[block], integers[block], write)
+                    self._hand_over(times[block], values.reals[block], values.integers[block], write)
                     progress(step)
                     due = perf_counter() + HOLD
                 span = self.grid.span(step, min(rows - filled, self.grid.steps - step, self._part))
                 before = perf_counter()
-                taken, failure = self._advance(span, reals[filled:], integers[filled:])
+                taken, failure = self._advance(span, values.after(filled))
                 grown = self._part * min(8.0, PATIENCE / max(perf_counter() - before, 1e-6))
                 self._part = max(1, min(rows, int(grown)))
                 times[filled : filled + taken] = span.ends[:taken]
@@ -245,7 +236,7 @@ class Master:
         finally:
             if filled > handed:
                 block = slice(handed, filled)
-                self._hand_over(times[block], reals[block], integers[block], write)
+                self._hand_over(times[block], values.reals[block], values.integers[block], write)
         self.steps = step
         if isinstance(failure, Ended):
             self.ended = failure if step < self.grid.steps else None
@@ -253,14 +244,14 @@ class Master:
             raise failure
         progress(self.grid.steps)
 
-    def _advance(self, span: Span, reals: Reals, integers: Integers) -> tuple[int, LoomfmuError | None]:
+    def _advance(self, span: Span, rows: Rows) -> tuple[int, LoomfmuError | None]:
         """Take the steps of a span, write a row for each; how many were taken, and why not all."""
         driven = self._signals.driven(span.turns)
         with self._directory_kept():
-            taken, failure = self._stepper.advance(span, driven, reals, integers)
+            taken, failure = self._stepper.advance(span, driven, rows)
         if failure is None and taken and (reason := self._limits.passed):
             failure = LoomfmuError(f"{self.scene.name} at {span.ends[taken - 1]:.9g} s: {reason}")
-        self._signals.turn_shafts((span.starts + span.sizes)[:taken], reals[:taken])
+        self._signals.turn_shafts((span.starts + span.sizes)[:taken], rows.reals[:taken])
         return taken, failure
 
     def _hand_over(self, times: Reals, reals: Reals, integers: Integers, write: Block) -> None:

@@ -1,6 +1,7 @@
 """The values of a run in memory, and the calls that move them between the FMUs."""
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,24 @@ from numpy.typing import NDArray
 from ..importing.slave import SIZES, Slave
 from ..scenes.graph import Wire
 from ..scenes.scene import Scene
-from .constant_shaft import ConstantShaft
-from .steppers import Action, Driven
+from .steppers import Action, Rows
 
 Floats = NDArray[np.float64]
 Slot = tuple[str, int]  # the type of a value and its place among those of the type
+
+
+@dataclass(frozen=True)
+class ConstantShaft:
+    """A main shaft that needs no FMU. Its values are those that `MainShaft` gives, to the last bit."""
+
+    speed: float
+    start_angle: float
+
+    def values(self, variable: str, time: Floats) -> Floats | float:
+        """An output of the shaft along times [s]; one number where it is the same at all of them."""
+        if variable == "angle":
+            return self.start_angle + self.speed * time
+        return self.speed if variable == "velocity" else 0.0
 
 
 class Signals:
@@ -29,7 +43,7 @@ class Signals:
         fetched: Collection[tuple[str, str]] | None,
         shafts: Mapping[str, ConstantShaft],
     ):
-        self._scene, self._order, self.shafts = scene, order, shafts
+        self.scene, self._order, self.shafts = scene, order, shafts
         self.slots = self._slots(fetched)
         reals = sum(kind == "Real" for kind, _ in self.slots.values())
         self.reals = np.zeros(max(1, reals))
@@ -49,13 +63,13 @@ class Signals:
             taken[vector] += 1
 
         for name in self._order:
-            ports = self._scene.instances[name].fmu.ports.values()
+            ports = self.scene.instances[name].fmu.ports.values()
             for kind in SIZES:
                 for port in ports:
                     wanted = fetched is None or (name, port.name) in fetched
                     if port.causality == "output" and port.kind == kind and wanted:
                         take(name, port.name, kind)
-        for drive in self._scene.drives:
+        for drive in self.scene.drives:
             take(drive.instance, drive.variable, drive.kind)
         for name in self.shafts:
             for variable in ("angle", "velocity", "acceleration"):
@@ -69,25 +83,25 @@ class Signals:
 
     def driven_slots(self, *, real: bool) -> list[int]:
         """Return the places of the driven inputs among the reals or among the integers."""
-        slots = [self.slots[drive.instance, drive.variable] for drive in self._scene.drives]
+        slots = [self.slots[drive.instance, drive.variable] for drive in self.scene.drives]
         return [slot for kind, slot in slots if (kind == "Real") is real]
 
     def begin(self) -> None:
         """The values before the first exchange: zeros, and those of driven inputs and shafts."""
         self.reals[:], self.integers[:] = 0.0, 0
-        if self._scene.drives:
+        if self.scene.drives:
             driven = self.driven(np.zeros(1))
             self.reals[self.driven_slots(real=True)] = driven.reals[0]
             self.integers[self.driven_slots(real=False)] = driven.integers[0]
         self.turn_shafts(np.zeros(1), self.reals[np.newaxis, :])
 
-    def driven(self, turns: Floats) -> Driven:
-        """The driven inputs at numbers of revolutions, along the columns those of `_driven_slots`."""
-        if not self._scene.drives:
-            return Driven(np.empty((len(turns), 0)), np.empty((len(turns), 0), dtype=np.int32))
-        reals = [drive.along(turns) for drive in self._scene.drives if drive.kind == "Real"]
-        integers = [drive.along(turns) for drive in self._scene.drives if drive.kind != "Real"]
-        return Driven(
+    def driven(self, turns: Floats) -> Rows:
+        """The driven inputs at numbers of revolutions, along the columns those of `driven_slots`."""
+        if not self.scene.drives:
+            return Rows(np.empty((len(turns), 0)), np.empty((len(turns), 0), dtype=np.int32))
+        reals = [drive.along(turns) for drive in self.scene.drives if drive.kind == "Real"]
+        integers = [drive.along(turns) for drive in self.scene.drives if drive.kind != "Real"]
+        return Rows(
             np.array(reals, dtype=float).reshape(len(reals), len(turns)).T.copy(),
             np.array(integers, dtype=np.int32).reshape(len(integers), len(turns)).T.copy(),
         )
@@ -107,14 +121,14 @@ class Signals:
 
         Sources that are side by side go in one call.
         """
-        instance = self._scene.instances[name]
+        instance = self.scene.instances[name]
         wired = [
             (*self.slots[wire.source], instance.fmu.ports[wire.sink[1]].reference)
-            for wire in self._scene.wires
+            for wire in self.scene.wires
             if wire.sink[0] == name
         ] + [
             (*self.slots[name, drive.variable], instance.fmu.ports[drive.variable].reference)
-            for drive in self._scene.drives
+            for drive in self.scene.drives
             if drive.instance == name
         ]
         runs: list[tuple[str, int, list[int]]] = []
@@ -131,7 +145,7 @@ class Signals:
 
     def outputs(self, name: str, slave: Slave) -> list[Action]:
         """Calls that fetch an instance's outputs, one for each type."""
-        ports = self._scene.instances[name].fmu.ports
+        ports = self.scene.instances[name].fmu.ports
         actions = []
         for kind in SIZES:
             mine = [

@@ -10,12 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..importing.slave import Slave
 from ..scenes.graph import Wire, step_order
 from .loops import MOST_EXCHANGES, ROUNDING, Broyden
-from .signals import Slot
+from .signals import Signals
 from .steppers import Action, perform
 
 
@@ -29,11 +28,8 @@ class Start:
     slaves: Mapping[str, Slave]
     inputs: Mapping[str, Sequence[Action]]
     outputs: Mapping[str, Sequence[Action]]
-    wires: Sequence[Wire]
     lagged: Sequence[Wire]
-    slots: Mapping[tuple[str, str], Slot]
-    reals: NDArray[np.float64]
-    integers: NDArray[np.int32]
+    signals: Signals
     warnings: list[str] = field(default_factory=list)
 
     def make(self) -> None:
@@ -53,7 +49,8 @@ class Start:
         FMUs whose outputs may change as they leave go first: third-party ones.
         """
         third_party_first = sorted(names, key=lambda name: self.slaves[name].fmu.trusted)
-        within = [wire for wire in self.wires if wire.sink[0] in names and wire.source[0] in names]
+        wires = self.signals.scene.wires
+        within = [wire for wire in wires if wire.sink[0] in names and wire.source[0] in names]
         leaving, _ = step_order(third_party_first, within)
         handed: dict[Wire, float] = {}
         settled = changed = True
@@ -72,16 +69,16 @@ class Start:
         ]
 
     def _value(self, wire: Wire) -> float:
-        kind, slot = self.slots[wire.source]
-        return float(self.reals[slot] if kind == "Real" else self.integers[slot])
+        kind, slot = self.signals.slots[wire.source]
+        return float((self.signals.reals if kind == "Real" else self.signals.integers)[slot])
 
     def _leave(self, name: str) -> bool:
         """Let an instance leave initialization and read its outputs; whether any value is another one now."""
-        before = self.reals.copy(), self.integers.copy()
+        reals, integers = self.signals.reals.copy(), self.signals.integers.copy()
         self.slaves[name].finish_initialization()
         perform(self.outputs[name], 0.0)
-        same = np.array_equal(before[0], self.reals, equal_nan=True)
-        return not (same and np.array_equal(before[1], self.integers))
+        same = np.array_equal(reals, self.signals.reals, equal_nan=True)
+        return not (same and np.array_equal(integers, self.signals.integers))
 
     def _exchange(self, names: Sequence[str]) -> bool:
         """Hand all outputs on until loops agree with themselves; where they cannot, hand them on once."""
@@ -90,13 +87,13 @@ class Start:
         lagged = [wire for wire in self.lagged if {wire.source[0], wire.sink[0]} <= set(names)]
         if not lagged:
             return True
-        first = self.reals.copy(), self.integers.copy()
+        reals, integers = self.signals.reals, self.signals.integers
+        first = reals.copy(), integers.copy()
         known = {name: len(self.slaves[name].messages) for name in names}
-        slots = dict.fromkeys(self.slots[wire.source] for wire in lagged)
-        solver = Broyden(self.reals, self.integers, [slot for kind, slot in slots if kind == "Real"])
+        solver = Broyden(reals, integers, self.signals.real_slots(lagged))
         if solver.settle(lambda: perform(calls, 0.0)):
             return True
-        self.reals[:], self.integers[:] = first
+        reals[:], integers[:] = first
         perform(calls, 0.0)
         for name, count in known.items():
             del self.slaves[name].messages[count:]  # of values that were only tried

@@ -8,7 +8,7 @@ FMUs in processes of their own.
 import ctypes
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, cast
 
@@ -39,11 +39,15 @@ class Action:
         return self.slave.noted(self.call.name, time, self.call.function, *self.call.arguments)
 
 
-class Driven(NamedTuple):
-    """Values of the driven inputs: a row for each step, a column for each input."""
+class Rows(NamedTuple):
+    """Values along steps: a row for each step, a column for each value; booleans are among the integers."""
 
     reals: Floats
     integers: Integers
+
+    def after(self, first: int) -> "Rows":
+        """The rows from one on."""
+        return Rows(self.reals[first:], self.integers[first:])
 
 
 Advanced = tuple[int, LoomfmuError | None]
@@ -52,8 +56,8 @@ Advanced = tuple[int, LoomfmuError | None]
 class Stepper(Protocol):
     """Takes steps and writes all values after each."""
 
-    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
-        """Take the steps of a span; `reals` and `integers` are rows to fill.
+    def advance(self, span: Span, driven: Rows, rows: Rows) -> Advanced:
+        """Take the steps of a span with these values of the driven inputs; `rows` are to be filled.
 
         Returns:
             the number of steps taken, fewer when interrupted, and what an FMU failed with or ended the run
@@ -90,38 +94,41 @@ def take(actions: Iterable[Action], time: float, end: float, status: int | None 
 
 @dataclass
 class Memory:
-    """The memory that a master shares with its stepper: all outputs, driven inputs and the stop flag."""
+    """The memory that a master shares with its stepper: all outputs, driven inputs, the stop flag, the step.
+
+    `time` and `size` are those of the step under way [s].
+    """
 
     reals: Floats
     integers: Integers
     driven_reals: Sequence[int]
     driven_integers: Sequence[int]
     interrupted: ctypes.c_int32
+    time: ctypes.c_double = field(default_factory=ctypes.c_double)
+    size: ctypes.c_double = field(default_factory=ctypes.c_double)
 
-    def drive(self, driven: Driven, step: int) -> None:
+    def drive(self, driven: Rows, step: int) -> None:
         """Let the driven inputs have their values of a step."""
         if self.driven_reals:
             self.reals[self.driven_reals] = driven.reals[step]
         if self.driven_integers:
             self.integers[self.driven_integers] = driven.integers[step]
 
+    def write(self, rows: Rows, step: int) -> None:
+        """Write all values as the row of a step."""
+        rows.reals[step] = self.reals
+        rows.integers[step] = self.integers
+
 
 def stopped(
-    actions: Sequence[Action],
-    status: int | None,
-    span: Span,
-    step: int,
-    memory: Memory,
-    reals: Floats,
-    integers: Integers,
+    actions: Sequence[Action], status: int | None, span: Span, step: int, memory: Memory, rows: Rows
 ) -> Advanced:
     """Make a step's calls from one with an error status on; return the steps taken and why the run ends."""
     try:
         ended = take(actions, float(span.starts[step]), float(span.ends[step]), status)
     except LoomfmuError as failure:
         return step, failure
-    reals[step] = memory.reals
-    integers[step] = memory.integers
+    memory.write(rows, step)
     return step + 1, ended
 
 
@@ -135,18 +142,15 @@ def _at_end(failure: LoomfmuError, start: float, end: float) -> bool:
 class PythonStepper:
     """Makes the calls one by one through ctypes."""
 
-    def __init__(
-        self, actions: Sequence[Action], memory: Memory, time: ctypes.c_double, size: ctypes.c_double
-    ):
-        self._actions = actions
+    def __init__(self, actions: Sequence[Action], memory: Memory):
+        self._actions, self._memory = actions, memory
         # at hand for the loop over them, where looking them up would take longer than the calls themselves
         self._calls = [(each.call.function, each.call.arguments, each.slave.logged) for each in actions]
-        self._memory = memory
-        self._time, self._size = time, size
 
-    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Rows, rows: Rows) -> Advanced:
         """See `Stepper`."""
-        memory, time, size = self._memory, self._time, self._size
+        memory = self._memory
+        time, size = memory.time, memory.size
         for step in range(len(span)):
             if memory.interrupted.value:
                 return step, None
@@ -159,10 +163,9 @@ class PythonStepper:
                 if status == OK:
                     continue
                 if status != WARNING:
-                    return stopped(self._actions[place:], status, span, step, memory, reals, integers)
+                    return stopped(self._actions[place:], status, span, step, memory, rows)
                 self._actions[place].slave.warned(self._actions[place].call.name, start, before)
-            reals[step] = memory.reals
-            integers[step] = memory.integers
+            memory.write(rows, step)
         return len(span), None
 
 
@@ -192,22 +195,12 @@ class _Outcome(ctypes.Structure):
 class CompiledStepper:
     """Makes the same calls in C; `loop` is where `struct loop` of stepper.c is, if a part is repeated."""
 
-    def __init__(
-        self,
-        library: Path,
-        actions: Sequence[Action],
-        memory: Memory,
-        time: ctypes.c_double,
-        size: ctypes.c_double,
-        loop: int | None = None,
-    ):
+    def __init__(self, library: Path, actions: Sequence[Action], memory: Memory, loop: int | None = None):
         # Python's lock is kept, unless a third-party FMU may have threads that log
         ours = all(action.slave.fmu.trusted for action in actions)
         self._advance = (ctypes.PyDLL if ours else ctypes.CDLL)(str(library)).advance
         self._advance.restype = ctypes.c_int64
-        self._actions = actions
-        self._memory = memory
-        self._time, self._size = time, size
+        self._actions, self._memory = actions, memory
         self._driven = [
             np.array(slots, dtype=np.int64) for slots in (memory.driven_reals, memory.driven_integers)
         ]
@@ -232,10 +225,10 @@ class CompiledStepper:
         )
         self._outcome = _Outcome()
 
-    def advance(self, span: Span, driven: Driven, reals: Floats, integers: Integers) -> Advanced:
+    def advance(self, span: Span, driven: Rows, rows: Rows) -> Advanced:
         """See `Stepper`."""
         self._outcome.status = 0
-        arrays = (span.starts, span.sizes, *driven, reals, integers)
+        arrays = (span.starts, span.sizes, *driven, *rows)
         assert all(array.flags.c_contiguous for array in arrays)
         taken = int(
             self._advance(
@@ -247,18 +240,16 @@ class CompiledStepper:
         )
         if not self._outcome.status:
             return taken, None
-        self._time.value, self._size.value = span.starts[taken], span.sizes[taken]
-        return self._stopped(self._outcome.call, self._outcome.status, span, taken, reals, integers)
+        self._memory.time.value, self._memory.size.value = span.starts[taken], span.sizes[taken]
+        return self._stopped(self._outcome.call, self._outcome.status, span, taken, rows)
 
-    def _stopped(
-        self, place: int, status: int, span: Span, step: int, reals: Floats, integers: Integers
-    ) -> Advanced:
+    def _stopped(self, place: int, status: int, span: Span, step: int, rows: Rows) -> Advanced:
         """Return the steps taken and why the run ends, after a call failed or the C code refused one (status
         < 0).
         """
         # a value that was not handed over is tried again by Python, which says which one it is
         known = None if status == REFUSED else status
-        return stopped(self._actions[place:], known, span, step, self._memory, reals, integers)
+        return stopped(self._actions[place:], known, span, step, self._memory, rows)
 
 
 def _place(array: NDArray[Any]) -> Any:
@@ -278,18 +269,10 @@ def compiled_library(actions: Sequence[Action], compiled: bool | None) -> Path |
     return library
 
 
-def stepper(
-    actions: Sequence[Action],
-    memory: Memory,
-    time: ctypes.c_double,
-    size: ctypes.c_double,
-    compiled: bool | None = None,
-) -> Stepper:
+def stepper(actions: Sequence[Action], memory: Memory, compiled: bool | None = None) -> Stepper:
     """The compiled stepper where it is available and fits the FMUs, unless `compiled` chooses one.
 
     Raises LoomfmuError where the compiled one is required and not available.
     """
     library = compiled_library(actions, compiled)
-    if library:
-        return CompiledStepper(library, actions, memory, time, size)
-    return PythonStepper(actions, memory, time, size)
+    return CompiledStepper(library, actions, memory) if library else PythonStepper(actions, memory)

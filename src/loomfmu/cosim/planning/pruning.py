@@ -12,7 +12,7 @@ from ...components.shaft_driven import FOLLOWED, FOLLOWING, ShaftDriven
 from ...declaring.upstream import sources_of, upstream
 from ..claims.claim import Claim
 from ..importing.fmus import Value
-from ..master.constant_shaft import ConstantShaft
+from ..master.signals import ConstantShaft
 from ..scenes.instances import Instance, altered
 from ..scenes.scene import Scene
 

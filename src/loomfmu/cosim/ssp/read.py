@@ -22,21 +22,13 @@ from ..scenes.instance_tables import overridden, override, prevailing, unit_of
 from ..scenes.instances import Instance, check_name
 from ..scenes.scene import Scene, assemble
 from ..scenes.settings import DEEPEST, TIMES, toml
-from .connections import wires_of
+from .connections import Names, wires_of
 from .package import Package
 from .values import Given, apply, bound
 from .xml import FMU, OSP, OURS, SSD_FILE, full, read_units, real, required
 
-KEPT = (
-    "title",
-    "description",
-    "coupling",
-    "record",
-    "inputs",
-    "claims",
-    "tolerances",
-)  # keys of a scene that no structure can hold
-Names = Mapping[tuple[str, ...], str]
+# keys of a scene that no structure can hold
+KEPT = ("title", "description", "coupling", "record", "inputs", "claims", "tolerances")
 
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> Scene:

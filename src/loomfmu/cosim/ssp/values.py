@@ -1,7 +1,7 @@
 """The parameter values of a system package: sets, prefixes, mappings and units."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 from ... import units
@@ -36,7 +36,7 @@ def bound(element: Element, read: Read) -> Iterator[Given]:
         for given in _values(parameters):
             name = prefix + given.name
             for target in targets.get(name, [] if targets else [name]):
-                yield Given(target, given.kind, given.text, given.unit, given.definition)
+                yield replace(given, name=target)
 
 
 def _values(parameters: Element) -> Iterator[Given]:
