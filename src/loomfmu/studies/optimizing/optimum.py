@@ -147,8 +147,8 @@ def shown_error(goal: Goal, best: Best, place: int) -> str:
 
 def _shown(goal: Goal, value: float, digits: int = 7) -> str:
     """A value of a goal with its unit."""
-    shown, unit = value / units.unit(goal.display).factor, goal.unit if goal.display == "1" else goal.display
-    return f"{shown:.{digits}g}" + ("" if unit == "1" else f" {unit}")
+    unit = "" if goal.shown_unit == "1" else f" {goal.shown_unit}"
+    return f"{value / units.unit(goal.display).factor:.{digits}g}{unit}"
 
 
 def shown_gain(found: Optimum, best: Best, limit: Limit) -> str:
