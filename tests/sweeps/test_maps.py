@@ -81,6 +81,7 @@ def test_names_are_cells_and_the_limit_runs_between_those_that_hold_and_those_th
     ticks = [label.get_text() for label in picture.axes.get_yticklabels()]
     assert ticks == ["WL680-3600", "WL450-3600", "WL450-5400"]
     assert picture.figure.axes[1].get_ylabel() == "belt.lowest_speed_limit [rev/min]"
+    assert picture.values[0] == pytest.approx(limit(0.3), rel=3e-6)  # off by 1.2e-6 with 90 steps
     segments = [
         segment
         for each in picture.axes.collections

@@ -106,7 +106,7 @@ def test_a_claim_that_may_fail_does_not_limit(capsys: pytest.CaptureFixture[str]
     assert main(["optimize", str(study(text, head=EXACT + QUICK)), "--processes", "1"]) == 1
     said = " ".join(capsys.readouterr().out.split())
     assert f"of which meet all claims but '{MARGIN}' (numerical errors aside)" in said and "may fail)" in said
-    assert f"It is limited by '{SAFE}'." in said and "681.8044 rev/min" in said
+    assert f"It is limited by '{SAFE}'." in said and "Largest shaft.speed: 681.8044 rev/min." in said
     found = evaluate("results/study/best.toml").claims  # the scene has all its claims
     assert not found[0].holds and found[0].decided and found[0].distance < 0.0
 
@@ -143,6 +143,9 @@ def test_a_front_lies_on_the_curve_of_the_closed_form() -> None:
     assert found.front[-1].values["belt.guide_clearance"] == 0.6e-3
     assert len(Path("results/study/front.csv").read_text().splitlines()) == 5
     assert "<table" in found._repr_html_()
+    Path("results/study/best_02.toml").write_text("mine")
+    with pytest.raises(LoomfmuError, match=r"best_02\.toml was edited, or loomfmu did not write it"):
+        optimize("study.toml", processes=1, restart=True)
 
 
 SMALL = f"""title = "Small"
@@ -225,7 +228,9 @@ def test_the_command_prints_and_writes_what_it_finds(capsys: pytest.CaptureFixtu
     assert sorted(each.name for each in directory.iterdir()) == files.split()
     with (directory / "designs.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert {"shaft.speed [rev/min]", "dobby.law", "holds", "error"} < set(rows[0])
+    assert {"shaft.speed [rev/min]", "largest shaft.speed [rev/min]", "dobby.law", "holds", "error"} < set(
+        rows[0]
+    )
     assert max(float(row["shaft.speed [rev/min]"]) for row in rows if row["holds"] == "true") < 646.83
     capsys.readouterr()
     assert main(["run", str(directory / "best.toml")]) == 1  # without a safety distance it is on its bound
